@@ -7,6 +7,7 @@
 #include <string_view>
 
 #include "api/json_text.hpp"
+#include "api/provenance.hpp"
 #include "api/sweep.hpp"
 
 namespace vines::api {
@@ -177,11 +178,11 @@ SweepLineCheck::SweepLineCheck(const SweepRequest& request) : request_(request) 
 
 std::string SweepLineCheck::fault_of_index(const Json& parsed) const {
     const std::size_t lines = request_.plan.grid.lines();
-    const auto index = parsed.find("index");
-    if (index == parsed.end()) return "index is missing";
-    if (index->is_number_unsigned() && index->get<std::size_t>() < lines) return "";
+    if (!parsed.contains("index")) return "index is missing";
+    const Json index = canonical(parsed["index"]);  // 7.0 equals 7
+    if (index.is_number_integer() && index >= 0 && index < lines) return "";
     return fmt::format(
-        "point {} is outside the sweep, which has {} points, from 0", index->dump(), lines);
+        "point {} is outside the sweep, which has {} points, from 0", index.dump(), lines);
 }
 
 std::string SweepLineCheck::fault_of_place(const std::string& line, const Json& parsed) const {

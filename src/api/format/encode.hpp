@@ -26,9 +26,9 @@ inline constexpr std::array<FormatName, 4> format_names = {
      {Format::npz, "npz", "application/x-npz"}}};
 const FormatName& name_of(Format format);
 
-/// Encodes an answer without streamed lists. Its provenance is added, except in CSV; only JSON has
-/// the sha256. Problem 422 where the format cannot hold this answer. gives_up() is called now and
-/// then; throws Cancelled once it returns true.
+/// Encodes an answer without streamed lists. Its provenance is added, except in CSV. Problem 422
+/// where the format cannot hold this answer. gives_up() is called now and then; throws Cancelled
+/// once it returns true.
 std::string encoded(
     Json answer, Format format, const std::optional<Provenance>& provenance,
     const std::function<bool()>& gives_up = {});
