@@ -166,6 +166,13 @@ Samples samples_for(const Json& line, const std::vector<Json>& all) {
 
 }  // namespace
 
+std::vector<Json> sample_lines(const SweepRequest& r) {
+    if (r.plan.grid.reduced) return sample_rows(r);
+    std::vector<Json> samples = sample_points(r, r.plan.tries_second_start(0));
+    samples.push_back(read_back(describe_point(r, 0, SweepPoint())));
+    return samples;
+}
+
 SweepLineCheck::SweepLineCheck(const SweepRequest& request) : request_(request) {
     if (request.plan.grid.reduced) {
         single_ = tried_ = sample_rows(request);
