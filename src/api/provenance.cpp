@@ -4,12 +4,16 @@
 #include <fmt/ranges.h>
 #include <openssl/evp.h>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstdint>
+#include <cstring>
+#include <limits>
 #include <map>
+#include <memory>
+#include <span>
 #include <stdexcept>
-#include <string_view>
 #include <utility>
 
 #include "api/answer_json.hpp"
@@ -25,8 +29,6 @@ constexpr std::string_view before_provenance = ",\"provenance\":";
 
 // Up to 2^53 every integer is a double.
 constexpr double largest_whole = 9007199254740992;
-
-}  // namespace
 
 /// SHA-256 of a text in pieces.
 class Sha256 {
@@ -57,31 +59,112 @@ private:
     std::unique_ptr<EVP_MD_CTX, void (*)(EVP_MD_CTX*)> context_{EVP_MD_CTX_new(), EVP_MD_CTX_free};
 };
 
-Seal::Seal(const std::optional<Provenance>& provenance, JsonText::Take take)
-    : provenance_(provenance),
-      take_(std::move(take)),
-      hash_(provenance ? std::make_unique<Sha256>() : nullptr) {}
-
-Seal::~Seal() = default;
-
-void Seal::add(std::string_view piece) {
-    if (piece.empty()) return;
-    if (!hash_) return take_(piece);
-    hash_->add(piece);
-    if (holds_brace_) take_("}");
-    holds_brace_ = piece.back() == '}';
-    if (holds_brace_) piece.remove_suffix(1);
-    take_(piece);
+/// True for an object, and for a list that holds one.
+bool holds_object(const Json& value) {
+    return value.is_object() ||
+           (value.is_array() && std::any_of(value.begin(), value.end(), holds_object));
 }
 
-void Seal::end() {
-    if (hash_) {
-        if (!holds_brace_) throw std::logic_error("no object is sealed");
-        take_(before_provenance);
-        take_(json_text(describe(*provenance_, hash_->end())));
-        take_("}");
+void put_form(double number, std::string& to) {
+    if (!std::isfinite(number)) {
+        to += 'n';
+        return;
     }
-    take_("\n");
+    number += 0.0;  // a minus sign of zero does not survive every program
+    std::array<char, sizeof number> bytes;
+    std::memcpy(bytes.data(), &number, sizeof number);
+    to.append(1, 'd').append(bytes.data(), bytes.size());
+}
+void put_form(int number, std::string& to) { put_form(static_cast<double>(number), to); }
+void put_form(bool flag, std::string& to) { to += flag ? 't' : 'f'; }
+template <class Entry>
+void put_form(const std::array<Entry, 4>& row, std::string& to) {
+    to += '[';
+    for (const Entry& entry : row) put_form(entry, to);
+    to += ']';
+}
+
+/// The form of a value without objects and packed lists.
+void put_form(const Json& value, std::string& to) {
+    if (value.is_null()) return put_form(std::numeric_limits<double>::quiet_NaN(), to);
+    if (value.is_boolean()) return put_form(value.get<bool>(), to);
+    if (value.is_number()) return put_form(value.get<double>(), to);
+    if (value.is_string()) {
+        const auto& text = value.get_ref<const std::string&>();
+        to += needs_no_escape(text) ? '"' + text + '"' : value.dump();
+        return;
+    }
+    if (value.is_object()) {  // empty
+        to += "{}";
+        return;
+    }
+    if (value.is_binary()) throw std::logic_error("a packed list in a list");
+    to += '[';
+    for (const Json& entry : value) put_form(entry, to);
+    to += ']';
+}
+
+std::string list_hash(const Json& list) {
+    std::string form;
+    put_form(list, form);
+    return sha256(form);
+}
+
+template <class Entry>
+std::string list_hash(std::span<const std::uint8_t> bytes) {
+    constexpr std::size_t large = 16384;
+    Sha256 hash;
+    std::string form = "[";
+    for (std::size_t at = 0; at < bytes.size(); at += sizeof(Entry)) {
+        Entry entry;
+        std::memcpy(&entry, bytes.data() + at, sizeof entry);
+        put_form(entry, form);
+        if (form.size() < large) continue;
+        hash.add(form);
+        form.clear();
+    }
+    hash.add(form + "]");
+    return hash.end();
+}
+
+std::string list_hash(const PackedList& list) {
+    switch (list.packing) {
+        case Packed::quadruples: return list_hash<Quadruple>(list.bytes);
+        case Packed::matrices: return list_hash<MatrixByRows>(list.bytes);
+        case Packed::integers: return list_hash<int>(list.bytes);
+        case Packed::flags: return list_hash<bool>(list.bytes);
+        default: return list_hash<double>(list.bytes);
+    }
+}
+
+}  // namespace
+
+ContentHash::ContentHash(const Json& answer) { add_entries(answer, ""); }
+
+void ContentHash::add_entries(const Json& value, const std::string& path) {
+    if (value.is_object() && !value.empty()) {
+        for (const auto& [name, member] : value.items()) add_entries(member, path + "/" + name);
+    } else if (value.is_array() && holds_object(value)) {
+        for (std::size_t k = 0; k < value.size(); ++k)
+            add_entries(value[k], path + "/" + std::to_string(k));
+    } else if (std::string& form = entries_[path]; value.is_binary()) {
+        lists_.push_back(&form);
+    } else if (value.is_array()) {
+        form = list_hash(value);
+    } else {
+        put_form(value, form);
+    }
+}
+
+void ContentHash::add(const PackedList& list) { *lists_.at(added_++) = list_hash(list); }
+
+std::string ContentHash::end() const {
+    Sha256 hash;
+    for (const auto& [path, form] : entries_) {
+        hash.add(path);
+        hash.add("=" + form + "\n");
+    }
+    return hash.end();
 }
 
 Json describe(const Provenance& p, const Json& sha256) {
@@ -119,32 +202,75 @@ std::string sha256(std::string_view text) {
     return hash.end();
 }
 
-void write_sealed(
-    Json& answer, const std::optional<Provenance>& provenance, const JsonText::Take& take,
-    JsonText::ListOf list_of) {
-    Seal seal(provenance, take);
-    JsonText text([&seal](std::string_view piece) { seal.add(piece); }, std::move(list_of));
-    text.write(answer);
-    text.end();
-    seal.end();
+namespace {
+
+void add_lists(const Json& value, ContentHash& hash) {
+    if (value.is_binary()) hash.add(list_in_memory(value));
+    if (value.is_structured())
+        for (const Json& part : value) add_lists(part, hash);
 }
 
-std::optional<Unsealed> unsealed(std::string_view sealed) {
-    const std::size_t at = sealed.rfind(before_provenance);
-    const std::size_t end = sealed.find_last_not_of(" \t\r\n");
-    if (at == std::string_view::npos || sealed[end] != '}') return std::nullopt;
-    const std::size_t from = at + before_provenance.size();
-    Json provenance;
-    try {
-        provenance = parse_object(sealed.substr(from, end - from));
-    } catch (const Problem&) {
-        return std::nullopt;
+}  // namespace
+
+std::string content_sha256(const Json& answer) {
+    ContentHash hash(answer);
+    add_lists(answer, hash);
+    return hash.end();
+}
+
+std::string write_sealed(
+    Json& answer, const std::optional<Provenance>& provenance, const JsonText::Take& take,
+    JsonText::ListOf list_of) {
+    std::optional<ContentHash> hash;
+    if (provenance) hash.emplace(answer);
+    bool holds_brace = false;  // the last '}' so far is withheld
+    JsonText text(
+        [&](std::string_view piece) {
+            if (holds_brace) take("}");
+            holds_brace = hash && piece.ends_with('}');
+            if (holds_brace) piece.remove_suffix(1);
+            take(piece);
+        },
+        [&](const Json& value) {
+            const PackedList list = list_of(value);
+            if (hash) hash->add(list);
+            return list;
+        });
+    text.write(answer);
+    text.end();
+    std::string hashed;
+    if (hash) {
+        hashed = hash->end();
+        take(before_provenance);
+        take(json_text(describe(*provenance, hashed)));
+        take("}");
     }
-    const bool is_one = provenance.contains("route") && provenance["route"].is_string() &&
-                        provenance.contains("request") && provenance["request"].is_object() &&
-                        provenance.contains("sha256");
+    take("\n");
+    return hashed;
+}
+
+namespace {
+
+/// The hash of provenances of early 0.2.0: of the text before the provenance, followed by }.
+std::string text_sha256(std::string_view sealed) {
+    return sha256(std::string(sealed.substr(0, sealed.rfind(before_provenance))) + "}");
+}
+
+}  // namespace
+
+std::optional<Unsealed> unsealed(std::string_view sealed) {
+    Unsealed parts{.answer = parse_object(sealed)};
+    const auto found = parts.answer.find("provenance");
+    if (found == parts.answer.end() || !found->is_object()) return std::nullopt;
+    parts.provenance = std::move(*found);
+    parts.answer.erase(found);
+    const Json& p = parts.provenance;
+    const bool is_one = p.contains("route") && p["route"].is_string() && p.contains("request") &&
+                        p["request"].is_object() && p.contains("sha256");
     if (!is_one) return std::nullopt;
-    return Unsealed{std::string(sealed.substr(0, at)) + "}", std::move(provenance)};
+    parts.sha256 = content_sha256(parts.answer);
+    parts.is_unmodified = p["sha256"] == parts.sha256 || p["sha256"] == text_sha256(sealed);
+    return parts;
 }
 
 }  // namespace vines::api

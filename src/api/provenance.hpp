@@ -2,10 +2,11 @@
 #pragma once
 
 #include <cstddef>
-#include <memory>
+#include <map>
 #include <optional>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "api/json_text.hpp"
 #include "api/schema/json.hpp"
@@ -19,7 +20,7 @@ struct Provenance {
     std::optional<std::string> record = {};        ///< sha256() of an identification's body
 };
 
-/// {route, commit, answer_limit, request, record_sha256, sha256}. sha256 is that of the answer.
+/// {route, commit, answer_limit, request, record_sha256, sha256}. sha256: see ContentHash.
 Json describe(const Provenance& provenance, const Json& sha256);
 
 /// The request with names in alphabetical order at every level, and integers without a point.
@@ -28,37 +29,43 @@ Json canonical(const Json& request);
 /// SHA-256 as 64 hexadecimal digits.
 std::string sha256(std::string_view text);
 
-class Sha256;
-
-/// Passes on an answer's text, a JSON object in pieces, and appends its provenance as the last
-/// member. The provenance's sha256 is that of the text without it.
-class Seal {
+/// SHA-256 of an answer's content, whatever the order of its keys and the spelling of its numbers
+/// and strings: of the lines PATH=FORM for each value that is neither an object nor a list of
+/// objects, in the order of their paths. docs/api.md, Provenance, has the definition.
+class ContentHash {
 public:
-    /// Without a provenance the text stays unchanged. The provenance must outlive the Seal.
-    Seal(const std::optional<Provenance>& provenance, JsonText::Take take);
-    ~Seal();
-    void add(std::string_view piece);
-    /// Ends the text.
-    void end();
+    /// Hashes everything but packed lists.
+    explicit ContentHash(const Json& answer);
+    /// Adds the next packed list, in the order of the answer.
+    void add(const PackedList& list);
+    /// Expects all lists.
+    std::string end() const;
 
 private:
-    const std::optional<Provenance>& provenance_;
-    const JsonText::Take take_;
-    const std::unique_ptr<Sha256> hash_;
-    bool holds_brace_ = false;  // the last '}' so far is withheld
+    void add_entries(const Json& value, const std::string& path);
+
+    std::map<std::string, std::string> entries_;
+    std::vector<std::string*> lists_;  // forms of the packed lists
+    std::size_t added_ = 0;            // of these
 };
 
-/// Writes an answer as one line, with its provenance if any.
-void write_sealed(
+/// The same for an answer whose lists are all in memory.
+std::string content_sha256(const Json& answer);
+
+/// Writes an answer as one line, with its provenance, if any, as the last member. Returns the
+/// provenance's sha256, the ContentHash of the answer without it.
+std::string write_sealed(
     Json& answer, const std::optional<Provenance>& provenance, const JsonText::Take& take,
     JsonText::ListOf list_of = list_in_memory);
 
-/// An answer's text split into answer and provenance.
+/// An answer's JSON split into answer and provenance.
 struct Unsealed {
-    std::string text;  ///< without provenance
-    Json provenance;   ///< see describe()
+    Json answer;                 ///< without provenance
+    Json provenance = {};        ///< see describe()
+    std::string sha256 = {};     ///< content_sha256() of the answer
+    bool is_unmodified = false;  ///< its provenance has this sha256
 };
-/// nullopt if the text does not end with a provenance.
+/// nullopt if the answer has no provenance. Throws the Problems of parse_object().
 std::optional<Unsealed> unsealed(std::string_view sealed);
 
 }  // namespace vines::api

@@ -240,9 +240,9 @@ Answer simulate_in_parts(
         analysis.outcome.impacts, is_fitted};
 }
 
-void write_answer(
+std::string write_answer(
     Answer answer, RunControl& control, const JsonText::Take& take, std::size_t list_bytes) {
-    write_sealed(
+    return write_sealed(
         answer.json, answer.provenance, take,
         answer.run ? list_generator(*answer.run, answer.json, control, list_bytes)
                    : list_in_memory);

@@ -46,10 +46,9 @@ Answer simulate_in_parts(
     SimulateRequest request, const Stop& stop, std::size_t most_bytes = any_size,
     std::size_t most_kept = most_kept_impacts);
 
-/// Writes the answer as one line, in pieces, with its provenance if any. Streamed lists are
-/// generated meanwhile by runs at `control`, as many per run as fit into `list_bytes`. Throws
-/// Cancelled if `control` stops a run.
-void write_answer(
+/// write_sealed(). Streamed lists are generated meanwhile by runs at `control`, as many per run as
+/// fit into `list_bytes`. Throws Cancelled if `control` stops a run.
+std::string write_answer(
     Answer answer, RunControl& control, const JsonText::Take& take,
     std::size_t list_bytes = most_listed_bytes);
 

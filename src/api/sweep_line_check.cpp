@@ -7,6 +7,7 @@
 #include <string_view>
 
 #include "api/json_text.hpp"
+#include "api/provenance.hpp"
 #include "api/sweep.hpp"
 
 namespace vines::api {
@@ -165,6 +166,13 @@ Samples samples_for(const Json& line, const std::vector<Json>& all) {
 
 }  // namespace
 
+std::vector<Json> sample_lines(const SweepRequest& r) {
+    if (r.plan.grid.reduced) return sample_rows(r);
+    std::vector<Json> samples = sample_points(r, r.plan.tries_second_start(0));
+    samples.push_back(read_back(describe_point(r, 0, SweepPoint())));
+    return samples;
+}
+
 SweepLineCheck::SweepLineCheck(const SweepRequest& request) : request_(request) {
     if (request.plan.grid.reduced) {
         single_ = tried_ = sample_rows(request);
@@ -177,11 +185,11 @@ SweepLineCheck::SweepLineCheck(const SweepRequest& request) : request_(request) 
 
 std::string SweepLineCheck::fault_of_index(const Json& parsed) const {
     const std::size_t lines = request_.plan.grid.lines();
-    const auto index = parsed.find("index");
-    if (index == parsed.end()) return "index is missing";
-    if (index->is_number_unsigned() && index->get<std::size_t>() < lines) return "";
+    if (!parsed.contains("index")) return "index is missing";
+    const Json index = canonical(parsed["index"]);  // 7.0 equals 7
+    if (index.is_number_integer() && index >= 0 && index < lines) return "";
     return fmt::format(
-        "point {} is outside the sweep, which has {} points, from 0", index->dump(), lines);
+        "point {} is outside the sweep, which has {} points, from 0", index.dump(), lines);
 }
 
 std::string SweepLineCheck::fault_of_place(const std::string& line, const Json& parsed) const {

@@ -11,6 +11,9 @@
 
 namespace vines::api {
 
+/// Lines of made-up results that together have every field that a line of the sweep can have.
+std::vector<Json> sample_lines(const SweepRequest& request);
+
 class SweepLineCheck {
 public:
     /// The request must outlive the object.

@@ -230,6 +230,7 @@ SweepRequest read_sweep_request(const Json& given, std::size_t most_points) {
     SweepRequest r;
     r.given = given;
     r.given.erase("indices");
+    r.given.erase("format");
     r.base = field(given, "base");
     read_axes(r, given["axes"], most_points, errors);
     add_errors("/base", check(sweep_base_fields(), r.base), errors);

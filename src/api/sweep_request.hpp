@@ -50,7 +50,7 @@ private:
 };
 
 struct SweepRequest {
-    Json given;  ///< the request without `indices`; identifies the sweep
+    Json given;  ///< the request without `indices` and `format`; identifies the sweep
     Json base;
     std::vector<Axis> axes;    ///< one to three
     std::vector<Json> starts;  ///< at least one; {} for the default start

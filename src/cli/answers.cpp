@@ -70,14 +70,15 @@ int run(const AnswerOptions& o, const char* route, const api::FieldTable& table)
     return final_code();
 }
 
-api::AnswerRequest read_identification(const std::string& text, const RequestFields& given) {
-    api::Json fields = given_fields(given, api::identify_fields());
+api::AnswerRequest read_identification(const std::string& text, const AnswerOptions& o) {
+    api::Json fields = given_fields(o.fields, api::identify_fields());
     const bool is_columns = !is_json(text);
     if (!is_columns) {
         api::Json request = api::parse_object(text);
         request.merge_patch(fields);
         fields = std::move(request);
     }
+    add_format_of(o.files.output, fields);
     return api::read_answer_request("/v1/identify", std::move(fields), {text, is_columns});
 }
 
@@ -87,7 +88,7 @@ int identify(const AnswerOptions& o) {
     // is printed and the process ends.
     std::optional<Stoppable> stoppable(
         std::in_place, [] { print_message("the identification was stopped"); });
-    api::AnswerRequest asked = read_identification(text, o.fields);
+    api::AnswerRequest asked = read_identification(text, o);
     std::string().swap(text);  // frees the record, which can be large
     const api::Format format = asked.form.format.value_or(api::Format::json);
     api::Answer answer;
@@ -125,7 +126,7 @@ Command add_simulate(CLI::App& app) {
         command, [options] { return run(*options, "/v1/simulate", api::simulate_fields()); },
         "vines simulate -p preset=fig3 --plot\n"
         "vines simulate -p b=0.02 -p include=regime | jq .regime.type\n"
-        "vines simulate -p preset=fig3 -p fields=impacts --format csv -o impacts.csv\n"
+        "vines simulate -p preset=fig3 -p fields=impacts -o impacts.csv\n"
         "vines simulate request.json -p tau_end=5000 -o answer.json");
 }
 

@@ -1,6 +1,7 @@
 #include "cli/request_fields.hpp"
 
 #include <array>
+#include <filesystem>
 #include <utility>
 
 #include "api/parse.hpp"
@@ -98,13 +99,17 @@ Json given_sweep(const RequestFields& given) {
     if (object.contains("axes") && !given.axes.empty()) refuse_both("axes", "--axis");
     if (!base.empty()) object["base"] = fields_of_pairs(base, api::sweep_base_fields());
     for (const std::string& axis : given.axes) object["axes"].push_back(axis_of(axis));
+    if (!given.format.empty()) object["format"] = given.format;
     return object;
 }
 
 Json with_file(const Files& files, const RequestFields& given, const Json& fields) {
-    if (files.input.empty() && given.is_given()) return fields;
-    Json request = api::parse_object(read_all(files.input));
-    request.merge_patch(fields);
+    Json request = fields;
+    if (!files.input.empty() || !given.is_given()) {
+        request = api::parse_object(read_all(files.input));
+        request.merge_patch(fields);
+    }
+    add_format_of(files.output, request);
     return request;
 }
 
@@ -122,11 +127,15 @@ void add_request_fields(CLI::App& command, RequestFields& given) {
         ->take_all();
 }
 
-void add_format(CLI::App& command, RequestFields& given) {
+void add_format(
+    CLI::App& command, RequestFields& given, const FieldTable& table, const std::string& about) {
+    const std::vector<std::string>& choices = api::find(table, "format")->choices;
     command
         .add_option(
-            "--format", given.format, "format of the answer; default: the request's, or json")
-        ->check(CLI::IsMember(api::find(api::form_fields(), "format")->choices));
+            "--format", given.format,
+            "format of the answer; default: the request's, or that of the output's extension, or " +
+                choices.front() + about)
+        ->check(CLI::IsMember(choices));
 }
 
 void add_axes(CLI::App& command, RequestFields& given) {
@@ -137,6 +146,13 @@ void add_axes(CLI::App& command, RequestFields& given) {
         ->type_name("AXIS")
         ->expected(1)
         ->take_all();
+}
+
+void add_format_of(const std::string& output, Json& request) {
+    const std::string extension = std::filesystem::path(output).extension().string();
+    if (!request.contains("format"))
+        for (const char* format : {"csv", "cbor", "npz"})
+            if (extension == std::string(".") + format) request["format"] = format;
 }
 
 Json given_fields(const RequestFields& given, const FieldTable& table) {

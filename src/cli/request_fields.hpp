@@ -22,7 +22,10 @@ struct RequestFields {
 };
 
 void add_request_fields(CLI::App& command, RequestFields& fields);
-void add_format(CLI::App& command, RequestFields& fields);
+/// --format; `table` has the field `format`, `about` ends the help.
+void add_format(
+    CLI::App& command, RequestFields& fields, const api::FieldTable& table = api::form_fields(),
+    const std::string& about = "");
 void add_axes(CLI::App& command, RequestFields& fields);
 
 /// The options as a request's JSON, typed by the route's table. Throws Problem 400 for an argument
@@ -34,7 +37,11 @@ api::Json given_fields(const RequestFields& fields, const api::FieldTable& table
 api::Json read_request(
     const Files& files, const RequestFields& fields, const api::FieldTable& table);
 
-/// The same for a sweep: fields that are not a sweep's own are set in its base.
+/// Sets the format that the extension of the output file names (csv, cbor, npz), unless the request
+/// has one.
+void add_format_of(const std::string& output, api::Json& request);
+
+/// The same as read_request() for a sweep: fields that are not a sweep's own are set in its base.
 api::Json read_sweep(const Files& files, const RequestFields& fields);
 
 }  // namespace vines::cli

@@ -2,8 +2,9 @@
 // - appended to a file in order of completion; a later run can complete it, and it is sorted at the
 //   end;
 // - or written to a stream in the order of their index;
-// - or collected in memory, for plots and CSV, which need all of them.
-// After a signal the points computed so far are kept.
+// - or written as a table, which needs all points: a signal ends the program without it;
+// - or collected in memory, for plots, which need all of them.
+// Otherwise the points computed so far are kept after a signal.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -21,7 +22,7 @@
 #include <utility>
 #include <vector>
 
-#include "api/format/encode.hpp"
+#include "api/format/sweep_table.hpp"
 #include "api/json_text.hpp"
 #include "api/problem.hpp"
 #include "api/sweep.hpp"
@@ -113,20 +114,17 @@ struct SweepOptions {
 };
 
 /// The request, limited to the shard's lines of output.
-api::SweepRequest read_request(const SweepOptions& o) {
-    api::SweepRequest request = api::read_sweep_request(read_sweep(o.files, o.fields), max_points);
+api::SweepRequest read_request(const SweepOptions& o, const api::Json& given) {
+    api::SweepRequest request = api::read_sweep_request(given, max_points);
     const Shard shard = read_shard(o.shard, static_cast<std::size_t>(o.shards));
     request.plan.lines = api::shard_of(request, shard.index, shard.count);
     return request;
 }
 
-/// Returns whether the output needs all points before it can be written.
-bool needs_all_points(const SweepOptions& o) { return o.plot || o.fields.format == "csv"; }
-
 /// Throws Problem 422 for incompatible options, before anything is computed.
-void check(const SweepOptions& o, const api::SweepRequest& request) {
+void check(const SweepOptions& o, api::Format format, const api::SweepRequest& request) {
     if (o.plot) check_plot_file(o.files.output);
-    if (needs_all_points(o) && o.resume)
+    if ((o.plot || format != api::Format::json) && o.resume)
         throw api::Problem(422, "--resume needs --format ndjson and excludes --plot");
     // Axes with several values, except the one that is reduced (if any).
     std::size_t varying_axes = 0;
@@ -353,9 +351,23 @@ int sweep_to_stream(SweepRun run, Destination to) {
     return conclude(warning, lines.written(), run.total);
 }
 
-/// Computes all points, or those up to a signal, and draws them or writes a table. Returns the exit
-/// code.
-int sweep_collected(const SweepRun& run, const SweepOptions& o) {
+/// Writes a table: a stream gets the rows of CSV as they are computed, a file is replaced at the
+/// end. A signal ends the process without a table. Returns the exit code.
+int sweep_to_table(SweepRun run, api::Format format, const std::string& path) {
+    run.request.plan.in_order = format == api::Format::csv;
+    api::SweepTable table(run.request, format);
+    Output out(path);
+    out.write(table.begin());
+    const std::string warning = compute(run, [&](std::size_t index, const std::string& line) {
+        out.write(table.add(index, line));
+    });
+    out.write(table.end(warning));
+    out.end();
+    return conclude(warning, run.total, run.total);
+}
+
+/// Computes all points, or those up to a signal, and draws them. Returns the exit code.
+int sweep_drawn(const SweepRun& run, const SweepOptions& o) {
     std::map<std::size_t, api::Json> lines;
     std::optional<Stoppable> stoppable(std::in_place);
     const std::string warning = compute(run, [&lines](std::size_t index, const std::string& line) {
@@ -365,21 +377,22 @@ int sweep_collected(const SweepRun& run, const SweepOptions& o) {
     std::vector<api::Json> points;
     for (auto& [index, line] : lines) points.push_back(std::move(line));
     // The start is parsed again from its text: api::sweep_start() returns packed lists.
-    const std::string& path = o.files.output;
-    if (!points.empty() && o.plot)
+    if (!points.empty())
         draw(
             plots_of(api::Json::parse(api::json_text(api::sweep_start(run.request))), points),
-            path);
-    else if (!points.empty()) write_all(path, api::csv_text(api::sweep_table(points)));
+            o.files.output);
     return conclude(warning, points.size(), run.total);
 }
 
 int sweep(const SweepOptions& o) {
-    api::SweepRequest request = read_request(o);
-    check(o, request);
+    const api::Json given = read_sweep(o.files, o.fields);
+    api::SweepRequest request = read_request(o, given);
+    const api::Format format = api::sweep_format(given).value_or(api::Format::json);
+    check(o, format, request);
     const std::size_t total = request.plan.lines.size();
     SweepRun run{std::move(request), total, o.threads > 0 ? o.threads : cores()};
-    if (needs_all_points(o)) return sweep_collected(run, o);
+    if (o.plot) return sweep_drawn(run, o);
+    if (format != api::Format::json) return sweep_to_table(std::move(run), format, o.files.output);
     Destination to = destination_of(o.files.output);
     return to.is_stream() ? sweep_to_stream(std::move(run), std::move(to))
                           : sweep_to_file(std::move(run), to, o.resume);
@@ -394,12 +407,9 @@ Command add_sweep(CLI::App& app) {
     add_files(*command, options->files);
     add_request_fields(*command, options->fields);
     add_axes(*command, options->fields);
-    command
-        ->add_option(
-            "--format", options->fields.format,
-            "ndjson (default): one JSON line per point, as it is computed; csv: a table, at the "
-            "end")
-        ->check(CLI::IsMember({"ndjson", "csv"}));
+    add_format(
+        *command, options->fields, api::sweep_fields(),
+        ", one JSON line per point as it is computed; others: a table of all points");
     add_plot_flag(*command, options->plot);
     command->add_flag(
         "--resume", options->resume,
@@ -419,6 +429,7 @@ Command add_sweep(CLI::App& app) {
         command, [options] { return sweep(*options); },
         "vines sweep -a b=0.01:0.03:41 -p cycles=500 --plot\n"
         "vines sweep -a b=0.01:0.03:41 -p preset=fig3 -p section=impact -o sweep.ndjson\n"
+        "vines sweep -a b=0.01:0.03:41 -o sweep.csv\n"
         "vines sweep request.json --shard 0/4 -o 0.ndjson --resume\n"
         "vines plot sweep.ndjson -o sweep.svg");
 }

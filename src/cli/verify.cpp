@@ -1,7 +1,8 @@
-// `vines verify`: recomputes an answer and compares it byte for byte. An answer ends with its
-// provenance: route, request, commit, and the SHA-256 of the text before it. verify checks the
-// hash, repeats the request, and compares text and provenance. For a sweep it recomputes each point
-// that the file has.
+// `vines verify`: recomputes an answer and compares it value by value, to the last bit, whatever
+// the order of the keys and the spelling of numbers and strings. An answer has its provenance:
+// route, request, commit, and the SHA-256 of its content. verify checks the hash, repeats the
+// request, and compares answer and provenance. For a sweep it recomputes each point that the file
+// has.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -72,22 +73,19 @@ std::string difference(const Json& stored, const Json& computed, const std::stri
                : fmt::format("{}: {} became {}", path, in_line(stored), in_line(computed));
 }
 
-/// A recomputed answer: its text without provenance, and the provenance.
+/// A recomputed answer.
 struct Recomputed {
-    std::string text;
+    std::string text, sha256;
     api::Provenance provenance;
 };
 
 /// Returns whether two answers are equal; prints the first difference.
-bool same_text(const std::string& stored, const std::string& computed) {
-    if (stored == computed) {
-        print_line(fmt::format("recomputed: the same {} bytes", computed.size()));
-        return true;
-    }
-    const std::string where = difference(parse_answer(stored), parse_answer(computed), "");
-    print_line(
-        "recomputed: " + (where.empty() ? "the same numbers, formatted differently" : where));
-    return false;
+bool same_answer(const api::Unsealed& stored, const Recomputed& computed) {
+    std::string where;
+    if (stored.sha256 != computed.sha256)
+        where = difference(stored.answer, api::unsealed(computed.text)->answer, "");
+    print_line("recomputed: " + (where.empty() ? "the same values" : where));
+    return where.empty();
 }
 
 /// The same for the provenance, which the hash does not cover. Ignores the hash and the commit,
@@ -95,10 +93,9 @@ bool same_text(const std::string& stored, const std::string& computed) {
 bool same_provenance(const Json& stored, const api::Provenance& provenance) {
     Json computed = api::describe(provenance, stored["sha256"]);
     if (!word_of(part(stored, "/commit")).empty()) computed["commit"] = stored["commit"];
-    if (stored.dump() == computed.dump()) return true;
     const std::string where = difference(stored, computed, "");
-    print_line("provenance: " + (where.empty() ? "the same, formatted differently" : where));
-    return false;
+    if (!where.empty()) print_line("provenance: " + where);
+    return where.empty();
 }
 
 /// The request of an answer, with the measured record from its file.
@@ -121,12 +118,11 @@ std::optional<Recomputed> recomputed(const api::Provenance& p, const std::string
         api::Answer answer = api::compute_answer(
             rebuilt_request(p, record),
             {.stop = {.requested = stopped}, .most_bytes = p.answer_limit.value_or(api::any_size)});
-        computed.provenance = std::move(*std::exchange(answer.provenance, {}));
+        computed.provenance = *answer.provenance;
         RunControl control;
-        api::write_answer(std::move(answer), control, [&computed](std::string_view piece) {
-            computed.text += piece;
-        });
-        computed.text.pop_back();    // line feed
+        computed.sha256 = api::write_answer(
+            std::move(answer), control,
+            [&computed](std::string_view piece) { computed.text += piece; });
     } catch (const api::Problem&) {  // thrown by a stopped identification
         if (!stopped()) throw;
     }
@@ -171,23 +167,16 @@ std::string record_of(const Json& provenance, const VerifyOptions& o) {
 
 api::Provenance read_provenance(const Json& stored) {
     api::Provenance read{.route = stored["route"], .request = stored["request"]};
-    const Json& limit = part(stored, "/answer_limit");
-    if (limit.is_number_unsigned()) read.answer_limit = limit.get<std::size_t>();
+    const Json limit = api::canonical(part(stored, "/answer_limit"));
+    if (limit.is_number_integer() && limit > 0) read.answer_limit = limit.get<std::size_t>();
     return read;
 }
 
 int verify_answer(const api::Unsealed& stored, const VerifyOptions& o) {
-    const Json answer = parse_answer(stored.text);
-    if (!answer.is_object())
-        throw api::Problem(
-            422,
-            "the text before the provenance is not a JSON object: the file must be one unmodified "
-            "answer");
-    print_builds(answer, stored.provenance);
-    const bool unmodified = stored.provenance["sha256"] == api::sha256(stored.text);
-    print_line(unmodified ? "sha256: matches" : "sha256: the answer was modified");
+    print_builds(stored.answer, stored.provenance);
+    print_line(stored.is_unmodified ? "sha256: matches" : "sha256: the answer was modified");
     const std::string record = record_of(stored.provenance, o);
-    if (ended_early(answer)) {
+    if (ended_early(stored.answer)) {
         print_line("not decided: a time limit or a signal ended the run early");
         return incomplete;
     }
@@ -197,9 +186,10 @@ int verify_answer(const api::Unsealed& stored, const VerifyOptions& o) {
         print_early_stop();
         return stopped_code();
     }
-    const bool same = same_text(stored.text, computed->text);
-    return same_provenance(stored.provenance, computed->provenance) && same && unmodified ? complete
-                                                                                          : differs;
+    const bool same = same_answer(stored, *computed);
+    return same_provenance(stored.provenance, computed->provenance) && same && stored.is_unmodified
+               ? complete
+               : differs;
 }
 
 /// Verifies the points that a file has, even if others are missing.
@@ -216,11 +206,10 @@ int verify_sweep(const SweepFile& file, const std::string& name) {
     api::run_sweep(request, cores(), control, [&](std::size_t index, const std::string& computed) {
         const std::string& stored = file.points.at(index).text;
         ++all;
-        same += stored == computed;
-        if (stored != computed && !first)
-            first = fmt::format(
-                "point {}: {}", index,
-                difference(parse_answer(stored), parse_answer(computed), ""));
+        const std::string where =
+            stored == computed ? "" : difference(parse_answer(stored), parse_answer(computed), "");
+        same += where.empty();
+        if (!where.empty() && !first) first = fmt::format("point {}: {}", index, where);
     });
     print_line(fmt::format("recomputed: {} of {} points are the same", same, file.points.size()));
     if (first) print_line(*first);
@@ -228,27 +217,50 @@ int verify_sweep(const SweepFile& file, const std::string& name) {
     return first ? differs : complete;
 }
 
-int verify(const VerifyOptions& o) {
-    const std::string text = read_all(o.answer);
-    if (text.starts_with("{\"type\":\"start\"")) {
-        const std::string name = is_standard(o.answer) ? "stdin" : o.answer;
-        return verify_sweep(parse_sweep_file(text, name, LineChecks::index_only), name);
+/// The text with each JSON object on a line of its own, as in a sweep's file. Line ends are blanks
+/// of JSON, never a part of a string.
+std::string one_object_per_line(std::string text) {
+    int depth = 0;
+    bool in_string = false, escaped = false;
+    for (char& c : text) {
+        if (in_string) {
+            in_string = c != '"' || escaped;
+            escaped = c == '\\' && !escaped;
+        } else if (c == '"') {
+            in_string = true;
+        } else if (c == '{' || c == '}') {
+            depth += c == '{' ? 1 : -1;
+        } else if ((c == '\n' || c == '\r') && depth > 0) {
+            c = ' ';
+        }
     }
-    const std::optional<api::Unsealed> stored = api::unsealed(text);
-    if (!stored)
+    return text;
+}
+
+int verify(const VerifyOptions& o) {
+    std::string text = read_all(o.answer);
+    std::optional<api::Unsealed> stored;
+    std::string fault = "it has no provenance";
+    try {
+        stored = api::unsealed(text);
+    } catch (const api::Problem& problem) {
+        fault = problem.what();
+    }
+    if (stored) return verify_answer(*stored, o);
+    text = one_object_per_line(std::move(text));
+    if (part(parse_answer(text.substr(0, text.find('\n'))), "/type") != "start")
         throw api::Problem(
             422,
-            "this answer does not end with a provenance: it must be an unmodified JSON answer of "
-            "this program");
-    return verify_answer(*stored, o);
+            "the file must be one JSON answer of this program, or the lines of a sweep: " + fault);
+    const std::string name = is_standard(o.answer) ? "stdin" : o.answer;
+    return verify_sweep(parse_sweep_file(text, name, LineChecks::index_only), name);
 }
 
 }  // namespace
 
 Command add_verify(CLI::App& app) {
     const auto options = std::make_shared<VerifyOptions>();
-    CLI::App* command =
-        app.add_subcommand("verify", "recompute an answer and compare byte for byte");
+    CLI::App* command = app.add_subcommand("verify", "recompute an answer and compare all values");
     add_file(*command, "answer", options->answer, "file with the answer; - or nothing: stdin");
     add_file(
         *command, "--record", options->record, "for an identification: the file that was sent");

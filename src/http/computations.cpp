@@ -10,6 +10,7 @@
 
 #include "api/cancellation.hpp"
 #include "api/format/answer_request.hpp"
+#include "api/format/sweep_table.hpp"
 #include "api/parse.hpp"
 #include "api/schema/tables.hpp"
 #include "api/version.hpp"
@@ -227,13 +228,19 @@ Response sweep(const Request& r, const Service& service, Stopwatch& watch) {
     Permit permit = permit_for(r, service.admission, watch);  // for reading the request
     const RouteOptions& options = service.options;
     const api::Stop stop = stop_conditions(options.deadline, r, service.admission, permit);
+    std::optional<api::Format> format;
     api::SweepRequest request = read_in_time(r, service, [&] {
-        return api::read_sweep_request(body_of(r, reading_of(options, stop)), options.sweep_points);
+        const Json body = body_of(r, reading_of(options, stop));
+        format = api::sweep_format(body);
+        return api::read_sweep_request(body, options.sweep_points);
     });
+    if (!format) format = accepted_format(r.accept, api::sweep_format_names);
     watch.lap("parse", permit.waited());
-    return stream_sweep(
-        std::move(request), service.options.sweep_deadline, r.id, service.admission,
-        service.metrics);
+    Response response = stream_sweep(
+        std::move(request), {*format, options.answer_limit}, options.sweep_deadline, r.id,
+        service.admission, service.metrics);
+    response.headers.push_back(varies);
+    return response;
 }
 
 }  // namespace vines::http

@@ -43,26 +43,26 @@ double weight_of(std::string_view type, std::string_view accept) {
     return weight;
 }
 
-[[noreturn]] void refuse_all() {
+[[noreturn]] void refuse_all(std::span<const api::FormatName> formats) {
     std::vector<std::string> types;
-    for (const api::FormatName& name : api::format_names) types.push_back(name.media_type);
+    for (const api::FormatName& name : formats) types.push_back(name.media_type);
     throw api::Problem(406, "Accept lists none of this server's formats: " + api::joined(types));
 }
 
 }  // namespace
 
-api::Format accepted_format(std::string_view accept) {
+api::Format accepted_format(std::string_view accept, std::span<const api::FormatName> formats) {
     if (accept.find_first_not_of(" \t,") == std::string_view::npos) return api::Format::json;
     const api::FormatName* best = nullptr;
     double most = 0;
-    for (const api::FormatName& name : api::format_names) {
+    for (const api::FormatName& name : formats) {
         const double weight = weight_of(name.media_type, accept);
         if (weight > most) {
             most = weight;
             best = &name;
         }
     }
-    if (!best) refuse_all();
+    if (!best) refuse_all(formats);
     return best->format;
 }
 

@@ -7,6 +7,7 @@
 #include <cstddef>
 #include <functional>
 #include <optional>
+#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -18,7 +19,8 @@ namespace vines::http {
 
 /// The format that Accept prefers (RFC 9110, 12.5.1); the first one, JSON, among equals or if the
 /// header is empty. Problem 406 if it accepts none.
-api::Format accepted_format(std::string_view accept);
+api::Format accepted_format(
+    std::string_view accept, std::span<const api::FormatName> formats = api::format_names);
 
 /// gzip at level 1: for columns of numbers a third of the size in a tenth of level 6's time. Throws
 /// std::runtime_error if zlib fails.

@@ -105,14 +105,13 @@ constexpr auto report_interval = std::chrono::milliseconds(200);
 // Time for which a sweep keeps a slot that another sweep waits for.
 constexpr auto time_slice = std::chrono::milliseconds(20);
 
-/// Lines of a sweep between the threads that compute them and the one that sends them.
+/// Lines or rows of a sweep between the threads that compute them and the one that sends them.
 class LineQueue {
 public:
-    void push(const std::string& line) {
+    void push(const std::string& text) {
         {
             const std::lock_guard lock(mutex_);
-            text_ += line;
-            text_ += '\n';
+            text_ += text;
             size_ = text_.size();
             ++count_;
         }
@@ -229,28 +228,33 @@ std::string last_lines(SweepEnd end, std::size_t done, const std::string& warnin
 
 class SweepStream {
 public:
+    /// `table` formats the points; null: lines of JSON.
     SweepStream(
-        const api::SweepRequest& request, double deadline, AdmissionControl& admission, Writer& out)
+        const api::SweepRequest& request, api::SweepTable* table, double deadline,
+        AdmissionControl& admission, Writer& out)
         : request_(request),
+          table_(table),
           admission_(admission),
           out_(out),
           control_(admission, lines_, deadline) {}
 
     /// id: the request's id, for the log.
     SweepEnd run(const std::string& id) {
-        if (!out_.write(api::start_line(request_))) return SweepEnd::client_left;
+        if (!out_.write(table_ ? table_->begin() : api::start_line(request_)))
+            return SweepEnd::client_left;
         try {
             const std::size_t done = points();
             const SweepEnd end = done == of_          ? SweepEnd::complete
                                  : control_.is_late() ? SweepEnd::deadline
                                                       : SweepEnd::stopping;
-            const bool sent = connected_ && out_.write(last_lines(end, done, warning_));
+            const bool sent = connected_ && out_.write(last_text(end, done));
             return sent ? end : SweepEnd::client_left;
         } catch (...) {
             log_failure("/v1/sweep", id, std::current_exception());
             const std::string line = api::error_line(
                 500, "the server failed; the reason is in its log", lines_.take({}).count);
-            return connected_ && out_.write(line) ? SweepEnd::failed : SweepEnd::client_left;
+            return connected_ && (table_ || out_.write(line)) ? SweepEnd::failed
+                                                              : SweepEnd::client_left;
         }
     }
     std::size_t runs() const { return control_.runs; }
@@ -265,7 +269,9 @@ private:
             try {
                 warning_ = api::run_sweep(
                     request_, admission_.threads(), control_,
-                    [this](std::size_t, const std::string& line) { lines_.push(line); });
+                    [this](std::size_t index, const std::string& line) {
+                        lines_.push(table_ ? table_->add(index, line) : line + '\n');
+                    });
             } catch (...) {
                 failure = std::current_exception();
             }
@@ -292,7 +298,7 @@ private:
         do {
             taken = lines_.take(client_check_interval);
             const auto now = Clock::now();
-            if (now - reported >= report_interval || taken.finished) {
+            if (!table_ && (now - reported >= report_interval || taken.finished)) {
                 taken.text += progress(taken.count, now);
                 reported = now;
             }
@@ -301,6 +307,11 @@ private:
             if (!connected_) control_.stop();
         } while (!taken.finished);
         return taken.count;
+    }
+
+    std::string last_text(SweepEnd end, std::size_t done) {
+        if (!table_) return last_lines(end, done, warning_);
+        return end == SweepEnd::complete ? table_->end(warning_) : "";
     }
 
     std::string progress(std::size_t done, Clock::time_point now) {
@@ -314,6 +325,7 @@ private:
     }
 
     const api::SweepRequest& request_;
+    api::SweepTable* const table_;
     const std::size_t of_ = request_.plan.lines.size();
     const Clock::time_point started_ = Clock::now();
     AdmissionControl& admission_;
@@ -327,10 +339,15 @@ private:
 }  // namespace
 
 Response stream_sweep(
-    api::SweepRequest request, double deadline, const std::string& request_id,
+    api::SweepRequest request, SweepForm form, double deadline, const std::string& request_id,
     AdmissionControl& admission, Metrics& metrics) {
+    request.plan.in_order = form.format == api::Format::csv;
     // Shared, because a response can be copied: the sweep's slot is released with the last copy,
     // whether it was sent or not.
+    const auto shared = std::make_shared<const api::SweepRequest>(std::move(request));
+    std::shared_ptr<api::SweepTable> table;
+    if (form.format != api::Format::json)
+        table = std::make_shared<api::SweepTable>(*shared, form.format, form.most_bytes);
     const std::shared_ptr<AdmissionControl> sweep_slot = admission.acquire_sweep();
     if (!sweep_slot)
         return admission.sweeps_stopped()
@@ -340,15 +357,17 @@ Response stream_sweep(
                          "the maximum number of sweeps is running; try again "
                          "later"));
     return {
-        .content_type = "application/x-ndjson",
+        .content_type =
+            table ? api::name_of(form.format).media_type : api::sweep_format_names[0].media_type,
         .headers = {{"Cache-Control", "no-store"}, {"X-Accel-Buffering", "no"}},
-        .stream = [request = std::move(request), deadline, request_id, &admission, &metrics,
-                   sweep_slot](Writer& out) {
-            SweepStream sending(request, deadline, admission, out);
-            const SweepEnd end = sending.run(request_id);
-            metrics.count_sweep(end, sending.runs(), sending.impacts());
-            return end != SweepEnd::client_left;
-        }};
+        .stream =
+            [shared, table, deadline, request_id, &admission, &metrics, sweep_slot](Writer& out) {
+                SweepStream sending(*shared, table.get(), deadline, admission, out);
+                const SweepEnd end = sending.run(request_id);
+                metrics.count_sweep(end, sending.runs(), sending.impacts());
+                return table ? end == SweepEnd::complete : end != SweepEnd::client_left;
+            },
+        .held = table ? 2 * table->bytes() : 0};
 }
 
 }  // namespace vines::http

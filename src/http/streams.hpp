@@ -4,6 +4,7 @@
 
 #include <string>
 
+#include "api/format/sweep_table.hpp"
 #include "api/simulate.hpp"
 #include "api/sweep.hpp"
 #include "http/admission_control.hpp"
@@ -16,11 +17,18 @@ namespace vines::http {
 Response stream_answer(
     api::Answer answer, const std::string& request_id, AdmissionControl& admission);
 
-/// A sweep as a stream of NDJSON lines. It ends after `deadline` seconds with the points it has.
-/// 503 if the maximum number of sweeps is running. `admission` and `metrics` must outlive the
-/// response.
+/// The format of a sweep, and the largest table in CBOR or npz, bytes.
+struct SweepForm {
+    api::Format format;
+    std::size_t most_bytes;
+};
+
+/// A sweep as a stream of NDJSON lines, or as a table. It ends after `deadline` seconds: a stream
+/// of lines with the points it has, a table without its end and with a reset connection. Problem
+/// 413 for a table that is too large; 503 if the maximum number of sweeps is running. `admission`
+/// and `metrics` must outlive the response.
 Response stream_sweep(
-    api::SweepRequest request, double deadline, const std::string& request_id,
+    api::SweepRequest request, SweepForm form, double deadline, const std::string& request_id,
     AdmissionControl& admission, Metrics& metrics);
 
 }  // namespace vines::http

@@ -26,7 +26,7 @@ AddCommand add_simulate, add_manifold;
 AddCommand add_identify;  ///< input that begins with "{" is JSON; any other is CSV
 AddCommand add_sweep;     ///< computes a sweep or a shard, or completes the file of one
 AddCommand add_merge;     ///< combines the files of all shards, byte for byte
-AddCommand add_verify;    ///< recomputes an answer and compares it byte for byte
+AddCommand add_verify;    ///< recomputes an answer and compares it
 AddCommand add_plot;      ///< draws an answer in the terminal or as SVG
 AddCommand add_presets, add_parameters, add_openapi, add_example;  ///< print built-in data
 /// Completion script of a shell, and manual page, of the subcommands that `app` has when they run.

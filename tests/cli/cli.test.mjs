@@ -1,12 +1,13 @@
 // The subcommands as used in a terminal and by a batch system.
 import assert from "node:assert/strict";
-import {spawn} from "node:child_process";
+import {execFileSync, spawn} from "node:child_process";
 import {createHash} from "node:crypto";
 import {readFileSync} from "node:fs";
 import {appendFile, mkdtemp, readFile, rm, writeFile} from "node:fs/promises";
 import {tmpdir} from "node:os";
 import {join} from "node:path";
 import {after, before, test} from "node:test";
+import {contentHash} from "../content_hash.mjs";
 import {measured} from "../record.mjs";
 import {program, startService} from "../service.mjs";
 import {hasComputed, parsed, run} from "./run.mjs";
@@ -27,21 +28,99 @@ test("an answer contains its provenance, and verify reproduces it", async () => 
   const {provenance} = JSON.parse(answer);
   assert.equal(provenance.route, "/v1/simulate");
   assert.deepEqual(provenance.request, fields);
-  const text = `${answer.slice(0, answer.lastIndexOf(',"provenance":'))}}`;
-  assert.equal(createHash("sha256").update(text).digest("hex"), provenance.sha256);
+  assert.equal(contentHash(JSON.parse(answer)), provenance.sha256);
   const same = await verify(answer);
   assert.equal(same.code, 0, same.errors);
-  assert.match(same.out, /sha256: matches\nrecomputed: the same \d+ bytes\n/);
+  assert.match(same.out, /sha256: matches\nrecomputed: the same values\n/);
   const changed = await verify(answer.replace(/"z":[\d.]+/, '"z":9'));
   assert.equal(changed.code, 1);
   assert.match(changed.out, /the answer was modified\nrecomputed: regime\.z: 9 became /);
   // A recomputed hash does not hide the change.
-  const z = /"z":[\d.]+/;
-  const forged = text.replace(z, '"z":9');
-  const sha256 = createHash("sha256").update(forged).digest("hex");
-  const again = await verify(answer.replace(z, '"z":9').replace(provenance.sha256, sha256));
+  const forged = answer.replace(/"z":[\d.]+/, '"z":9');
+  const hash = contentHash(JSON.parse(forged));
+  const again = await verify(forged.replace(provenance.sha256, hash));
   assert.equal(again.code, 1);
   assert.match(again.out, /sha256: matches\nrecomputed: regime\.z: 9 became /);
+});
+
+/** The text with another spelling of each number and string: 0.15 as 150e-3, "a" as "\u0061". */
+const respelled = (text) =>
+  text.replace(/"(?:[^"\\]|\\.)*"|-?\d+(?:\.\d+)?(?:e[-+]?\d+)?/g, (token) => {
+    if (token[0] === '"') {
+      const units = JSON.parse(token).split("");
+      return `"${units.map((u) => `\\u${u.charCodeAt(0).toString(16).padStart(4, "0")}`).join("")}"`;
+    }
+    const [, sign, whole, decimals = "", exponent] = token.match(/^(-?)(\d+)\.?(\d*)e?(.*)$/);
+    const digits = `${whole}${decimals}0`.replace(/^0+(?=\d)/, "");
+    return `${sign}${digits}e${Number(exponent) - decimals.length - 1}`;
+  });
+const pythonDump = `
+import json, sys
+json.dump(json.load(sys.stdin), sys.stdout, ensure_ascii=True, indent=3, sort_keys=True)`;
+/** The same JSON as other programs write it. */
+const rewritten = (text) => {
+  const through = (command, args) =>
+    execFileSync(command, args, {input: text, encoding: "utf8", maxBuffer: 1e9});
+  return {
+    jq: through("jq", ["."]),
+    "jq, sorted": through("jq", ["-cS", "."]),
+    "jq, sorted on several lines": through("jq", ["-S", "."]),
+    respelled: respelled(text),
+    ...(text.trim().includes("\n")
+      ? {}
+      : {
+          JavaScript: JSON.stringify(JSON.parse(text)),
+          Python: through("/usr/bin/python3", ["-c", pythonDump]),
+        }),
+  };
+};
+
+test("verify accepts an answer in any spelling, but not with another digit", async () => {
+  const fields = {
+    preset: "fig3",
+    tau_end: 60,
+    include: ["series", "impacts", "exponents", "matrices", "section", "energy", "regime"],
+    fields: [
+      'gr\u00f6\u00dfe \ud83d\udca1"\\',
+      "series",
+      "impacts",
+      "exponents",
+      "matrices",
+      "section",
+    ],
+  };
+  const answer = await simulated({...fields, fields: [...fields.fields, "energy", "regime"]});
+  assert.equal(contentHash(JSON.parse(answer)), JSON.parse(answer).provenance.sha256);
+  for (const [how, text] of Object.entries(rewritten(answer))) {
+    const {code, out, errors} = await verify(text);
+    assert.equal(code, 0, `${how}: ${out}${errors}`);
+    assert.match(out, /^sha256: matches\nrecomputed: the same values$/m, how);
+  }
+  const digits = [...answer.matchAll(/"(?:[^"\\]|\\.)*"|\d\.\d*\d(?=[,\]])/g)].filter(
+    ([token]) => token[0] !== '"',
+  );
+  for (const {0: number, index} of [digits[0], digits[digits.length >> 1], digits.at(-1)]) {
+    const other = number.slice(0, -1) + ((Number(number.at(-1)) + 5) % 10);
+    const altered = answer.slice(0, index) + other + answer.slice(index + number.length);
+    for (const text of [altered, rewritten(altered)["jq, sorted"]]) {
+      const {code, out} = await verify(text);
+      assert.equal(code, 1, out);
+      assert.match(out, /^sha256: the answer was modified\nrecomputed: \S+: /m);
+    }
+  }
+});
+
+test("verify accepts the text of which an older program recorded the hash", async () => {
+  const answer = await simulated({preset: "fig3", tau_end: 40, include: ["regime"]});
+  const text = `${answer.slice(0, answer.lastIndexOf(',"provenance":'))}}`;
+  const older = answer.replace(
+    /"sha256":"[^"]*"/,
+    `"sha256":"${createHash("sha256").update(text).digest("hex")}"`,
+  );
+  const same = await verify(older);
+  assert.equal(same.code, 0, same.out + same.errors);
+  const changed = await verify(older.replace(/"z":[\d.]+/, '"z":9'));
+  assert.match(changed.out, /^sha256: the answer was modified$/m);
 });
 
 test("verify also compares the provenance and reports another build's commit", async () => {
@@ -61,10 +140,6 @@ test("verify also compares the provenance and reports another build's commit", a
     [(p) => Object.assign(p, {commit: 7}), /^provenance: commit: 7 became "/m],
     [(p) => delete p.commit, /^provenance: commit is new$/m],
     [(p) => Object.assign(p.request, {b: 0.019}), /^recomputed: parameters/m],
-    [
-      (p) => Object.assign(p, {request: {tau_end: 40, preset: "fig3", include: ["regime"]}}),
-      /^provenance: the same, formatted differently$/m,
-    ],
   ];
   for (const [alter, message] of cases) {
     const {code, out, errors} = await altered(alter);
@@ -86,15 +161,15 @@ test("verify reports malformed, repeated and modified answers without an excepti
     return `${JSON.stringify(fields)}\n`;
   };
   const cases = [
-    ["two answers", answer + answer, 2, /one unmodified/],
-    ["malformed JSON", answer.replace('{"', '{"a":[,"'), 2, /one unmodified/],
-    ["a second brace", `${answer}}`, 2, /not end with/],
-    ["text after the answer", `${answer}and more`, 2, /not end with/],
+    ["two answers", answer + answer, 2, /must be one JSON answer/],
+    ["malformed JSON", answer.replace('{"', '{"a":[,"'), 2, /must be one JSON answer/],
+    ["a second brace", `${answer}}`, 2, /must be one JSON answer/],
+    ["text after the answer", `${answer}and more`, 2, /must be one JSON answer/],
     [
       "a repeated key in the provenance",
       answer.replace('"provenance":{', '"provenance":{"route":"/x",'),
       2,
-      /not end with/,
+      /the name \\"route\\" comes twice/,
     ],
     [
       "version is a number",
@@ -118,7 +193,7 @@ test("verify reports malformed, repeated and modified answers without an excepti
       "deep lists in the answer",
       `{"a":${"[".repeat(100000)}${"]".repeat(100000)},${answer.slice(1)}`,
       2,
-      /one unmodified/,
+      /nested deeper than 16 levels/,
     ],
     [
       "brackets and quotes in a text",
@@ -130,7 +205,7 @@ test("verify reports malformed, repeated and modified answers without an excepti
       "deep lists in the request",
       answer.replace('"request":{', `"request":{"b":${"[".repeat(100000)}${"]".repeat(100000)},`),
       2,
-      /not end with a provenance/,
+      /nested deeper than 16 levels/,
     ],
   ];
   for (const [what, text, code, message] of cases) {
@@ -190,6 +265,11 @@ test("verify reproduces the service's answers: runs, manifolds, identifications,
   const points = await verify(swept);
   assert.equal(points.code, 0, points.out + points.errors);
   assert.match(points.out, /40 of 40 points are the same/);
+  for (const [how, text] of Object.entries(rewritten(swept))) {
+    const {code, out, errors} = await verify(text);
+    assert.equal(code, 0, `${how}: ${out}${errors}`);
+    assert.match(out, /40 of 40 points are the same/, how);
+  }
   const changed = await verify(
     swept.replace(/("index":7,.*"z":)[\d.]+/, (_, prefix) => `${prefix}9`),
   );

@@ -481,6 +481,46 @@ test("--resume refuses the file of another shard or of the whole sweep, with the
   assert.equal(text("undivided"), whole);
 });
 
+/** The values of a point's line in a table, by column. */
+const cellsOf = (line, before = "") =>
+  Object.entries(line).flatMap(([name, value]) => {
+    if (["type", "section"].includes(name) || value === null) return [];
+    if (Array.isArray(value))
+      return value.length === 4 && typeof value[0] !== "object"
+        ? value.flatMap((v, k) => cellsOf({[`${name}${k + 1}`]: v}, before))
+        : [];
+    if (typeof value === "object") return cellsOf(value, `${before}${name}.`);
+    return [[before + name, value]];
+  });
+
+/** Checks that the CSV has the values of the lines, and no others. */
+async function checkTable(lines, input, kind) {
+  const {code, out, errors} = await run(["sweep", "--format", "csv"], {input});
+  assert.equal(code, 0, `${kind}: ${errors}`);
+  const points = lines.filter(({type}) => type === "point");
+  const [names, ...rows] = out
+    .trimEnd()
+    .split("\n")
+    .map((row) => row.match(/(?<=^|,)("(?:[^"]|"")*"|[^,]*)/g));
+  assert.equal(new Set(names).size, names.length, kind);
+  assert.equal(rows.length, points.length, kind);
+  rows.forEach((row, n) => {
+    const cells = row.map((text, k) => [
+      names[k],
+      text.replace(/^"|"$/g, "").replaceAll('""', '"'),
+    ]);
+    const numeric = ([name, text]) => [name, Number.isNaN(Number(text)) ? text : Number(text)];
+    const filled = (all) =>
+      Object.fromEntries(
+        all
+          .map(([name, value]) => [name, String(value)])
+          .filter(([, text]) => text !== "")
+          .map(numeric),
+      );
+    assert.deepEqual(filled(cells), filled(cellsOf(points[n])), kind);
+  });
+}
+
 test("the lines of every kind of sweep pass the checks: resumed and merged they are the same bytes", async () => {
   const base = {m1: 12, f0: 14, damping_ratio: 0.006, mass_ratio: 0.01, F: 0.0004, R: 0.4, b: 0.03};
   const f = {parameter: "f", from: 13.8, to: 14.2, count: 4};
@@ -524,6 +564,7 @@ test("the lines of every kind of sweep pass the checks: resumed and merged they 
     assert.equal(code, 0, `${kind}: ${errors}`);
     for (const line of parsed(out))
       if (line.reason || line.error) reasons.add(line.reason ?? "error");
+    await checkTable(parsed(out), input, kind);
     writeFileSync(at("kind"), out.slice(0, -20));
     const resumed = await resume("kind", input);
     assert.equal(resumed.code, 0, `${kind}: ${resumed.errors}`);

@@ -151,8 +151,30 @@ test("a sweep as CSV has a row for each point and a column for each number", asy
     });
   });
   assert.equal(cells.length, points.length);
-  const resumed = await refused([...flags, "--format", "csv", "--resume"]);
+  const resumed = await refused([...flags, "-o", at("table.csv"), "--resume"]);
   assert.match(resumed.detail, /--resume needs --format ndjson/);
+});
+
+test("the extension of the output selects the format, unless the request does", async () => {
+  const first = async (args, name) => {
+    const {code, errors} = await run([...args, "-o", at(name)]);
+    assert.equal(code, 0, errors);
+    const begins = readFileSync(at(name), "latin1").slice(0, 2);
+    return begins.charCodeAt(0) >> 5 === 5 ? "a map in CBOR" : begins;
+  };
+  const simulated = ["simulate", "-p", "tau_end=60", "-p", "fields=impacts"];
+  const swept = ["sweep", "-a", "b=0.01,0.02", "-p", "cycles=5"];
+  for (const [name, ofRun, ofSweep = ofRun] of [
+    ["x.csv", "ta", "in"],
+    ["x.npz", "PK"],
+    ["x.cbor", "a map in CBOR"],
+    ["x.json", '{"'],
+  ]) {
+    assert.equal(await first(simulated, name), ofRun, name);
+    assert.equal(await first(swept, `sweep-${name}`), ofSweep, name);
+  }
+  assert.equal(await first([...simulated, "-p", "format=json"], "x.csv"), '{"');
+  assert.equal(await first([...swept, "--format", "ndjson"], "lines.npz"), '{"');
 });
 
 test("identify accepts fields as flags, which override those of its JSON", async () => {

@@ -111,6 +111,19 @@ test("a sweep ends after a signal, however long each point takes", async () => {
   }
 });
 
+test("a stopped sweep replaces no table", async () => {
+  for (const [signal, code] of [
+    ["SIGINT", 130],
+    ["SIGTERM", 143],
+  ])
+    for (const format of ["csv", "npz", "cbor"]) {
+      writeFileSync(at(`old.${format}`), "old");
+      const options = {input: endless, signal, until: hasComputed(0.3)};
+      await ends(["sweep", "-o", at(`old.${format}`)], options, code);
+      assert.equal(readFileSync(at(`old.${format}`), "utf8"), "old");
+    }
+});
+
 test("verify ends after a signal", async () => {
   const {out} = await run(["sweep"], {
     input: long,

@@ -6,12 +6,15 @@ tests/clients/clients.test.mjs starts them and passes their addresses in the env
 from __future__ import annotations
 
 import csv
+import json
 import math
 import os
 import pathlib
+import pickle
 import signal
 import subprocess
 import sys
+import tempfile
 import unittest
 import unittest.mock
 import warnings
@@ -66,6 +69,23 @@ class Answers(WithBothClients):
         for answer in (one, other):
             answer.pop("provenance")
         self.assertEqual(one, other)
+
+    def test_a_saved_answer_is_the_received_text_and_verifies(self):
+        with tempfile.TemporaryDirectory() as folder:
+            for client in self.each():
+                file = pathlib.Path(folder, "run.json")
+                run = client.simulate(preset="fig3", tau_end=100, include=["impacts"])
+                pickle.loads(pickle.dumps(run)).save(file)
+                subprocess.run([PROGRAM, "verify", file], check=True, capture_output=True)
+                self.assertEqual(json.loads(file.read_bytes()), run.plain())
+                self.assertTrue(file.read_bytes().endswith(b"}\n"))
+                client.identify(RECORD, preset="fig20", b=0.015).save(str(file))
+                verify = [PROGRAM, "verify", file, "--record", RECORD]
+                subprocess.run(verify, check=True, capture_output=True)
+                with self.assertRaisesRegex(ValueError, "save the whole answer"):
+                    run.impacts.save(file)
+                with self.assertRaisesRegex(ValueError, "run.npz: answers are saved as JSON"):
+                    run.save("run.npz")
 
     def test_the_error_of_an_invalid_request_names_its_fields(self):
         for client in self.each():

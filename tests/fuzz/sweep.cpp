@@ -1,8 +1,9 @@
-// Fuzz target: a sweep of a few points. Each line is JSON and is written once.
+// Fuzz target: a sweep of a few points. Each line is JSON, is written once and is a row of a table.
 #include "api/sweep.hpp"
 
 #include <set>
 
+#include "api/format/sweep_table.hpp"
 #include "api/json_text.hpp"
 #include "api/parse.hpp"
 #include "fuzz.hpp"
@@ -36,11 +37,13 @@ void check_sweep(const api::SweepRequest& request) {
     fuzz::require(api::Json::accept(api::start_line(request)), "the first line is JSON");
     ShortControl control;
     std::set<std::size_t> seen;
+    api::SweepTable table(request, api::Format::csv);
     api::run_sweep(request, 1, control, [&](std::size_t index, const std::string& text) {
         check_line(index, text);
         fuzz::require(seen.insert(index).second, "a line is written once");
         fuzz::require(
             std::binary_search(wanted.begin(), wanted.end(), index), "a line was requested");
+        table.add(index, text);  // throws for a name without column
     });
     fuzz::require(control.has_stopped() || seen.size() == wanted.size(), "all lines are written");
 }

@@ -1,4 +1,4 @@
-// Answers as CSV, CBOR or NumPy arrays, and the selection of fields.
+// Answers and sweeps as CSV, CBOR or NumPy arrays, and the selection of fields.
 import assert from "node:assert/strict";
 import {execFileSync} from "node:child_process";
 import {after, before, test} from "node:test";
@@ -18,9 +18,9 @@ const get = (query, accept, headers = {}) =>
 const json = async (query) => (await get(query)).json();
 
 /** Runs Python code on bytes from stdin; returns the JSON that it prints. */
-const python = (code, bytes) =>
+const python = (code, bytes, args = []) =>
   JSON.parse(
-    execFileSync("/usr/bin/python3", ["-c", code], {
+    execFileSync("/usr/bin/python3", ["-c", code, ...args], {
       input: Buffer.from(bytes),
       maxBuffer: 1 << 28,
       encoding: "utf8",
@@ -105,7 +105,7 @@ json.dump(cbor2.loads(sys.stdin.buffer.read(), tag_hook=typed), sys.stdout)`;
   const {provenance, ...decoded} = python(code, bytes);
   const {provenance: sealed, ...whole} = await json(everything);
   assert.deepEqual(decoded, whole);
-  assert.equal(provenance.sha256, null, "it is the hash of the JSON text");
+  assert.equal(provenance.sha256, sealed.sha256);
   assert.equal(provenance.commit, sealed.commit);
   assert.ok(bytes.byteLength < 0.6 * JSON.stringify(whole).length);
 });
@@ -304,4 +304,126 @@ test("fields and formats also work for answers with more impacts than are kept i
   assert.deepEqual(Object.keys(impacts), ["tau"]);
   const csv = await (await ask("fields=impacts.tau&format=csv")).text();
   assert.deepEqual(csv.trimEnd().split("\n").slice(1).map(Number), impacts.tau);
+});
+
+const swept = {
+  base: {damping: "closed_form"},
+  axes: [{parameter: "b", from: 0.008, to: 0.03, count: 5}],
+  cycles: 50,
+};
+const sweep = (fields, headers = {}, at = service) =>
+  fetch(`${at.url}/v1/sweep`, {
+    method: "POST",
+    headers,
+    body: JSON.stringify({...swept, ...fields}),
+  });
+/** The start and the points of a sweep as lines, in the order of the index. */
+const sweepLines = async (fields) => {
+  const lines = (await (await sweep(fields)).text()).trimEnd().split("\n").map(JSON.parse);
+  const points = lines.filter(({type}) => type === "point").sort((a, b) => a.index - b.index);
+  const warning = lines.find(({type}) => type === "warning")?.message;
+  return {start: lines[0], points, warning};
+};
+
+test("a sweep as CSV is a table in the order of the index", async () => {
+  const answer = await sweep({format: "csv"});
+  assert.equal(answer.headers.get("content-type"), "text/csv");
+  const [names, ...rows] = (await answer.text())
+    .trimEnd()
+    .split("\n")
+    .map((row) => row.split(","));
+  const {points} = await sweepLines({});
+  for (const name of ["index", "b", "regime", "periodic", "x_max", "impacts"])
+    assert.deepEqual(
+      rows.map((row) => row[names.indexOf(name)]),
+      points.map((point) => String(point[name])),
+      name,
+    );
+});
+
+test("a sweep as npz and CBOR is a table with the values of its lines", async () => {
+  const code = `
+import sys, io, json, numpy, cbor2, struct
+size = int(sys.argv[1])
+bytes = sys.stdin.buffer.read()
+arrays = numpy.load(io.BytesIO(bytes[:size]))
+def plain(values): return [None if isinstance(v, float) and v != v else v for v in values]
+def typed(decoder, tag):
+    code = {86: "d", 78: "i"}[tag.tag]
+    return list(struct.unpack("<%d%s" % (len(tag.value) // struct.calcsize(code), code), tag.value))
+npz = {n.removeprefix("points."): [arrays[n].dtype.kind, plain(arrays[n].tolist())] for n in arrays.files if n.startswith("points.")}
+cbor = cbor2.loads(bytes[size:], tag_hook=typed)
+cbor["points"] = {name: plain(values) for name, values in cbor["points"].items()}
+json.dump({"npz": npz, "cbor": cbor, "rest": json.loads(arrays["answer.json"])}, sys.stdout)`;
+  const answers = [await sweep({format: "npz"}), await sweep({}, {Accept: "application/cbor"})];
+  assert.deepEqual(
+    answers.map(({headers}) => headers.get("content-type")),
+    ["application/x-npz", "application/cbor"],
+  );
+  const [npzBytes, cborBytes] = await Promise.all(answers.map((answer) => answer.arrayBuffer()));
+  const bytes = Buffer.concat([Buffer.from(npzBytes), Buffer.from(cborBytes)]);
+  const {npz, cbor, rest} = python(code, bytes, [String(npzBytes.byteLength)]);
+  const {start, points, warning} = await sweepLines({});
+  const column = (name) => npz[name][1];
+  assert.deepEqual(
+    column("index"),
+    points.map(({index}) => index),
+  );
+  const asCell = (value) => (typeof value === "boolean" ? Number(value) : (value ?? null));
+  for (const name of ["b", "regime", "periodic", "period_cycles", "symmetric", "x_max", "impacts"])
+    assert.deepEqual(
+      column(name),
+      points.map((point) => asCell(point[name])),
+      name,
+    );
+  assert.deepEqual(
+    column("lambda2"),
+    points.map(({lambda}) => lambda[1]),
+  );
+  assert.deepEqual(
+    column("second_start.regime"),
+    points.map(({second_start: second}) => second?.regime ?? ""),
+  );
+  for (const [name, [, values]] of Object.entries(npz))
+    assert.deepEqual(cbor.points[name], values, name);
+  const kinds = Object.fromEntries(Object.entries(npz).map(([name, [kind]]) => [name, kind]));
+  const {index, regime, error, impacts, symmetric} = kinds;
+  assert.deepEqual([index, regime, error, impacts, symmetric], ["i", "U", "U", "f", "f"]);
+  const {points: _, ...others} = cbor;
+  assert.deepEqual(others, rest);
+  const {type, of, points: count, ...same} = start;
+  if (warning) same.warnings.push(warning);
+  assert.deepEqual(rest, same);
+});
+
+test("Accept selects the format of a sweep; lines answer a request for JSON, too", async () => {
+  const type = async (accept, fields = {}) => {
+    const answer = await sweep({cycles: 1, ...fields}, accept ? {Accept: accept} : {});
+    await answer.arrayBuffer();
+    return answer.status === 200 ? answer.headers.get("content-type") : answer.status;
+  };
+  const lines = "application/x-ndjson";
+  for (const accept of ["", "*/*", "application/json", lines, "text/csv;q=0.5, application/json"])
+    assert.equal(await type(accept), lines, accept);
+  assert.equal(await type("text/csv"), "text/csv");
+  assert.equal(await type("text/csv", {format: "ndjson"}), lines);
+  assert.equal(await type("image/png"), 406);
+  const unknown = await (await sweep({format: "json"})).json();
+  assert.deepEqual(unknown.errors[0].range, ["ndjson", "csv", "cbor", "npz"]);
+});
+
+test("a sweep that ends early as a table has a broken connection; one that is too large is refused", async () => {
+  const limited = await startService(["--sweep-deadline", "0.3", "--answer-limit", "1500000"]);
+  for (const format of ["csv", "cbor", "npz"]) {
+    const received = async () => (await sweep({format, cycles: 1e6}, {}, limited)).arrayBuffer();
+    await assert.rejects(received, TypeError, format);
+  }
+  const axes = [{parameter: "b", from: 0.008, to: 0.03, count: 5000}];
+  const large = await (await sweep({format: "npz", axes}, {}, limited)).json();
+  assert.equal(large.status, 413);
+  assert.match(
+    large.detail,
+    /^a table of 5000 points as npz has about \d+ bytes, more than 1500000/,
+  );
+  await limited.stop();
 });

@@ -28,7 +28,7 @@ function axisFields(axis, fields, parameters, optional) {
 
 /** Fields for the run of a point. The choices of `reduce` depend on the axes. */
 function runFields(fields, base) {
-  const own = fields.filter((f) => ["integer", "choice"].includes(f.type));
+  const own = fields.filter((f) => ["integer", "choice"].includes(f.type) && f.name !== "format");
   const reduce = {choices: [none], default: none};
   const of = (part) => (f) => ({...f, part, group: "sweep"});
   return [

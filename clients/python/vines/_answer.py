@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import json
 import math
+import os
+import pathlib
 from collections.abc import Iterator, Mapping
 from typing import TYPE_CHECKING, Any
 
@@ -32,10 +34,12 @@ class Answer:
     has their SI counterparts in s, m/s, m/s^2, N s or J. docs/api.md lists each key with its unit.
     """
 
-    __slots__ = ("_members",)
+    __slots__ = ("_members", "_text")
 
-    def __init__(self, members: Mapping[str, Any]) -> None:
+    def __init__(self, members: Mapping[str, Any], text: bytes | None = None) -> None:
+        """`text`: the bytes that were received, for a whole answer."""
         self._members = {name: _value(name, value) for name, value in members.items()}
+        self._text = text
 
     def __getitem__(self, path: str) -> Any:
         """Value of a key, or of a path of keys separated by dots. Raises KeyError."""
@@ -49,7 +53,7 @@ class Answer:
         return value
 
     def __getattr__(self, name: str) -> Any:
-        if name.startswith("__") or name == "_members":  # copy and pickle look these up
+        if name.startswith("__") or name in Answer.__slots__:  # copy and pickle look these up
             raise AttributeError(name)
         for own in (name, name.removesuffix("_")):
             if own in self._members:
@@ -75,11 +79,11 @@ class Answer:
     def __repr__(self) -> str:
         return f"Answer({', '.join(self._members)})"
 
-    def __getstate__(self) -> dict[str, Any]:
-        return self._members
+    def __getstate__(self) -> tuple[dict[str, Any], bytes | None]:
+        return self._members, self._text
 
-    def __setstate__(self, members: dict[str, Any]) -> None:
-        self._members = members
+    def __setstate__(self, state: tuple[dict[str, Any], bytes | None]) -> None:
+        self._members, self._text = state
 
     def keys(self) -> list[str]:
         """The keys; with them ``dict(answer)`` works."""
@@ -88,6 +92,18 @@ class Answer:
     def plain(self) -> dict[str, Any]:
         """The answer as dicts and lists for ``json.dump``; NaN is None again."""
         return {name: plain(value) for name, value in self._members.items()}
+
+    def save(self, path: str | os.PathLike[str]) -> None:
+        """Writes the answer to a file as JSON, in the bytes that were received, so that
+        ``vines verify`` and ``vines plot`` accept it. Raises ValueError for a part of an answer, and
+        for a name that ends with the extension of another format; OSError if the file cannot be
+        written."""
+        if self._text is None:
+            raise ValueError("a part of an answer cannot be saved; save the whole answer")
+        file = pathlib.Path(path)
+        if file.suffix in (".csv", ".cbor", ".npz"):
+            raise ValueError(f"{path}: answers are saved as JSON, in a file such as run.json")
+        file.write_bytes(self._text)
 
     def frame(self, path: str = "") -> pandas.DataFrame | dict[str, Any]:
         """DataFrame with the lists of the object at `path` as columns; without pandas a dict of them.
@@ -140,6 +156,11 @@ def plain(value: Any) -> Any:
     if isinstance(value, (str, int, bool)) or value is None:
         return value
     return [plain(v) for v in value]
+
+
+def answer_of(text: bytes) -> Answer:
+    """A whole answer. Raises ValueError unless it is JSON."""
+    return Answer(json.loads(text), text)
 
 
 def body_of(fields: Mapping[str, Any]) -> bytes:

@@ -11,7 +11,7 @@ from abc import ABC, abstractmethod
 from collections.abc import Iterable, Mapping
 from typing import TYPE_CHECKING, Any, Unpack
 
-from ._answer import Answer, body_of, plain
+from ._answer import Answer, answer_of, body_of, plain
 from ._fields import IdentifyFields, SimulateFields, SweepFields
 from ._problem import PartialAnswer
 from ._sweep import Lines, Sweep
@@ -32,7 +32,7 @@ class Client(ABC):
         ``interrupted`` instead of ``tau_end``, and the warning `PartialAnswer` is issued. Raises
         `Problem`.
         """
-        answer = Answer(self._simulate(body_of(_named(fields))))
+        answer = answer_of(self._simulate(body_of(_named(fields))))
         if answer.status.reason != "tau_end":
             message = f"{answer.status.reason}: {answer.status.message}"
             warnings.warn(message, PartialAnswer, stacklevel=_caller())
@@ -67,21 +67,22 @@ class Client(ABC):
         if isinstance(record, (str, os.PathLike)):
             if impacts is not None:
                 raise TypeError("identify accepts either a record or impacts")
-            return Answer(self._identify_file(pathlib.Path(record).read_bytes(), _query(given)))
+            text = self._identify_file(pathlib.Path(record).read_bytes(), _query(given))
+            return answer_of(text)
         if record is not None:
             given["record"] = record
         if impacts is not None:
             given["impacts"] = impacts
-        return Answer(self._identify(body_of(given)))
+        return answer_of(self._identify(body_of(given)))
 
     @abstractmethod
-    def _simulate(self, body: bytes) -> Any: ...
+    def _simulate(self, body: bytes) -> bytes: ...
 
     @abstractmethod
-    def _identify(self, body: bytes) -> Any: ...
+    def _identify(self, body: bytes) -> bytes: ...
 
     @abstractmethod
-    def _identify_file(self, record: bytes, query: str) -> Any: ...
+    def _identify_file(self, record: bytes, query: str) -> bytes: ...
 
     @abstractmethod
     def _sweep(self, body: bytes) -> Lines: ...

@@ -34,13 +34,13 @@ class Service(Client):
     def __repr__(self) -> str:
         return f"Service({self._url!r})"  # without the key, which must not get into logs
 
-    def _simulate(self, body: bytes) -> Any:
+    def _simulate(self, body: bytes) -> bytes:
         return self._answer("/v1/simulate", body)
 
-    def _identify(self, body: bytes) -> Any:
+    def _identify(self, body: bytes) -> bytes:
         return self._answer("/v1/identify", body)
 
-    def _identify_file(self, record: bytes, query: str) -> Any:
+    def _identify_file(self, record: bytes, query: str) -> bytes:
         return self._answer(f"/v1/identify?{query}", record, "text/csv")
 
     def _sweep(self, body: bytes) -> Lines:
@@ -52,10 +52,10 @@ class Service(Client):
                 raise Incomplete(0, f"the stream was interrupted: {broken!r}") from broken
         yield {"type": "error", "status": 0, "detail": "the stream ended early"}
 
-    def _answer(self, target: str, body: bytes, kind: str = "application/json") -> Any:
+    def _answer(self, target: str, body: bytes, kind: str = "application/json") -> bytes:
         with self._post(target, body, kind) as response:
             try:
-                return json.loads(response.read())
+                return response.read()
             except http.client.HTTPException as broken:
                 raise ConnectionError(f"{self._url}: the answer was interrupted") from broken
 

@@ -131,46 +131,10 @@ std::string csv_text(const Json& answer, const std::function<bool()>& gives_up) 
     return text;
 }
 
-namespace {
-
-// Lists of four are numbered: the exponents, their statuses and errors.
-constexpr std::size_t exponents = 4;
-
-/// Integers and flags as text, which a list of doubles would not preserve.
-Json as_cell(const Json& value) {
-    if (value.is_boolean()) return value.get<bool>() ? "true" : "false";
-    return value.is_number_integer() ? Json(std::to_string(value.get<long long>())) : value;
-}
-
-void put(Json& columns, const std::string& name, std::size_t row, const Json& value) {
-    Json& column = columns[name];
-    while (column.size() < row) column.push_back(nullptr);
-    column.push_back(as_cell(value));
-}
-
-/// A point's values, and those of nested objects.
-void put_line(Json& columns, const Json& object, const std::string& before, std::size_t row) {
-    for (const auto& [name, value] : object.items()) {
-        if (name == "type" || name == "section") continue;
-        if (value.is_object()) {
-            put_line(columns, value, before + name + ".", row);
-        } else if (!value.is_array()) {
-            put(columns, before + name, row, value);
-        } else if (value.size() == exponents && !value[0].is_structured()) {
-            for (std::size_t k = 0; k < exponents; ++k)
-                put(columns, before + name + std::to_string(k + 1), row, value[k]);
-        }
-    }
-}
-
-}  // namespace
-
-Json sweep_table(const std::vector<Json>& points) {
-    Json columns = Json::object();
-    for (std::size_t row = 0; row < points.size(); ++row) put_line(columns, points[row], "", row);
-    for (auto& [name, column] : columns.items())
-        while (column.size() < points.size()) column.push_back(nullptr);
-    return {{"points", std::move(columns)}};
+void put_csv_value(const Json& value, std::string& text) {
+    if (value.is_string()) put_csv_word(value.get_ref<const std::string&>(), text);
+    else if (value.is_number_float()) put_csv_number(value.get<double>(), text);
+    else if (!value.is_null()) text += value.dump();
 }
 
 }  // namespace vines::api

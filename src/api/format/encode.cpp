@@ -1,5 +1,4 @@
-// Encoding of an answer as JSON, CSV, CBOR or npz. JSON ends with a provenance that contains the
-// SHA-256 of the text before it; CBOR and npz have a provenance without the hash, CSV has none.
+// Encoding of an answer as JSON, CSV, CBOR or npz. All but CSV end with a provenance.
 #include "api/format/encode.hpp"
 
 #include <utility>
@@ -38,8 +37,7 @@ std::string encoded(
     if (format == Format::json)
         return json_with_provenance(std::move(answer), provenance, gives_up);
     if (format == Format::csv) return csv_text(answer, gives_up);
-    // No SHA-256: it is defined for the JSON text only.
-    if (provenance) answer["provenance"] = describe(*provenance, nullptr);
+    if (provenance) answer["provenance"] = describe(*provenance, content_sha256(answer));
     if (format == Format::cbor) return cbor_bytes(std::move(answer), gives_up);
     return npz_bytes(std::move(answer), gives_up);
 }

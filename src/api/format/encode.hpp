@@ -26,9 +26,17 @@ inline constexpr std::array<FormatName, 4> format_names = {
      {Format::npz, "npz", "application/x-npz"}}};
 const FormatName& name_of(Format format);
 
-/// Encodes an answer without streamed lists. Its provenance is added, except in CSV; only JSON has
-/// the sha256. Problem 422 where the format cannot hold this answer. gives_up() is called now and
-/// then; throws Cancelled once it returns true.
+/// Formats of a sweep. Lines of JSON are also sent to clients that accept JSON alone.
+inline constexpr std::array<FormatName, 5> sweep_format_names = {
+    {{Format::json, "ndjson", "application/x-ndjson"},
+     {Format::json, "json", "application/json"},
+     format_names[1],
+     format_names[2],
+     format_names[3]}};
+
+/// Encodes an answer without streamed lists. Its provenance is added, except in CSV. Problem 422
+/// where the format cannot hold this answer. gives_up() is called now and then; throws Cancelled
+/// once it returns true.
 std::string encoded(
     Json answer, Format format, const std::optional<Provenance>& provenance,
     const std::function<bool()>& gives_up = {});
@@ -43,11 +51,13 @@ std::string csv_text(const Json& answer, const std::function<bool()>& gives_up =
 std::string cbor_bytes(Json answer, const std::function<bool()>& gives_up = {});
 
 /// A ZIP archive: PATH.npy for each list (float64, int32, bool or text; null is NaN), and
-/// answer.json with the rest.
-std::string npz_bytes(Json answer, const std::function<bool()>& gives_up = {});
+/// answer.json with the rest. Lists of `only_in_files` are not in answer.json, even if they are
+/// words.
+std::string npz_bytes(
+    Json answer, const std::function<bool()>& gives_up = {},
+    const Json& only_in_files = Json::object());
 
-/// {points: {index, b, lambda1, ..., second_start.x_max, ...}}: lists of equal length for
-/// csv_text(), null where a point lacks the value. Sections and lists of starts are left out.
-Json sweep_table(const std::vector<Json>& points);
+/// A value as a cell of CSV: empty for null, words in quotation marks where necessary.
+void put_csv_value(const Json& value, std::string& text);
 
 }  // namespace vines::api

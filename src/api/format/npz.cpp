@@ -120,13 +120,16 @@ void take_out_lists(Json& object) {
 
 }  // namespace
 
-std::string npz_bytes(Json answer, const std::function<bool()>& gives_up) {
+std::string npz_bytes(
+    Json answer, const std::function<bool()>& gives_up, const Json& only_in_files) {
     const CancelCheck cancel(gives_up);
     Archive archive;
-    visit_lists(answer, [&](const std::string& path, const AnswerList& list) {
+    const auto add = [&](const std::string& path, const AnswerList& list) {
         cancel.poll();
         if (path.find('.') != std::string::npos) archive.add(path + ".npy", npy_of(list));
-    });
+    };
+    visit_lists(answer, add);
+    visit_lists(only_in_files, add);
     take_out_lists(answer);
     archive.add("answer.json", json_text(std::move(answer)) + "\n");
     return archive.end();

@@ -17,7 +17,7 @@ struct Operation {
     const char* schema;  ///< of the response; null for plain text
     const char* type = json_type;
     bool computes = false;  ///< takes fields, can be queued, sends Server-Timing
-    bool has_form = false;  ///< also takes form_fields()
+    bool has_form = false;  ///< has a choice of formats
     bool is_open = false;   ///< needs no key
 };
 
@@ -117,10 +117,11 @@ Json sweep_path() {
     Operation o = {
         "sweep", "sweep", "Many runs over one to three parameters, as a stream",
         "A stream of JSON lines: start, then points in any order, progress every 200 ms, sometimes "
-        "a warning, and finally done or error.",
+        "a warning, and finally done or error. As CSV, CBOR or npz: a table of all points, whose "
+        "connection is reset if the sweep ends early.",
         "SweepLine"};
     o.type = lines_type;
-    o.computes = true;
+    o.computes = o.has_form = true;
     return {{"post", post(o, "SweepRequest")}};
 }
 

@@ -157,7 +157,7 @@ Json start_line_schema() {
             {"of", whole(), "number of lines requested by indices; only from the service"},
             {"cycles", number(), "forcing cycles of all runs together, including transients"},
             {"axes", list_of(axis), "axes with their values"},
-            {"request", reference("SweepRequest"), "the request, without indices"}});
+            {"request", reference("SweepRequest"), "the request, without indices and format"}});
 }
 
 Json progress_line_schema() {

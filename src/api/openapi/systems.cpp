@@ -55,9 +55,7 @@ Json provenance() {
          optional(
              {"record_sha256", text(),
               "for an identification: hash of the file or JSON that was sent"}),
-         {"sha256", or_null(text()),
-          "hash of the response's text up to the comma before its last member provenance, followed "
-          "by }; null in CBOR and npz"}});
+         {"sha256", text(), "hash of the response's content without provenance"}});
 }
 
 }  // namespace

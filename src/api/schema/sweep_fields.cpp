@@ -80,6 +80,11 @@ FieldTable sweep_rows() {
          .description = "zero-based indices of the points to compute, for example those missing "
                         "from an interrupted stream",
          .fallback_note = "all"},
+        {.name = "format",
+         .type = FieldType::choice,
+         .description = "format of the response: lines of JSON as points are computed, or a table",
+         .fallback_note = "the format that the header Accept requests, otherwise ndjson",
+         .choices = {"ndjson", "csv", "cbor", "npz"}},
     };
 }
 

@@ -1,0 +1,160 @@
+#include "api/format/sweep_table.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <functional>
+#include <limits>
+#include <utility>
+
+#include "api/answer_json.hpp"
+#include "api/problem.hpp"
+#include "api/sweep.hpp"
+#include "api/sweep_line_check.hpp"
+
+namespace vines::api {
+
+namespace {
+
+// Lists of four are numbered: the exponents, their statuses and errors.
+constexpr std::size_t numbered = 4;
+
+using VisitCell = std::function<void(const std::string& name, const Json& value)>;
+
+/// Visits a line's values, and those of objects in it.
+void visit_cells(const Json& line, const std::string& before, const VisitCell& visit) {
+    for (const auto& [name, value] : line.items()) {
+        if (name == "type" || name == "section") continue;
+        if (value.is_object()) {
+            visit_cells(value, before + name + ".", visit);
+        } else if (!value.is_array()) {
+            visit(before + name, value);
+        } else if (value.size() == numbered && !value[0].is_structured()) {
+            for (std::size_t k = 0; k < numbered; ++k)
+                visit(before + name + std::to_string(k + 1), value[k]);
+        }
+    }
+}
+
+}  // namespace
+
+std::optional<Format> sweep_format(const Json& fields) {
+    const auto given = fields.find("format");
+    if (given == fields.end()) return std::nullopt;
+    for (const FormatName& name : sweep_format_names)
+        if (*given == name.word) return name.format;
+    return std::nullopt;
+}
+
+SweepTable::SweepTable(const SweepRequest& request, Format format, std::size_t most_bytes)
+    : request_(request),
+      format_(format) {
+    add_columns(describe_place(request, 0));
+    for (const Json& line : sample_lines(request)) add_columns(line);
+    if (format == Format::csv) return;
+    if (bytes() > most_bytes)
+        throw Problem(
+            413, fmt::format(
+                     "a table of {} points as {} has about {} bytes, more than {}: request ndjson, "
+                     "csv, or fewer points (indices)",
+                     request.plan.lines.size(), name_of(format).word, bytes(), most_bytes));
+    for (Column& column : columns_) {
+        if (column.kind == Kind::word) column.words.resize(request.plan.lines.size());
+        else
+            column.numbers.assign(
+                request.plan.lines.size(), std::numeric_limits<double>::quiet_NaN());
+    }
+}
+
+void SweepTable::add_columns(const Json& line) {
+    visit_cells(line, "", [this](const std::string& name, const Json& value) {
+        // Null in the place of a list of four.
+        if (value.is_null() && column_of_.contains(name + "1")) return;
+        const auto [at, is_new] = column_of_.try_emplace(name, columns_.size());
+        if (is_new) columns_.push_back({name});
+        if (value.is_boolean()) columns_[at->second].kind = Kind::flag;
+        if (value.is_string()) columns_[at->second].kind = Kind::word;
+    });
+}
+
+std::string SweepTable::begin() const {
+    std::string text;
+    if (format_ != Format::csv) return text;
+    for (const Column& column : columns_) text += (text.empty() ? "" : ",") + column.name;
+    return text + '\n';
+}
+
+SweepTable::Cells SweepTable::cells_of(std::size_t index, const std::string& line) const {
+    Cells cells(columns_.size());
+    const auto take = [&](const std::string& name, const Json& value) {
+        if (!value.is_null()) cells[column_of_.at(name)] = value;
+    };
+    visit_cells(Json::parse(line), "", take);
+    // Exponents, also named lambda, hide a swept lambda.
+    visit_cells(describe_place(request_, index), "", take);
+    return cells;
+}
+
+std::string SweepTable::add(std::size_t index, const std::string& line) {
+    const Cells cells = cells_of(index, line);
+    const std::vector<std::size_t>& wanted = request_.plan.lines;
+    if (format_ == Format::csv) return add_row(index, cells);
+    const auto row = std::lower_bound(wanted.begin(), wanted.end(), index) - wanted.begin();
+    keep(static_cast<std::size_t>(row), cells);
+    return "";
+}
+
+std::string SweepTable::add_row(std::size_t index, const Cells& cells) {
+    std::string& row = waiting_[index];
+    for (const Json& cell : cells) {
+        if (&cell != cells.data()) row += ',';
+        put_csv_value(cell, row);
+    }
+    row += '\n';
+    std::string next;
+    while (!waiting_.empty() && waiting_.begin()->first == request_.plan.lines[written_]) {
+        next += waiting_.begin()->second;
+        waiting_.erase(waiting_.begin());
+        ++written_;
+    }
+    return next;
+}
+
+void SweepTable::keep(std::size_t row, const Cells& cells) {
+    for (std::size_t c = 0; c < cells.size(); ++c) {
+        const Json& cell = cells[c];
+        if (cell.is_string()) columns_[c].words[row] = cell.get<std::string>();
+        else if (cell.is_boolean()) columns_[c].numbers[row] = cell.get<bool>();
+        else if (cell.is_number()) columns_[c].numbers[row] = cell.get<double>();
+    }
+}
+
+std::string SweepTable::end(const std::string& warning) {
+    if (format_ == Format::csv) return "";
+    Json answer = sweep_start(request_);
+    answer.erase("type");
+    answer.erase("points");  // their count
+    if (!warning.empty()) answer["warnings"].push_back(warning);
+    Json points = Json::object();
+    for (Column& c : columns_) {
+        if (c.kind == Kind::word) points[c.name] = std::exchange(c.words, {});
+        else if (c.name == "index")
+            points[c.name] = column(c.numbers, [](double n) { return static_cast<int>(n); });
+        else points[c.name] = column(std::exchange(c.numbers, {}));
+    }
+    if (format_ == Format::npz)
+        return npz_bytes(std::move(answer), {}, object({{"points", std::move(points)}}));
+    answer["points"] = std::move(points);
+    return cbor_bytes(std::move(answer));
+}
+
+std::size_t SweepTable::bytes() const {
+    // A word has up to 16 characters, most have less; npz takes four bytes for each.
+    constexpr std::size_t number = sizeof(double), word = 64, others = std::size_t{1} << 20;
+    if (format_ == Format::csv) return others;
+    std::size_t of_row = 0;
+    for (const Column& c : columns_) of_row += c.kind == Kind::word ? word : number;
+    return others + of_row * request_.plan.lines.size();
+}
+
+}  // namespace vines::api
