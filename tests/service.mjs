@@ -15,17 +15,21 @@ const startLimit = 60000; // ms
 
 /**
  * Starts `vines serve`. freePort: on a free port; otherwise the port is in `flags` or
- * `environment`. Resolves to {url, pid, stop} once the service listens; stop() resolves to the exit
- * code. Rejects if the service does not start, or ends before it listens.
+ * `environment`. Resolves to {url, pid, log, stop} once the service listens; log() returns its log so
+ * far, stop() resolves to the exit code. Rejects if the service does not start, or ends before it listens.
  */
 export async function startService(flags = [], environment = {}, freePort = true) {
   const child = spawn(program, ["serve", ...(freePort ? ["--port", "0"] : []), ...flags], {
-    stdio: ["ignore", "pipe", "ignore"],
+    stdio: ["ignore", "pipe", "pipe"],
     env: {...process.env, ...environment},
   });
   started.add(child);
   const ended = new Promise((resolve) => child.on("exit", resolve));
   ended.then(() => started.delete(child));
+  let log = "";
+  child.stderr.on("data", (data) => {
+    log += data;
+  });
   let late;
   const url = await new Promise((resolve, reject) => {
     let text = "";
@@ -45,10 +49,11 @@ export async function startService(flags = [], environment = {}, freePort = true
   // A running service does not keep the test process alive; stop() waits for its end.
   child.unref();
   child.stdout.unref();
+  child.stderr.unref();
   const stop = () => {
     child.ref();
     child.kill("SIGTERM");
     return ended;
   };
-  return {url, pid: child.pid, stop};
+  return {url, pid: child.pid, log: () => log, stop};
 }

@@ -10,6 +10,7 @@
 #include <stdexcept>
 
 #include "api/problem.hpp"
+#include "api/provenance.hpp"
 #include "api/schema/field.hpp"
 #include "program/descriptor.hpp"
 #include "program/whole_number.hpp"
@@ -108,16 +109,16 @@ std::size_t ApiKeys::reload() {
     return keys_->size();
 }
 
-bool ApiKeys::accepts(std::string_view authorization) const {
+std::string ApiKeys::name_of(std::string_view authorization) const {
     const std::string_view scheme = next_part(authorization, ' ');
     const std::string_view shown = trimmed(authorization);
-    if (lower_case(scheme) != "bearer") return false;
+    if (lower_case(scheme) != "bearer") return {};
     bool found = false;
     const Keys known = keys();
     for (const std::string& key : *known)
         found |=
             key.size() == shown.size() && CRYPTO_memcmp(key.data(), shown.data(), key.size()) == 0;
-    return found;
+    return found ? api::sha256(shown).substr(0, 8) : "";
 }
 
 // --- Host names, origins, CORS ---
@@ -231,7 +232,7 @@ std::string in_url(const std::string& address) {
 }
 
 std::optional<Response> access_refusal(
-    const Head& head, const Route* route, const AccessOptions& options) {
+    const Head& head, const Route* route, std::string_view key, const AccessOptions& options) {
     const std::string host = host_of(head.host);
     if (!host.empty() && !is_allowed_host(host, options)) {
         const std::string shown = api::shortened(host);
@@ -243,9 +244,7 @@ std::optional<Response> access_refusal(
     }
     if (is_cross_origin(head) && !follows_link(head, route) && !is_allowed_origin(head, options))
         return problem_response(403, "pages of other origins may not use this server");
-    if (route && !route->is_public && options.keys &&
-        !options.keys->accepts(head.header("authorization")))
-        return key_refusal();
+    if (route && !route->is_public && options.keys && key.empty()) return key_refusal();
     return std::nullopt;
 }
 

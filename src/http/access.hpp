@@ -12,6 +12,7 @@
 #include <utility>
 #include <vector>
 
+#include "http/client.hpp"
 #include "http/head.hpp"
 #include "http/message.hpp"
 
@@ -37,9 +38,10 @@ public:
     /// constructor; the keys are then unchanged.
     std::size_t reload();
 
-    /// True if the value of Authorization is "Bearer" and one of the keys (RFC 6750). The time it
-    /// takes does not depend on how many characters of a key match.
-    bool accepts(std::string_view authorization) const;
+    /// The name of the key in the value of Authorization, "Bearer KEY" (RFC 6750): the first 8 hex
+    /// digits of its SHA-256, which do not reveal it. Empty if it is none of these keys. The time
+    /// it takes does not depend on how many characters of a key match.
+    std::string name_of(std::string_view authorization) const;
 
     static constexpr std::size_t min_length = 16;
 
@@ -62,14 +64,15 @@ struct AccessOptions {
     /// Origins whose pages may use the service, such as https://example.org; "*": all.
     std::vector<std::string> origins;
     std::shared_ptr<const ApiKeys> keys;  ///< null: requests need none
+    Networks proxies;                     ///< whose X-Forwarded-For is believed
 };
 
 /// Problem 421 for a request to a host name that is not this server's, as in DNS rebinding; 403 for
 /// a cross-origin request, unless its origin is allowed or it follows a link (but not into a
 /// frame); 401 for a route that needs a key, without a valid one. Nothing if the request is
-/// allowed. route: null if no route matches.
+/// allowed. route: null if no route matches; key: name of the request's API key.
 std::optional<Response> access_refusal(
-    const Head& head, const Route* route, const AccessOptions& options);
+    const Head& head, const Route* route, std::string_view key, const AccessOptions& options);
 
 /// True for a CORS preflight of an allowed origin (Fetch, 3.2.2).
 bool is_preflight(const Head& head, const AccessOptions& options);

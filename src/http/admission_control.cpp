@@ -17,12 +17,10 @@ constexpr int graces_per_slot = 4;
 
 }  // namespace
 
-/// Gives each free slot to the first in the queue, and wakes only that thread.
+/// Gives each free slot to the next in the queue, and wakes only that thread.
 void AdmissionControl::assign_slots() {
     while (free_ > 0 && !(foreground_.empty() && background_.empty())) {
-        Queue& queue = foreground_.empty() ? background_ : foreground_;
-        Waiter& next = *queue.front();
-        queue.pop_front();
+        Waiter& next = **(foreground_.empty() ? background_ : foreground_).pop();
         --free_;
         next.has_slot = true;
         next.changed.notify_one();
@@ -60,17 +58,22 @@ void AdmissionControl::end_grace() {
 }
 
 AdmissionControl::Slot AdmissionControl::acquire(
-    const std::function<bool()>& gives_up, Grace grace) {
+    const std::string& client, const std::function<bool()>& gives_up, Grace grace) {
     std::unique_lock lock(mutex_);
     if (grace.release()) --graces_;
-    else if (free_ == 0 && is_full()) return nullptr;
+    else if (free_ == 0 && is_full()) {
+        if (!foreground_.precedes_last(client)) return nullptr;
+        Waiter& displaced = *foreground_.pop_last();
+        displaced.displaced = true;
+        displaced.changed.notify_one();
+    }
     Waiter waiter;
-    foreground_.push_back(&waiter);
+    foreground_.push(client, &waiter);
     assign_slots();
     bool given_up = false;
-    while (!waiter.has_slot && !given_up) {
-        waiter.changed.wait_for(lock, give_up_check, [&waiter] { return waiter.has_slot; });
-        if (waiter.has_slot || !gives_up) continue;
+    while (!waiter.has_slot && !waiter.displaced && !given_up) {
+        waiter.changed.wait_for(lock, give_up_check);
+        if (waiter.has_slot || waiter.displaced || !gives_up) continue;
         lock.unlock();
         given_up = gives_up();
         lock.lock();
@@ -78,10 +81,11 @@ AdmissionControl::Slot AdmissionControl::acquire(
     return Slot(end_wait(foreground_, waiter) ? this : nullptr);
 }
 
-AdmissionControl::Slot AdmissionControl::acquire_background(const std::stop_token& stop) {
+AdmissionControl::Slot AdmissionControl::acquire_background(
+    const std::string& client, const std::stop_token& stop) {
     std::unique_lock lock(mutex_);
     Waiter waiter;
-    background_.push_back(&waiter);
+    background_.push(client, &waiter);
     assign_slots();
     // The wait registers with the token before it checks the condition, so that no stop is missed.
     // The thread that requests the stop must not hold the mutex, and cannot.
@@ -99,27 +103,26 @@ void AdmissionControl::release() {
     assign_slots();
 }
 
-AdmissionControl::SweepSlot AdmissionControl::acquire_sweep() {
+AdmissionControl::SweepSlot AdmissionControl::acquire_sweep(const std::string& client) {
     const std::lock_guard lock(mutex_);
-    if (sweeps_ >= limits_.sweeps || sweeps_stopped_) return nullptr;
-    ++sweeps_;
-    return SweepSlot(this);
-}
-
-void AdmissionControl::release_sweep() {
-    const std::lock_guard lock(mutex_);
-    --sweeps_;
+    const auto most = static_cast<std::size_t>(limits_.sweeps);
+    if (sweeps_.size() >= most || sweeps_stopped_) return nullptr;
+    if (most > 1 && sweeps_.count(client) >= most - 1) return nullptr;
+    return {this, [this, place = sweeps_.insert(client)](void*) {
+                const std::lock_guard ending(mutex_);
+                sweeps_.erase(place);
+            }};
 }
 
 void AdmissionControl::stop_sweeps() {
     const std::lock_guard lock(mutex_);
     sweeps_stopped_ = true;
-    for (Waiter* waiter : background_) waiter->changed.notify_one();
+    background_.for_each([](Waiter* waiter) { waiter->changed.notify_one(); });
 }
 
 AdmissionLoad AdmissionControl::load() const {
     const std::lock_guard lock(mutex_);
-    return {limits_.running - free_, foreground_.size(), sweeps_};
+    return {limits_.running - free_, foreground_.size(), static_cast<int>(sweeps_.size())};
 }
 
 // --- Permits ---
@@ -131,22 +134,24 @@ constexpr auto grace_time = std::chrono::milliseconds(1);
 
 }  // namespace
 
-Permit::Permit(AdmissionControl& admission, std::function<bool()> gives_up, bool may_begin)
+Permit::Permit(
+    AdmissionControl& admission, std::string client, std::function<bool()> gives_up, bool may_begin)
     : admission_(admission),
+      client_(std::move(client)),
       gives_up_(std::move(gives_up)) {
     if (may_begin) {
         AdmissionControl::Attempt attempt = admission_.try_acquire();
         slot_ = std::move(attempt.slot);
         grace_ = std::move(attempt.grace);
     }
-    if (!*this) slot_ = admission_.acquire(gives_up_);
+    if (!*this) slot_ = admission_.acquire(client_, gives_up_);
 }
 
 bool Permit::renew() {
     if (!grace_) return slot_ != nullptr;
     const Clock::time_point now = Clock::now();
     if (now - began_ < grace_time) return true;
-    slot_ = admission_.acquire(gives_up_, std::move(grace_));
+    slot_ = admission_.acquire(client_, gives_up_, std::move(grace_));
     waited_ = Clock::now() - now;
     return slot_ != nullptr;
 }

@@ -5,6 +5,7 @@
 // - foreground: one request. It queues up to a limit and is refused beyond it.
 // - background: the points of a sweep, the lists of a streamed answer. It waits without limit,
 //   after all foreground work, and gives its slot back whenever foreground work waits.
+// In each class clients take turns.
 // Waiting for a slot costs a thread switch, which takes longer than a small answer. A foreground
 // request that finds no free slot therefore starts in a grace period of 1 ms without one, and
 // waits only if it needs longer (Permit).
@@ -14,11 +15,13 @@
 #include <chrono>
 #include <condition_variable>
 #include <functional>
-#include <list>
 #include <memory>
 #include <mutex>
+#include <set>
 #include <stop_token>
+#include <string>
 
+#include "http/fair_queue.hpp"
 #include "program/process.hpp"
 
 namespace vines::http {
@@ -38,7 +41,6 @@ struct AdmissionLoad {
 /// Must outlive the slots that it hands out.
 class AdmissionControl {
     void release();
-    void release_sweep();
     void end_grace();
     /// Calls one of these functions.
     template <auto function>
@@ -64,21 +66,23 @@ public:
     };
     /// For foreground work; does not wait.
     Attempt try_acquire();
-    /// For foreground work: waits for a slot, first come, first served. Null if the queue is full
-    /// or gives_up() returned true; it is polled every 50 ms. The end of a grace period always
-    /// finds space in the queue.
-    Slot acquire(const std::function<bool()>& gives_up = {}, Grace grace = {});
+    /// For foreground work: waits for a slot. Null if the queue is full of work whose turn is
+    /// earlier, or gives_up() returned true; it is polled every 50 ms. The end of a grace period
+    /// always finds space in the queue.
+    Slot acquire(
+        const std::string& client, const std::function<bool()>& gives_up = {}, Grace grace = {});
     /// For background work: waits for a slot, after all foreground work and the background work
-    /// that came earlier. Null once `stop` is requested or sweeps are stopped.
-    Slot acquire_background(const std::stop_token& stop);
+    /// whose turn is earlier. Null once `stop` is requested or sweeps are stopped.
+    Slot acquire_background(const std::string& client, const std::stop_token& stop);
     /// True while foreground work waits: background work should release its slot and wait again.
     bool foreground_waits() const { return foreground_waits_; }
     /// True while background work waits.
     bool background_waits() const { return background_waits_; }
 
-    /// The right to run one sweep. Null if the limit is reached or sweeps are stopped.
-    using SweepSlot = std::unique_ptr<AdmissionControl, Deleter<&AdmissionControl::release_sweep>>;
-    SweepSlot acquire_sweep();
+    /// The right to run one sweep. Null if the limit is reached, or all but one are this client's,
+    /// or sweeps are stopped.
+    using SweepSlot = std::shared_ptr<void>;
+    SweepSlot acquire_sweep(const std::string& client);
 
     /// Running sweeps end at their next check and no new one starts. Requests still compute.
     void stop_sweeps();
@@ -94,8 +98,9 @@ private:
     struct Waiter {
         std::condition_variable_any changed = {};
         bool has_slot = false;
+        bool displaced = false;  ///< by another client, whose turn is earlier
     };
-    using Queue = std::list<Waiter*>;
+    using Queue = FairQueue<Waiter*>;
 
     bool is_full() const;
     void assign_slots();
@@ -103,7 +108,8 @@ private:
 
     const AdmissionLimits limits_;
     mutable std::mutex mutex_;
-    int free_, sweeps_ = 0, graces_ = 0;  // nobody waits while free_ > 0
+    int free_, graces_ = 0;              // nobody waits while free_ > 0
+    std::multiset<std::string> sweeps_;  // their clients
     Queue foreground_, background_;
     // Written under the mutex; running work reads them without it.
     std::atomic<bool> foreground_waits_ = false, background_waits_ = false;
@@ -118,7 +124,9 @@ public:
 
     /// Waits for a slot if may_begin is false, or if neither a slot nor a grace period is free.
     /// gives_up() is polled while waiting.
-    Permit(AdmissionControl& admission, std::function<bool()> gives_up, bool may_begin);
+    Permit(
+        AdmissionControl& admission, std::string client, std::function<bool()> gives_up,
+        bool may_begin);
     /// False if the queue was full or the wait was given up.
     explicit operator bool() const { return slot_ || grace_; }
 
@@ -130,6 +138,7 @@ public:
 
 private:
     AdmissionControl& admission_;
+    const std::string client_;
     const std::function<bool()> gives_up_;
     AdmissionControl::Slot slot_;
     AdmissionControl::Grace grace_;

@@ -100,7 +100,8 @@ constexpr std::size_t max_hash = 256;
 
 /// Waits for the request's permit to compute; Problem 503 if the queue is full.
 Permit permit_for(const Request& request, AdmissionControl& admission, Stopwatch& watch) {
-    Permit permit(admission, request.left, request.body.size() <= max_body_in_grace);
+    Permit permit(
+        admission, request.client, request.left, request.body.size() <= max_body_in_grace);
     if (!permit && request.left()) throw_client_left();
     if (!permit)
         throw Problem::unavailable(
@@ -207,7 +208,7 @@ Response answer(const Request& r, const Service& service, Stopwatch& watch) {
     if (!renewed) throw_client_left();
     service.metrics.count_impacts(answer.impacts);
     if (answer.run) {
-        Response response = stream_answer(std::move(answer), r.id, service.admission);
+        Response response = stream_answer(std::move(answer), r, service.admission);
         response.headers.push_back(varies);
         return response;
     }
@@ -237,7 +238,7 @@ Response sweep(const Request& r, const Service& service, Stopwatch& watch) {
     if (!format) format = accepted_format(r.accept, api::sweep_format_names);
     watch.lap("parse", permit.waited());
     Response response = stream_sweep(
-        std::move(request), {*format, options.answer_limit}, options.sweep_deadline, r.id,
+        std::move(request), {*format, options.answer_limit}, options.sweep_deadline, r,
         service.admission, service.metrics);
     response.headers.push_back(varies);
     return response;

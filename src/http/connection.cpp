@@ -52,11 +52,12 @@ void send_continue(int socket) {
 }  // namespace
 
 Connection::Connection(
-    int socket, std::string client, const HeadCheck& check_head, MemoryBudget& memory)
+    int socket, std::string peer, const HeadCheck& check_head, MemoryBudget& memory)
     : socket_(socket),
-      client_(std::move(client)),
+      peer_(std::move(peer)),
       check_head_(check_head),
       held_(memory),
+      sender_{.address = peer_},
       waiting_since_(Clock::now()),
       deadline_(waiting_since_ + head_time) {}
 
@@ -126,8 +127,9 @@ void Connection::begin_waiting() {
 void Connection::begin_body() {
     head_ = reader_.take();
     bytes_.erase(0, reader_.size());
-    CheckedHead admitted = check_head_(*head_);
+    CheckedHead admitted = check_head_(*head_, peer_);
     route_ = admitted.route;
+    sender_ = std::move(admitted.sender);
     refused_ = std::move(admitted.refused);
     if (refused_ || bytes_.size() >= head_->content_length) return;
     expect_more();
@@ -154,6 +156,7 @@ Exchange Connection::take() {
     }
     exchange.head = std::move(*std::exchange(head_, {}));
     exchange.route = std::exchange(route_, nullptr);
+    exchange.sender = std::exchange(sender_, {.address = peer_});
     const std::size_t length = exchange.refused ? 0 : exchange.head.content_length;
     // Moves the large buffer out with the body.
     std::string rest = bytes_.substr(length);

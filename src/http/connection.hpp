@@ -23,6 +23,7 @@ struct Exchange {
     std::string body;
     const Route* route = nullptr;  ///< can be null if refused
     std::optional<Response> refused = {};
+    Sender sender = {};
     std::chrono::steady_clock::time_point since = {};  ///< time at which the request was complete
 };
 
@@ -37,8 +38,10 @@ struct Delivery {
 struct CheckedHead {
     const Route* route = nullptr;
     std::optional<Response> refused = {};
+    Sender sender = {};
 };
-using HeadCheck = std::function<CheckedHead(const Head&)>;
+/// peer: the other end's address.
+using HeadCheck = std::function<CheckedHead(const Head&, const std::string& peer)>;
 
 // Longest time between an answer and the next request.
 inline constexpr std::chrono::seconds idle_time(60);
@@ -49,8 +52,8 @@ public:
     using Clock = std::chrono::steady_clock;
 
     /// Takes ownership of a non-blocking socket; check_head and the budget must outlive the
-    /// connection. client: its address, for the log.
-    Connection(int socket, std::string client, const HeadCheck& check_head, MemoryBudget& memory);
+    /// connection. peer: the other end's address.
+    Connection(int socket, std::string peer, const HeadCheck& check_head, MemoryBudget& memory);
     ~Connection();
     Connection(const Connection&) = delete;
     Connection& operator=(const Connection&) = delete;
@@ -99,7 +102,9 @@ public:
     bool finish_closing();
 
     int socket() const { return socket_; }
-    const std::string& client() const { return client_; }
+    const std::string& peer() const { return peer_; }
+    /// Whose request it is, once its head is complete.
+    const Sender& sender() const { return sender_; }
 
     /// Sets the bytes of answers held for the client; received bytes are added.
     void hold(std::size_t bytes) { held_.set(bytes + bytes_.capacity()); }
@@ -114,13 +119,14 @@ private:
     void begin_waiting();
 
     const int socket_;
-    const std::string client_;
+    const std::string peer_;
     const HeadCheck& check_head_;
     MemoryShare held_;
     std::string bytes_;  // received, not yet taken
     HeadReader reader_;
     std::optional<Head> head_;  // once complete; bytes_ then holds its body
     const Route* route_ = nullptr;
+    Sender sender_;
     Clock::time_point complete_since_;
     std::size_t expected_ = 0;  // size of the body that must be reached before the deadline
     std::optional<Response> refused_;

@@ -83,6 +83,8 @@ EventLoop::EventLoop(int listening, const ConnectionLimits& limits, Handlers han
     : listening_(listening),
       handlers_(std::move(handlers)),
       max_connections_(std::min(limits.connections, files_for_connections())),
+      max_per_client_(limits.per_client),
+      proxies_(limits.proxies),
       poll_(::epoll_create1(EPOLL_CLOEXEC)),
       wake_(::eventfd(0, EFD_CLOEXEC | EFD_NONBLOCK)),
       memory_(limits.held_bytes),
@@ -153,32 +155,42 @@ void EventLoop::accept_all() {
         const int socket = ::accept4(listening_, peer, &size, SOCK_NONBLOCK | SOCK_CLOEXEC);
         if (socket < 0 && (errno == EINTR || errno == ECONNABORTED)) continue;
         if (socket < 0 && (errno == EMFILE || errno == ENFILE) && (other = eviction_candidate())) {
-            release(other->socket());
+            close(other->socket());
             continue;
         }
         if (socket < 0 && errno != EAGAIN) return listen(false);  // out of memory or descriptors
         if (socket < 0) return;
-        if (other) release(other->socket());
+        if (other) close(other->socket());
+        const std::string from = numeric(peer, size);
+        if (!other && is_at_limit(from)) {
+            if (!(other = eviction_candidate(owner_of(from)))) {
+                ::close(socket);
+                continue;
+            }
+            close(other->socket());
+        }
         const int yes = 1;
         ::setsockopt(socket, IPPROTO_TCP, TCP_NODELAY, &yes, sizeof yes);
         ::setsockopt(
             socket, IPPROTO_TCP, TCP_NOTSENT_LOWAT, &unsent_in_kernel, sizeof unsent_in_kernel);
-        watch(std::make_unique<Connection>(
-            socket, numeric(peer, size), handlers_.check_head, memory_));
+        ++open_[owner_of(from)];
+        watch(std::make_unique<Connection>(socket, from, handlers_.check_head, memory_));
     }
 }
 
 /// The connection that is closed first: an idle keep-alive one, else the one that has waited
 /// longest for its client. A well-behaved client never waits long, so a flood closes its own
-/// connections.
-Connection* EventLoop::eviction_candidate() const {
+/// connections. owner: of its client; empty: any.
+Connection* EventLoop::eviction_candidate(const std::string& owner) const {
     Connection* chosen = nullptr;
     const auto before = [](const Connection& a, const Connection& b) {
         if (a.is_idle_keep_alive() != b.is_idle_keep_alive()) return a.is_idle_keep_alive();
         return a.waiting_since() < b.waiting_since();
     };
     for (const Owned& c : connections_)
-        if (c && !c->is_delivering() && (!chosen || before(*c, *chosen))) chosen = c.get();
+        if (c && !c->is_delivering() && (owner.empty() || owner_of(c->peer()) == owner) &&
+            (!chosen || before(*c, *chosen)))
+            chosen = c.get();
     return chosen;
 }
 
@@ -193,10 +205,23 @@ void EventLoop::watch(Owned connection) {
     wait_for(poll_, EPOLL_CTL_ADD, watched);
 }
 
+/// True if the address may open no more connections: behind a proxy are many clients.
+bool EventLoop::is_at_limit(const std::string& address) const {
+    if (contain(proxies_, address)) return false;
+    const auto open = open_.find(owner_of(address));
+    return open != open_.end() && open->second >= max_per_client_;
+}
+
 EventLoop::Owned EventLoop::release(int socket) {
     remove(poll_, socket);
     --count_;
     return std::move(connections_[static_cast<std::size_t>(socket)]);
+}
+
+void EventLoop::close(int socket) {
+    const Owned connection = release(socket);
+    const auto open = open_.find(owner_of(connection->peer()));
+    if (--open->second == 0) open_.erase(open);
 }
 
 void EventLoop::handle(int socket, bool failed) {
@@ -204,14 +229,14 @@ void EventLoop::handle(int socket, bool failed) {
     if (!connection) return;  // closed after the event
     if (connection->is_delivering()) deliver(*connection, failed);
     else if (!connection->is_closing()) read(*connection);
-    else if (connection->finish_closing()) release(socket);
+    else if (connection->finish_closing()) close(socket);
 }
 
 void EventLoop::read(Connection& connection) {
     for (int n = 0;; ++n) {
         switch (connection.advance()) {
             case Connection::Progress::waits: return;
-            case Connection::Progress::ended: release(connection.socket()); return;
+            case Connection::Progress::ended: close(connection.socket()); return;
             case Connection::Progress::complete: break;
         }
         if (!connection.is_answered_on_loop()) return hand_over(release(connection.socket()));
@@ -222,7 +247,12 @@ void EventLoop::read(Connection& connection) {
 
 void EventLoop::hand_over(Owned connection) {
     ++with_workers_;
-    if (workers_.add(connection)) return;
+    const std::string client = connection->sender().client();
+    std::optional<Owned> refused = workers_.add(client, std::move(connection));
+    if (refused) refuse(*std::move(refused));
+}
+
+void EventLoop::refuse(Owned connection) {
     --with_workers_;
     connection->refuse(problem_response(api::Problem::unavailable(
         "threads", "all worker threads are busy and their queue is full")));
@@ -287,7 +317,7 @@ void EventLoop::expire() {
 
 void EventLoop::time_out(Connection& connection) {
     if (connection.is_idle() || connection.is_closing()) {
-        release(connection.socket());
+        close(connection.socket());
         return;
     }
     connection.refuse(
@@ -315,7 +345,10 @@ void EventLoop::work(Owned connection) {
         if (progress == Connection::Progress::ended) connection->begin_closing();
         if (progress != Connection::Progress::complete) break;
         // Others have waited longer.
-        if (workers_.jobs_wait() && workers_.add(connection)) return;
+        if (workers_.jobs_wait()) {
+            const std::string client = connection->sender().client();
+            return workers_.put_back(client, std::move(connection));
+        }
     }
     return_connection(std::move(connection));
 }

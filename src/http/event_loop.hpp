@@ -8,8 +8,10 @@
 #include <atomic>
 #include <chrono>
 #include <functional>
+#include <map>
 #include <memory>
 #include <mutex>
+#include <string>
 #include <vector>
 
 #include "http/connection.hpp"
@@ -30,6 +32,8 @@ struct Handlers {
 
 struct ConnectionLimits {
     std::size_t connections = 4096;
+    std::size_t per_client = 1024;  ///< connections of one client that is no proxy
+    Networks proxies;
     int workers = 64;
     std::size_t waiting = 64;            ///< requests queued for a worker
     std::size_t held_bytes = 512 << 20;  ///< bytes of requests and answers, see MemoryBudget
@@ -65,13 +69,16 @@ private:
     // Called by the thread in run().
     void wait();
     void accept_all();
-    Connection* eviction_candidate() const;
+    Connection* eviction_candidate(const std::string& owner = {}) const;
+    bool is_at_limit(const std::string& address) const;
     void listen(bool on);
     void watch(Owned connection);
     Owned release(int socket);
+    void close(int socket);
     void handle(int socket, bool failed = false);
     void read(Connection& connection);
     void hand_over(Owned connection);
+    void refuse(Owned connection);
     bool answer_here(Connection& connection);
     void deliver(Connection& connection, bool failed);
     void collect_returned();
@@ -88,10 +95,12 @@ private:
 
     const int listening_;
     const Handlers handlers_;
-    const std::size_t max_connections_;
+    const std::size_t max_connections_, max_per_client_;
+    const Networks proxies_;
     const int poll_, wake_;
     MemoryBudget memory_;
     std::vector<Owned> connections_;             // indexed by socket; used by run() only
+    std::map<std::string, std::size_t> open_;    // connections by client, also those with workers
     std::vector<int> ready_;                     // sockets with more pipelined requests to read
     std::atomic<std::size_t> count_ = 0;         // number of connections_
     std::atomic<std::size_t> delivering_ = 0;    // those of them that take an answer

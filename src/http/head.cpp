@@ -67,7 +67,7 @@ std::pair<std::string, std::string> split_absolute(std::string_view target) {
 /// a part of a list (RFC 9110, 5.3). Authorization is included: two of them, joined, match no key.
 bool is_list_header(std::string_view name) {
     return name == "accept" || name == "accept-encoding" || name == "authorization" ||
-           name == "if-none-match";
+           name == "if-none-match" || name == "x-forwarded-for";
 }
 
 /// The elements of all comma-separated lists of a header, in lower case.

@@ -135,6 +135,7 @@ void log_request(const ServedRequest& served) {
         line.add("ms", served.ms);
         line.add("bytes", served.bytes);
         line.add("client", served.client);
+        if (!served.key.empty()) line.add("key", served.key);
         line.add("request_id", served.id);
         for (const auto& [name, ms] : served.timing) line.add(name + "_ms", ms);
         if (served.left) line.add_true("client_left");

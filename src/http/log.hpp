@@ -15,7 +15,10 @@ void start_log(LogFormat format);
 
 /// A request and its answer, for the log and the metrics.
 struct ServedRequest {
-    std::string id, client, method, path;
+    std::string id;
+    std::string client;    ///< its address
+    std::string key = {};  ///< name of its API key, if any
+    std::string method, path;
     std::string route;         ///< of the answer; "page" for all files, "none" without a route
     std::string lacking = {};  ///< of a 503: the exhausted resource
     int status = 0;

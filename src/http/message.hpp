@@ -54,6 +54,7 @@ struct Request {
     std::string accept_encoding = {};  ///< header Accept-Encoding
     std::string if_none_match = {};    ///< header If-None-Match
     std::string id = {};               ///< see request_id()
+    std::string client = {};           ///< whose turn it takes: an API key's name or an address
     /// Returns true once the client has left.
     std::function<bool()> left = [] { return false; };
 };
@@ -80,6 +81,9 @@ struct Response {
     std::function<bool(Writer&)> stream = {};
     std::size_t held = 0;       ///< bytes a stream holds until its end, approximately
     bool compressible = false;  ///< the stream can be sent gzipped
+    /// The stream sends nothing until it is computed: a client that has closed its sending side
+    /// counts as one that has left.
+    bool silent = false;
     /// For an error: the body is made from it when sent.
     std::optional<api::Problem> problem = {};
     Timing timing = {};  ///< header Server-Timing

@@ -139,6 +139,12 @@ bool Outbox::is_broken() const {
     return broken_;
 }
 
+bool Outbox::client_has_closed() const {
+    const std::lock_guard lock(mutex_);
+    pollfd state{socket_, POLLRDHUP, 0};
+    return broken_ || ::poll(&state, 1, 0) > 0;
+}
+
 std::size_t Outbox::sent() const {
     const std::lock_guard lock(mutex_);
     return sent_;

@@ -42,13 +42,14 @@ public:
     /// Nothing more is sent; wait_for_space() returns.
     void cancel();
 
-    /// True if the client reads too slowly: for 30 s less than 8 KiB/s, or while a resource is scarce
-    /// for 2 s less than 64 KiB/s. A pause counts only while bytes wait for the client. To be called
-    /// regularly.
+    /// True if the client reads too slowly: for 30 s less than 8 KiB/s, or while a resource is
+    /// scarce for 2 s less than 64 KiB/s. A pause counts only while bytes wait for the client. To
+    /// be called regularly.
     bool client_is_slow(Clock::time_point now, bool scarce);
 
     bool is_broken() const;
-    std::size_t sent() const;  ///< bytes that the socket has taken
+    bool client_has_closed() const;  ///< its sending side, or all
+    std::size_t sent() const;        ///< bytes that the socket has taken
 
 private:
     State state() const;

@@ -77,8 +77,11 @@ namespace {
 /// httplib's view of an outbox. The answer's head waits for the bytes that follow it.
 class OutboxStream : public httplib::Stream {
 public:
-    /// head: the request head that httplib reads.
-    OutboxStream(Outbox& outbox, std::string head) : outbox_(outbox), head_(std::move(head)) {}
+    /// head: the request head that httplib reads; silent: see Response.
+    OutboxStream(Outbox& outbox, std::string head, bool silent)
+        : outbox_(outbox),
+          head_(std::move(head)),
+          silent_(silent) {}
 
     ssize_t read(char* data, std::size_t size) override {
         const std::size_t n = std::min(size, head_.size() - read_);
@@ -96,7 +99,9 @@ public:
     }
     using httplib::Stream::write;
     bool is_readable() const override { return read_ < head_.size(); }
-    bool is_writable() const override { return !outbox_.is_broken(); }
+    bool is_writable() const override {
+        return !(silent_ ? outbox_.client_has_closed() : outbox_.is_broken());
+    }
     void get_remote_ip_and_port(std::string&, int&) const override {}
     void get_local_ip_and_port(std::string&, int&) const override {}
     // httplib only compares it with the largest one for select(), which it never calls.
@@ -105,6 +110,7 @@ public:
 private:
     Outbox& outbox_;
     const std::string head_;
+    const bool silent_;
     std::size_t read_ = 0;
     bool head_written_ = false;
 };
@@ -128,13 +134,14 @@ public:
         });
     }
     /// method: HEAD for the head alone. False if the answer was broken off.
-    bool write(const char* method, bool keep_alive, const Fill& fill, Outbox& outbox) {
+    bool write(const char* method, bool keep_alive, bool silent, const Fill& fill, Outbox& outbox) {
         set_pre_routing_handler([&fill](const auto&, auto& out) {
             fill(out);
             return HandlerResponse::Handled;
         });
         const char* connection = keep_alive ? "" : "Connection: close\r\n";
-        OutboxStream stream(outbox, fmt::format("{} / HTTP/1.1\r\n{}\r\n", method, connection));
+        OutboxStream stream(
+            outbox, fmt::format("{} / HTTP/1.1\r\n{}\r\n", method, connection), silent);
         return process(*this, stream);
     }
 
@@ -210,7 +217,8 @@ bool write(const Head& head, bool keep_alive, Response response, Outbox& outbox)
     };
     // The body of a finished answer goes to the outbox as it is.
     const bool in_pieces = response.stream && has_body;
-    if (!writer.write(in_pieces ? "GET" : "HEAD", keep_alive, fill, outbox)) return false;
+    const char* const method = in_pieces ? "GET" : "HEAD";
+    if (!writer.write(method, keep_alive, response.silent, fill, outbox)) return false;
     if (has_body && !in_pieces) outbox.add(std::move(response.body));
     return true;
 }

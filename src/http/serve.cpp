@@ -73,6 +73,10 @@ void add_server_flags(CLI::App& c, ServerOptions& o) {
         c, "--connections", "VINES_CONNECTIONS", o.connections, 1, 1000000,
         "connections open at once; beyond that the connection that has been idle longest is "
         "closed");
+    add_number(
+        c, "--client-connections", "VINES_CLIENT_CONNECTIONS", o.client_connections, 1, 1000000,
+        "connections of one address, except of a trusted proxy; beyond that one of its own is "
+        "closed");
 }
 
 void add_access_flags(CLI::App& c, AccessOptions& o, std::string& key_file) {
@@ -87,6 +91,18 @@ void add_access_flags(CLI::App& c, AccessOptions& o, std::string& key_file) {
         ->envname("VINES_CORS_ORIGIN")
         ->check([](const std::string& text) {
             return text == "*" ? std::string() : origin_error(text);
+        });
+    c.add_option_function<std::vector<std::string>>(
+         "--trust-proxy",
+         [&o](const std::vector<std::string>& texts) {
+             for (const std::string& text : texts) o.proxies.push_back(*Network::read(text));
+         },
+         "address or network (10.0.0.0/8) of a proxy whose X-Forwarded-For names the client "
+         "(repeatable)")
+        ->envname("VINES_TRUST_PROXY")
+        ->type_name("ADDRESS")
+        ->check([](const std::string& text) {
+            return Network::read(text) ? "" : text + " is not an address or ADDRESS/BITS";
         });
     c.add_option(
          "--api-key-file", key_file,

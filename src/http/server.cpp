@@ -89,7 +89,6 @@ struct Server::Implementation {
 
     /// A request that is being answered.
     struct Work {
-        std::string client;
         Exchange exchange;
         std::string id;
         std::shared_ptr<Outbox> outbox;
@@ -123,6 +122,7 @@ struct Server::Implementation {
                  .accept_encoding = std::string(head.header("accept-encoding")),
                  .if_none_match = std::string(head.header("if-none-match")),
                  .id = work.id,
+                 .client = exchange.sender.client(),
                  .left = [&work] { return work.outbox->client_has_left(); }});
         } catch (...) {
             log_failure(std::string(head.path()), work.id, std::current_exception());
@@ -136,7 +136,8 @@ struct Server::Implementation {
         const std::chrono::duration<double, std::milli> taken = Clock::now() - exchange.since;
         return {
             .id = work.id,
-            .client = work.client,
+            .client = exchange.sender.address,
+            .key = exchange.sender.key,
             .method = exchange.head.method,
             .path = std::string(exchange.head.path()),
             .route = exchange.route ? exchange.route->name : "none",
@@ -147,8 +148,7 @@ struct Server::Implementation {
     Task answer(Connection& connection, Exchange exchange) {
         std::string id = request_id(exchange.head);
         const auto work = std::make_shared<Work>(Work{
-            connection.client(), std::move(exchange), std::move(id),
-            std::make_shared<Outbox>(connection.socket())});
+            std::move(exchange), std::move(id), std::make_shared<Outbox>(connection.socket())});
         const auto registered = enter(work);
         Response response = response_to(*work);
         const std::size_t size = std::max(response.body.size(), response.uncompressed_size);
@@ -206,10 +206,13 @@ struct Server::Implementation {
         works.erase(registered);
     }
 
-    CheckedHead check_head(const Head& head) const {
+    CheckedHead check_head(const Head& head, const std::string& peer) const {
+        const AccessOptions& access = options.access;
         CheckedHead checked{.route = find_route(routes, head.method, head.path())};
-        checked.refused = access_refusal(head, checked.route, options.access);
-        if (!checked.refused && is_preflight(head, options.access)) checked.route = &preflight;
+        checked.sender.address = client_address(head, peer, access.proxies);
+        if (access.keys) checked.sender.key = access.keys->name_of(head.header("authorization"));
+        checked.refused = access_refusal(head, checked.route, checked.sender.key, access);
+        if (!checked.refused && is_preflight(head, access)) checked.route = &preflight;
         if (!checked.refused)
             checked.refused = request_refusal(head, checked.route, routes, options.payload_limit);
         return checked;
@@ -217,7 +220,9 @@ struct Server::Implementation {
 
     Handlers handlers() {
         return {
-            .check_head = [this](const Head& head) { return check_head(head); },
+            .check_head = [this](
+                              const Head& head,
+                              const std::string& peer) { return check_head(head, peer); },
             .answer = [this](
                           Connection& connection,
                           Exchange exchange) { return answer(connection, std::move(exchange)); }};
@@ -242,6 +247,8 @@ int Server::bind() {
         listener.socket(),
         ConnectionLimits{
             .connections = options.connections,
+            .per_client = options.client_connections,
+            .proxies = options.access.proxies,
             .workers = options.threads,
             .waiting = static_cast<std::size_t>(options.threads),
             .held_bytes = options.memory_limit},

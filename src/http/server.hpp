@@ -22,9 +22,10 @@ struct ServerOptions {
     int port = 8080;                 ///< 0: any free port
     int threads = 128;               ///< worker threads; a client that reads slowly occupies one
     std::size_t connections = 4096;  ///< open connections, including idle ones
-    std::size_t payload_limit = 1 << 20;   ///< largest request body, bytes
-    std::size_t memory_limit = 512 << 20;  ///< requests and answers held at once, bytes
-    AccessOptions access = {};             ///< listens_on is set to `host`
+    std::size_t client_connections = 1024;  ///< of them those of one client
+    std::size_t payload_limit = 1 << 20;    ///< largest request body, bytes
+    std::size_t memory_limit = 512 << 20;   ///< requests and answers held at once, bytes
+    AccessOptions access = {};              ///< listens_on is set to `host`
 };
 
 class Server {

@@ -30,11 +30,14 @@ using Clock = std::chrono::steady_clock;
 /// to stop.
 class StreamPace : public RunControl {
 public:
-    StreamPace(AdmissionControl& admission, Writer& out) : admission_(admission), out_(out) {}
+    StreamPace(AdmissionControl& admission, std::string client, Writer& out)
+        : admission_(admission),
+          client_(std::move(client)),
+          out_(out) {}
     void begin() override {
-        slot_ = admission_.acquire_background({});
+        slot_ = admission_.acquire_background(client_, {});
         while (!slot_ && out_.connected() && !admission_.all_stopped()) {
-            slot_ = admission_.acquire();
+            slot_ = admission_.acquire(client_);
             if (!slot_) std::this_thread::sleep_for(client_check_interval);  // the queue is full
         }
     }
@@ -53,6 +56,7 @@ public:
 
 private:
     AdmissionControl& admission_;
+    const std::string client_;
     Writer& out_;
     AdmissionControl::Slot slot_;
     Clock::time_point checked_ = Clock::now();
@@ -62,9 +66,15 @@ private:
 // Memory of a run while its lists are made and sent: measured at 5 to 7 MB.
 constexpr std::size_t held_by_answer = 8 << 20;
 
-bool write(api::Answer answer, const std::string& id, AdmissionControl& admission, Writer& out) {
+/// Whose stream it is, and the request's id, for the log.
+struct StreamOf {
+    explicit StreamOf(const Request& r) : client(r.client), id(r.id) {}
+    std::string client, id;
+};
+
+bool write(api::Answer answer, const StreamOf& of, AdmissionControl& admission, Writer& out) {
     trim_memory();  // the memory of the run
-    StreamPace control(admission, out);
+    StreamPace control(admission, of.client, out);
     try {
         api::write_answer(std::move(answer), control, [&out](std::string_view piece) {
             if (!out.write(piece)) throw api::Cancelled();
@@ -72,22 +82,21 @@ bool write(api::Answer answer, const std::string& id, AdmissionControl& admissio
         return true;
     } catch (const api::Cancelled&) {
     } catch (...) {
-        log_failure("/v1/simulate", id, std::current_exception());
+        log_failure("/v1/simulate", of.id, std::current_exception());
     }
     return false;
 }
 
 }  // namespace
 
-Response stream_answer(
-    api::Answer answer, const std::string& request_id, AdmissionControl& admission) {
+Response stream_answer(api::Answer answer, const Request& request, AdmissionControl& admission) {
     // Shared, because a response can be copied.
     auto shared = std::make_shared<api::Answer>(std::move(answer));
     return {
         .headers = {{"Cache-Control", "no-store"}},
         .stream =
-            [shared, request_id, &admission](Writer& out) {
-                const bool whole = write(std::move(*shared), request_id, admission, out);
+            [shared, of = StreamOf(request), &admission](Writer& out) {
+                const bool whole = write(std::move(*shared), of, admission, out);
                 trim_memory();
                 return whole;
             },
@@ -165,14 +174,15 @@ private:
 /// and wait while the client reads slower than they compute.
 class SweepControl : public api::RunControl {
 public:
-    SweepControl(AdmissionControl& admission, LineQueue& lines, double deadline)
+    SweepControl(AdmissionControl& admission, std::string client, LineQueue& lines, double deadline)
         : admission_(admission),
+          client_(std::move(client)),
           lines_(lines),
           ends_(
               Clock::now() + std::chrono::duration_cast<Clock::duration>(
                                  std::chrono::duration<double>(deadline))) {}
     void begin() override {
-        slot() = admission_.acquire_background(stop_.get_token());
+        slot() = admission_.acquire_background(client_, stop_.get_token());
         acquired_at() = Clock::now();
     }
     void end() override { slot().reset(); }
@@ -208,6 +218,7 @@ private:
     }
 
     AdmissionControl& admission_;
+    const std::string client_;
     LineQueue& lines_;
     const Clock::time_point ends_;
     std::stop_source stop_;
@@ -231,15 +242,15 @@ public:
     /// `table` formats the points; null: lines of JSON.
     SweepStream(
         const api::SweepRequest& request, api::SweepTable* table, double deadline,
-        AdmissionControl& admission, Writer& out)
+        const StreamOf& of, AdmissionControl& admission, Writer& out)
         : request_(request),
           table_(table),
           admission_(admission),
           out_(out),
-          control_(admission, lines_, deadline) {}
+          id_(of.id),
+          control_(admission, of.client, lines_, deadline) {}
 
-    /// id: the request's id, for the log.
-    SweepEnd run(const std::string& id) {
+    SweepEnd run() {
         if (!out_.write(table_ ? table_->begin() : api::start_line(request_)))
             return SweepEnd::client_left;
         try {
@@ -250,7 +261,7 @@ public:
             const bool sent = connected_ && out_.write(last_text(end, done));
             return sent ? end : SweepEnd::client_left;
         } catch (...) {
-            log_failure("/v1/sweep", id, std::current_exception());
+            log_failure("/v1/sweep", id_, std::current_exception());
             const std::string line = api::error_line(
                 500, "the server failed; the reason is in its log", lines_.take({}).count);
             return connected_ && (table_ || out_.write(line)) ? SweepEnd::failed
@@ -331,6 +342,7 @@ private:
     AdmissionControl& admission_;
     Writer& out_;
     LineQueue lines_;
+    const std::string id_;
     SweepControl control_;
     bool connected_ = true;
     std::string warning_ = {};
@@ -339,7 +351,7 @@ private:
 }  // namespace
 
 Response stream_sweep(
-    api::SweepRequest request, SweepForm form, double deadline, const std::string& request_id,
+    api::SweepRequest request, SweepForm form, double deadline, const Request& asked,
     AdmissionControl& admission, Metrics& metrics) {
     request.plan.in_order = form.format == api::Format::csv;
     // Shared, because a response can be copied: the sweep's slot is released with the last copy,
@@ -348,26 +360,28 @@ Response stream_sweep(
     std::shared_ptr<api::SweepTable> table;
     if (form.format != api::Format::json)
         table = std::make_shared<api::SweepTable>(*shared, form.format, form.most_bytes);
-    const std::shared_ptr<AdmissionControl> sweep_slot = admission.acquire_sweep();
+    const AdmissionControl::SweepSlot sweep_slot = admission.acquire_sweep(asked.client);
     if (!sweep_slot)
         return admission.sweeps_stopped()
                    ? stopping_refusal()
                    : problem_response(api::Problem::unavailable(
                          "sweeps",
-                         "the maximum number of sweeps is running; try again "
-                         "later"));
+                         "the maximum number of sweeps is running, or the maximum of one client; "
+                         "try again later"));
     return {
         .content_type =
             table ? api::name_of(form.format).media_type : api::sweep_format_names[0].media_type,
         .headers = {{"Cache-Control", "no-store"}, {"X-Accel-Buffering", "no"}},
         .stream =
-            [shared, table, deadline, request_id, &admission, &metrics, sweep_slot](Writer& out) {
-                SweepStream sending(*shared, table.get(), deadline, admission, out);
-                const SweepEnd end = sending.run(request_id);
+            [shared, table, deadline, of = StreamOf(asked), &admission, &metrics,
+             sweep_slot](Writer& out) {
+                SweepStream sending(*shared, table.get(), deadline, of, admission, out);
+                const SweepEnd end = sending.run();
                 metrics.count_sweep(end, sending.runs(), sending.impacts());
                 return table ? end == SweepEnd::complete : end != SweepEnd::client_left;
             },
-        .held = table ? 2 * table->bytes() : 0};
+        .held = table ? 2 * table->bytes() : 0,
+        .silent = table != nullptr && form.format != api::Format::csv};
 }
 
 }  // namespace vines::http

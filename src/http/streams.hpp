@@ -14,8 +14,7 @@
 namespace vines::http {
 
 /// Sends an answer whose lists of impacts are computed meanwhile; `admission` must outlive it.
-Response stream_answer(
-    api::Answer answer, const std::string& request_id, AdmissionControl& admission);
+Response stream_answer(api::Answer answer, const Request& request, AdmissionControl& admission);
 
 /// The format of a sweep, and the largest table in CBOR or npz, bytes.
 struct SweepForm {
@@ -28,7 +27,7 @@ struct SweepForm {
 /// 413 for a table that is too large; 503 if the maximum number of sweeps is running. `admission`
 /// and `metrics` must outlive the response.
 Response stream_sweep(
-    api::SweepRequest request, SweepForm form, double deadline, const std::string& request_id,
+    api::SweepRequest request, SweepForm form, double deadline, const Request& asked,
     AdmissionControl& admission, Metrics& metrics);
 
 }  // namespace vines::http

@@ -1,16 +1,21 @@
-// A pool of threads that take jobs from a queue, first come, first served.
+// A pool of threads that take jobs from a queue. Clients take turns, and one client has at most
+// half of the threads.
 #pragma once
 
 #include <semaphore.h>
 
 #include <cerrno>
-#include <deque>
 #include <functional>
+#include <map>
 #include <mutex>
+#include <optional>
+#include <string>
 #include <system_error>
 #include <thread>
 #include <utility>
 #include <vector>
+
+#include "http/fair_queue.hpp"
 
 namespace vines::http {
 
@@ -28,28 +33,42 @@ public:
     }
     /// Finishes the queued jobs.
     ~WorkerPool() {
-        for (std::size_t n = 0; n < threads_.size(); ++n) ::sem_post(&wake_);
+        {
+            const std::lock_guard lock(mutex_);
+            ending_ = true;
+        }
+        ::sem_post(&wake_);
         for (std::thread& thread : threads_) thread.join();
         ::sem_destroy(&wake_);
     }
     WorkerPool(const WorkerPool&) = delete;
     WorkerPool& operator=(const WorkerPool&) = delete;
 
-    /// Queues a job. False if the queue is full; the job is then left unchanged.
-    bool add(Job& job) {
+    /// Queues a job. If the queue is full, returns the job that finds no place: this one, or one
+    /// whose turn is later.
+    std::optional<Job> add(const std::string& client, Job job) {
+        std::optional<Job> refused;
         {
             const std::lock_guard lock(mutex_);
             if (jobs_.size() >= free_ && threads_.size() < max_threads_) try_to_start_one();
-            if (jobs_.size() >= free_ + max_waiting_) return false;
-            jobs_.push_back(std::move(job));
+            if (jobs_.size() >= free_ + max_waiting_) {
+                if (!jobs_.precedes_last(client)) return job;
+                refused = jobs_.pop_last();
+            }
+            jobs_.push(client, std::move(job));
         }
         ::sem_post(&wake_);
-        return true;
+        return refused;
+    }
+    /// For a thread of the pool, as its last action: queues a job beyond the limit.
+    void put_back(const std::string& client, Job job) {
+        const std::lock_guard lock(mutex_);
+        jobs_.push(client, std::move(job));
     }
     /// True if a job waits for a thread.
     bool jobs_wait() {
         const std::lock_guard lock(mutex_);
-        return jobs_.size() > free_;
+        return jobs_.size() > free_ || (!jobs_.empty() && !jobs_.has(may_begin()));
     }
 
 private:
@@ -64,19 +83,38 @@ private:
         }
     }
 
+    /// Whether a client has fewer than its share of threads.
+    auto may_begin() const {
+        return [this](const std::string& client) {
+            const auto running = running_.find(client);
+            return running == running_.end() || running->second < (max_threads_ + 1) / 2;
+        };
+    }
+
     void run() {
-        for (;;) {
-            wait_for_job();
-            std::unique_lock lock(mutex_);
-            if (jobs_.empty()) return;
-            Job job = std::move(jobs_.front());
-            jobs_.pop_front();
+        std::unique_lock lock(mutex_);
+        while (!(ending_ && jobs_.empty())) {
+            std::string client;
+            auto job = jobs_.pop([&](const std::string& next) {
+                client = next;
+                return may_begin()(next);
+            });
+            if (!job) {
+                lock.unlock();
+                wait_for_job();
+                lock.lock();
+                continue;
+            }
             --free_;
+            const auto running = running_.try_emplace(client).first;
+            ++running->second;
             lock.unlock();
-            work_(std::move(job));
+            work_(std::move(*job));
             lock.lock();
+            if (--running->second == 0) running_.erase(running);
             ++free_;
         }
+        ::sem_post(&wake_);  // for the next thread
     }
 
     void wait_for_job() {
@@ -86,11 +124,14 @@ private:
     const std::size_t max_threads_, max_waiting_;
     const std::function<void(Job)> work_;
     std::mutex mutex_;
-    /// Posted once per job, and once per thread at the end. A semaphore, because posting never
+    /// Posted once per job, and by each thread at the end; a thread looks for another job before it
+    /// waits. A semaphore, because posting never
     /// blocks: notifying a condition variable can block until previously woken threads have run,
     /// and the thread that adds jobs also answers health checks.
     sem_t wake_{};
-    std::deque<Job> jobs_;
+    FairQueue<Job> jobs_;
+    std::map<std::string, std::size_t> running_;  // jobs by client
+    bool ending_ = false;
     std::size_t free_ = 0;  // threads without a job
     std::vector<std::thread> threads_;
 };

@@ -3,6 +3,8 @@
 #include <doctest/doctest.h>
 
 #include <atomic>
+#include <mutex>
+#include <string>
 #include <thread>
 #include <vector>
 
@@ -18,45 +20,47 @@ void wait_until(Condition holds) {
     while (!holds()) std::this_thread::yield();
 }
 
+const std::string client = "192.0.2.1";
+
 }  // namespace
 
 TEST_CASE("foreground work queues up to its limit and is refused beyond it") {
     AdmissionControl admission({.running = 1, .waiting = 1});
-    AdmissionControl::Slot first = admission.acquire();
+    AdmissionControl::Slot first = admission.acquire(client);
     REQUIRE(first);
     std::atomic<bool> entered = false;
-    std::thread second([&] { entered = admission.acquire() != nullptr; });
+    std::thread second([&] { entered = admission.acquire(client) != nullptr; });
     wait_until([&] { return admission.foreground_waits(); });
-    CHECK(!admission.acquire());
+    CHECK(!admission.acquire(client));
     CHECK(!entered);
     first.reset();
     second.join();
     CHECK(entered);
     CHECK(!admission.foreground_waits());
-    CHECK(admission.acquire());
+    CHECK(admission.acquire(client));
 }
 
 TEST_CASE("no work waits if the queue's limit is 0") {
     AdmissionControl admission({.running = 1, .waiting = 0});
-    const AdmissionControl::Slot slot = admission.acquire();
+    const AdmissionControl::Slot slot = admission.acquire(client);
     CHECK(slot);
-    CHECK(!admission.acquire());
+    CHECK(!admission.acquire(client));
 }
 
 TEST_CASE("background work that releases its slot gets it back after the foreground work") {
     AdmissionControl admission({.running = 1});
     const std::stop_source stop;
     for (int round = 0; round < 200; ++round) {
-        AdmissionControl::Slot slot = admission.acquire_background(stop.get_token());
+        AdmissionControl::Slot slot = admission.acquire_background(client, stop.get_token());
         REQUIRE(slot);
         std::atomic<bool> served = false;
         std::thread foreground([&] {
-            const AdmissionControl::Slot own = admission.acquire();
+            const AdmissionControl::Slot own = admission.acquire(client);
             served = own != nullptr;
         });
         wait_until([&] { return admission.foreground_waits(); });
         slot.reset();
-        slot = admission.acquire_background(stop.get_token());
+        slot = admission.acquire_background(client, stop.get_token());
         CHECK(slot);
         CHECK(served);
         foreground.join();
@@ -67,16 +71,17 @@ TEST_CASE("background work gets slots in the order of arrival") {
     AdmissionControl admission({.running = 1});
     const std::stop_source stop;
     for (int round = 0; round < 200; ++round) {
-        AdmissionControl::Slot slot = admission.acquire_background(stop.get_token());
+        AdmissionControl::Slot slot = admission.acquire_background(client, stop.get_token());
         CHECK(!admission.background_waits());
         std::atomic<bool> served = false;
         std::thread other([&] {
-            const AdmissionControl::Slot own = admission.acquire_background(stop.get_token());
+            const AdmissionControl::Slot own =
+                admission.acquire_background(client, stop.get_token());
             served = own != nullptr;
         });
         wait_until([&] { return admission.background_waits(); });
         slot.reset();
-        slot = admission.acquire_background(stop.get_token());
+        slot = admission.acquire_background(client, stop.get_token());
         CHECK(slot);
         CHECK(served);
         other.join();
@@ -87,10 +92,11 @@ TEST_CASE("stopped background work does not block later background work") {
     AdmissionControl admission({.running = 1});
     std::stop_source first_stop;
     const std::stop_source stop;
-    AdmissionControl::Slot slot = admission.acquire_background(stop.get_token());
-    std::thread first([&] { CHECK(!admission.acquire_background(first_stop.get_token())); });
+    AdmissionControl::Slot slot = admission.acquire_background(client, stop.get_token());
+    std::thread first(
+        [&] { CHECK(!admission.acquire_background(client, first_stop.get_token())); });
     wait_until([&] { return admission.background_waits(); });
-    std::thread second([&] { CHECK(admission.acquire_background(stop.get_token())); });
+    std::thread second([&] { CHECK(admission.acquire_background(client, stop.get_token())); });
     first_stop.request_stop();
     first.join();
     slot.reset();
@@ -103,12 +109,14 @@ TEST_CASE(
     const std::stop_source stop;
     for (int round = 0; round < 1000; ++round) {
         AdmissionControl admission({.running = 2});
-        AdmissionControl::Slot first = admission.acquire(), second = admission.acquire();
+        AdmissionControl::Slot first = admission.acquire(client),
+                               second = admission.acquire(client);
         std::atomic<bool> background_inside = false;
-        std::thread background(
-            [&] { background_inside = admission.acquire_background(stop.get_token()) != nullptr; });
+        std::thread background([&] {
+            background_inside = admission.acquire_background(client, stop.get_token()) != nullptr;
+        });
         std::thread foreground([&] {
-            const AdmissionControl::Slot own = admission.acquire();
+            const AdmissionControl::Slot own = admission.acquire(client);
             wait_until([&] { return background_inside.load(); });  // keeps its slot
         });
         wait_until([&] { return admission.foreground_waits(); });
@@ -122,13 +130,13 @@ TEST_CASE(
 
 TEST_CASE("a stop ends background work's wait, whether it comes before or during the wait") {
     AdmissionControl admission({.running = 1});
-    const AdmissionControl::Slot held = admission.acquire();
+    const AdmissionControl::Slot held = admission.acquire(client);
     for (int round = 0; round < 500; ++round) {  // stops at different times relative to the wait
         std::stop_source stop;
         std::atomic<bool> waiting = false, entered = true;
         std::thread background([&] {
             waiting = true;
-            entered = admission.acquire_background(stop.get_token()) != nullptr;
+            entered = admission.acquire_background(client, stop.get_token()) != nullptr;
         });
         if (round % 2) wait_until([&] { return waiting.load(); });
         if (round % 4 == 3) std::this_thread::sleep_for(std::chrono::microseconds(round));
@@ -143,35 +151,35 @@ TEST_CASE(
     "computes") {
     for (int round = 0; round < 200; ++round) {
         AdmissionControl admission({.running = 1, .sweeps = 2});
-        const AdmissionControl::SweepSlot sweep_slot = admission.acquire_sweep();
+        const AdmissionControl::SweepSlot sweep_slot = admission.acquire_sweep(client);
         CHECK(sweep_slot);
-        AdmissionControl::Slot held = admission.acquire();
+        AdmissionControl::Slot held = admission.acquire(client);
         const std::stop_source stop;
         std::atomic<int> waiting = 0, without = 0;
         std::vector<std::thread> background;
         for (int k = 0; k < 3; ++k)
             background.emplace_back([&] {
                 ++waiting;
-                if (!admission.acquire_background(stop.get_token())) ++without;
+                if (!admission.acquire_background(client, stop.get_token())) ++without;
             });
         wait_until([&] { return waiting == 3; });
         admission.stop_sweeps();
         for (std::thread& thread : background) thread.join();
         CHECK(without == 3);
         CHECK(admission.sweeps_stopped());
-        CHECK(!admission.acquire_sweep());
+        CHECK(!admission.acquire_sweep(client));
         held.reset();
-        CHECK(admission.acquire());
+        CHECK(admission.acquire(client));
     }
 }
 
 TEST_CASE("a sweep's slot can be acquired again after its release") {
     AdmissionControl admission({.sweeps = 1});
-    AdmissionControl::SweepSlot sweep_slot = admission.acquire_sweep();
+    AdmissionControl::SweepSlot sweep_slot = admission.acquire_sweep(client);
     CHECK(sweep_slot);
-    CHECK(!admission.acquire_sweep());
+    CHECK(!admission.acquire_sweep(client));
     sweep_slot.reset();
-    CHECK(admission.acquire_sweep());
+    CHECK(admission.acquire_sweep(client));
 }
 
 TEST_CASE("no wake-up and no slot is lost when foreground and background work compete") {
@@ -188,10 +196,11 @@ TEST_CASE("no wake-up and no slot is lost when foreground and background work co
     for (int k = 0; k < 3; ++k)
         threads.emplace_back([&] {
             for (int round = 0; round < rounds; ++round) {
-                AdmissionControl::Slot slot = admission.acquire_background(stop.get_token());
+                AdmissionControl::Slot slot =
+                    admission.acquire_background(client, stop.get_token());
                 if (admission.foreground_waits()) {
                     slot.reset();
-                    slot = admission.acquire_background(stop.get_token());
+                    slot = admission.acquire_background(client, stop.get_token());
                 }
                 if (!slot) continue;
                 compute();
@@ -201,7 +210,7 @@ TEST_CASE("no wake-up and no slot is lost when foreground and background work co
     for (int k = 0; k < 3; ++k)
         threads.emplace_back([&] {
             for (int round = 0; round < rounds; ++round)
-                if (const AdmissionControl::Slot slot = admission.acquire()) {
+                if (const AdmissionControl::Slot slot = admission.acquire(client)) {
                     compute();
                     ++foreground_done;
                 }
@@ -226,13 +235,13 @@ TEST_CASE("without a free slot foreground work starts in grace periods, up to th
     const AdmissionControl::Attempt fourth = admission.try_acquire();
     CHECK(!fourth.slot);
     CHECK(!fourth.grace);
-    CHECK(!admission.acquire());
+    CHECK(!admission.acquire(client));
     CHECK(admission.load().running == 1);
 }
 
 TEST_CASE("the number of grace periods per slot is limited; one that ends allows another") {
     AdmissionControl admission({.running = 1, .waiting = 1000});
-    const AdmissionControl::Slot slot = admission.acquire();
+    const AdmissionControl::Slot slot = admission.acquire(client);
     std::vector<AdmissionControl::Attempt> begun;
     for (AdmissionControl::Attempt try_acquire = admission.try_acquire(); try_acquire.grace;
          try_acquire = admission.try_acquire())
@@ -244,19 +253,20 @@ TEST_CASE("the number of grace periods per slot is limited; one that ends allows
 
 TEST_CASE("work whose grace period is over joins a full queue, at its end") {
     AdmissionControl admission({.running = 1, .waiting = 2});
-    AdmissionControl::Slot slot = admission.acquire();
+    AdmissionControl::Slot slot = admission.acquire(client);
     AdmissionControl::Attempt try_acquire = admission.try_acquire();
     REQUIRE(try_acquire.grace);
     std::atomic<bool> first_entered = false, second_entered = false;
-    std::thread first([&] { first_entered = admission.acquire() != nullptr; });
+    std::thread first([&] { first_entered = admission.acquire(client) != nullptr; });
     wait_until([&] { return admission.load().waiting == 1; });
-    CHECK(!admission.acquire());
+    CHECK(!admission.acquire(client));
     std::thread second([&] {
-        const AdmissionControl::Slot own = admission.acquire({}, std::move(try_acquire.grace));
+        const AdmissionControl::Slot own =
+            admission.acquire(client, {}, std::move(try_acquire.grace));
         second_entered = own && first_entered;
     });
     wait_until([&] { return admission.load().waiting == 2; });
-    CHECK(!admission.acquire());
+    CHECK(!admission.acquire(client));
     slot.reset();
     first.join();
     second.join();
@@ -266,9 +276,9 @@ TEST_CASE("work whose grace period is over joins a full queue, at its end") {
 
 TEST_CASE("a permit lasts for a grace period without a slot, then waits for one, or gives up") {
     AdmissionControl admission({.running = 1});
-    AdmissionControl::Slot slot = admission.acquire();
+    AdmissionControl::Slot slot = admission.acquire(client);
     std::atomic<bool> left = false;
-    Permit permit(admission, [&] { return left.load(); }, true);
+    Permit permit(admission, client, [&] { return left.load(); }, true);
     REQUIRE(permit);
     CHECK(admission.load().waiting == 0);
     std::atomic<bool> renewed = false;
@@ -283,7 +293,7 @@ TEST_CASE("a permit lasts for a grace period without a slot, then waits for one,
     CHECK(permit.waited().count() > 0);
     CHECK(admission.load().running == 1);
 
-    Permit other(admission, [&] { return left.load(); }, true);
+    Permit other(admission, client, [&] { return left.load(); }, true);
     left = true;
     while (other.renew()) {}
     CHECK(!other);
@@ -292,11 +302,62 @@ TEST_CASE("a permit lasts for a grace period without a slot, then waits for one,
 
 TEST_CASE("a permit without a grace period waits for a slot") {
     AdmissionControl admission({.running = 1, .waiting = 0});
-    AdmissionControl::Slot slot = admission.acquire();
-    CHECK(!Permit(admission, {}, true));
-    CHECK(!Permit(admission, {}, false));
+    AdmissionControl::Slot slot = admission.acquire(client);
+    CHECK(!Permit(admission, client, {}, true));
+    CHECK(!Permit(admission, client, {}, false));
     slot.reset();
-    Permit permit(admission, {}, false);
+    Permit permit(admission, client, {}, false);
     CHECK(permit.renew());
     CHECK(admission.load().running == 1);
+}
+
+TEST_CASE("clients take turns, whatever the number of their requests") {
+    AdmissionControl admission({.running = 1, .waiting = 10});
+    AdmissionControl::Slot slot = admission.acquire("greedy");
+    std::mutex mutex;
+    std::string order;
+    std::vector<std::thread> threads;
+    const auto queue = [&](const std::string& name) {
+        const std::size_t before = admission.load().waiting;
+        threads.emplace_back([&, name] {
+            const AdmissionControl::Slot own = admission.acquire(name);
+            const std::lock_guard lock(mutex);
+            order += name[0];
+        });
+        wait_until([&] { return admission.load().waiting == before + 1; });
+    };
+    for (int i = 0; i < 4; ++i) queue("greedy");
+    for (int i = 0; i < 2; ++i) queue("modest");
+    slot.reset();
+    for (std::thread& thread : threads) thread.join();
+    // The greedy client has had a turn.
+    CHECK(order == "mgmggg");
+}
+
+TEST_CASE("a client whose turn is earlier displaces the last request of a full queue") {
+    AdmissionControl admission({.running = 1, .waiting = 3});
+    AdmissionControl::Slot slot = admission.acquire("greedy");
+    std::atomic<int> refused = 0, served = 0;
+    std::vector<std::thread> threads;
+    for (std::size_t i = 0; i < 3; ++i) {
+        threads.emplace_back([&] { ++(admission.acquire("greedy") ? served : refused); });
+        wait_until([&] { return admission.load().waiting == i + 1; });
+    }
+    CHECK(!admission.acquire("greedy"));
+    threads.emplace_back([&] { ++(admission.acquire("modest") ? served : refused); });
+    wait_until([&] { return refused == 1; });
+    slot.reset();
+    for (std::thread& thread : threads) thread.join();
+    CHECK(served == 3);
+}
+
+TEST_CASE("one client cannot have all sweeps") {
+    AdmissionControl admission({.running = 1, .waiting = 1, .sweeps = 3});
+    std::vector<AdmissionControl::SweepSlot> slots;
+    slots.push_back(admission.acquire_sweep("greedy"));
+    slots.push_back(admission.acquire_sweep("greedy"));
+    CHECK(!admission.acquire_sweep("greedy"));
+    CHECK(admission.acquire_sweep("modest"));
+    slots.pop_back();
+    CHECK(admission.acquire_sweep("greedy"));
 }

@@ -57,7 +57,7 @@ bool warns_of(const Json& answer, const std::string& text) {
 
 TEST_CASE("simulations and manifolds are refused while the queue for computing is full") {
     AdmissionControl admission({.running = 1, .waiting = 0});
-    const AdmissionControl::Slot taken = admission.acquire();
+    const AdmissionControl::Slot taken = admission.acquire("");
     for (const char* path : {"/v1/simulate", "/v1/manifold"})
         for (const char* method : {"GET", "POST"}) {
             CAPTURE(path);
@@ -199,7 +199,7 @@ TEST_CASE("a stream ends when its client leaves, and releases its slot") {
     Client client(20000);
     CHECK_FALSE(response.stream(client));
     CHECK(client.text.size() < 40000);
-    CHECK(admission.acquire());
+    CHECK(admission.acquire(""));
 }
 
 TEST_CASE("a started answer is finished while the server prepares to stop") {

@@ -98,7 +98,7 @@ test("answers that are not read give their memory to others", async (t) => {
 });
 
 test("sweeps that are not read give their places to others", async (t) => {
-  const {url, accepted} = await serviceWith(t, ["--sweeps", "4"], 4, "/v1/sweep", sweep);
+  const {url, accepted} = await serviceWith(t, ["--sweeps", "5"], 4, "/v1/sweep", sweep);
   assert.equal(accepted, 4);
   await until(async () => {
     const answer = await fetched(url, "/v1/sweep", {...sweep, cycles: 40});

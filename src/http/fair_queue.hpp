@@ -1,0 +1,91 @@
+// A queue in which clients take turns (start-time fair queueing with equal costs): the first entries
+// of all clients, then their second ones, and so on; in order of arrival among equals.
+#pragma once
+
+#include <algorithm>
+#include <cstddef>
+#include <iterator>
+#include <list>
+#include <map>
+#include <optional>
+#include <string>
+#include <utility>
+
+namespace vines::http {
+
+template <class T>
+class FairQueue {
+public:
+    bool empty() const { return entries_.empty(); }
+    std::size_t size() const { return entries_.size(); }
+
+    void push(const std::string& client, T value) {
+        const long turn = last_turns_[client] = next_turn(client);
+        const auto later = std::find_if(entries_.begin(), entries_.end(), [turn](const Entry& e) {
+            return e.turn > turn;
+        });
+        entries_.insert(later, {client, turn, std::move(value)});
+    }
+    /// True if an entry of this client would come before the last one.
+    bool precedes_last(const std::string& client) const {
+        return !empty() && next_turn(client) < entries_.back().turn;
+    }
+    T pop_last() { return take(std::prev(entries_.end())); }
+    /// The first entry whose client may(client); nothing if there is none.
+    template <class May>
+    std::optional<T> pop(const May& may) {
+        const auto found = std::find_if(
+            entries_.begin(), entries_.end(), [&may](const Entry& e) { return may(e.client); });
+        if (found == entries_.end()) return std::nullopt;
+        now_ = std::max(now_, found->turn);
+        T value = std::move(found->value);
+        entries_.erase(found);
+        std::erase_if(last_turns_, [this](const auto& last) { return last.second < now_; });
+        return value;
+    }
+    std::optional<T> pop() {
+        return pop([](const std::string&) { return true; });
+    }
+    void remove(const T& value) {
+        const auto found = std::find_if(
+            entries_.begin(), entries_.end(), [&value](const Entry& e) { return e.value == value; });
+        if (found != entries_.end()) take(found);
+    }
+    /// Calls visit(value) for each entry.
+    template <class Visit>
+    void for_each(const Visit& visit) const {
+        for (const Entry& entry : entries_) visit(entry.value);
+    }
+    /// True if an entry's client may(client).
+    template <class May>
+    bool has(const May& may) const {
+        return std::any_of(
+            entries_.begin(), entries_.end(), [&may](const Entry& e) { return may(e.client); });
+    }
+
+private:
+    struct Entry {
+        std::string client;
+        long turn = 0;
+        T value;
+    };
+
+    long next_turn(const std::string& client) const {
+        const auto last = last_turns_.find(client);
+        return last == last_turns_.end() ? now_ : std::max(now_, last->second + 1);
+    }
+    /// Removes an entry that had no turn.
+    T take(typename std::list<Entry>::iterator entry) {
+        const auto last = last_turns_.find(entry->client);
+        if (last != last_turns_.end() && last->second == entry->turn) --last->second;
+        T value = std::move(entry->value);
+        entries_.erase(entry);
+        return value;
+    }
+
+    std::list<Entry> entries_;                // in order of their turns
+    std::map<std::string, long> last_turns_;  // by client, those from now_ on
+    long now_ = 0;                            // turn of the last entry that had one
+};
+
+}  // namespace vines::http

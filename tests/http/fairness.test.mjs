@@ -1,0 +1,96 @@
+// One client with many connections leaves their share to the others. The clients here are those
+// that a trusted proxy names.
+import assert from "node:assert/strict";
+import {mkdtemp, writeFile} from "node:fs/promises";
+import {tmpdir} from "node:os";
+import {join} from "node:path";
+import {test} from "node:test";
+import {startService} from "../service.mjs";
+import {connect, statuses, until} from "./raw.mjs";
+
+const post = (path, body, more) =>
+  `POST ${path} HTTP/1.1\r\nHost: localhost\r\n${more}\r\nContent-Length: ${body.length}\r\n\r\n${body}`;
+const from = (address) => `X-Forwarded-For: 198.51.100.7, ${address}`;
+const run = '{"tau_end": 20000, "include": ["exponents"]}';
+const streamed = '{"tau_end": 200000, "include": ["impacts"], "max_impacts": 200000}';
+const trust = ["--trust-proxy", "127.0.0.1"];
+
+const simulate = (url, headers) =>
+  fetch(`${url}/v1/simulate`, {method: "POST", body: run, headers});
+
+/** A service, and the connections of one client that sends the same request again and again. */
+async function withGreedy(t, args, connections, body, header = from("192.0.2.1")) {
+  const one = await startService(args);
+  const sockets = [];
+  t.after(async () => {
+    for (const {socket} of sockets) socket.destroy();
+    await one.stop();
+  });
+  for (let i = 0; i < connections; ++i) {
+    const connection = await connect(one.url);
+    connection.socket.write(post("/v1/simulate", body, header).repeat(20));
+    sockets.push(connection);
+  }
+  await until(() => sockets.some(({text}) => statuses(text()).length > 0));
+  return one;
+}
+
+test("requests of another client are all answered while one client fills the queue", async (t) => {
+  const one = await withGreedy(t, [...trust, "--compute-queue", "8"], 60, run);
+  for (let i = 0; i < 5; ++i) {
+    const answer = await simulate(one.url, {"X-Forwarded-For": "192.0.2.2"});
+    await answer.text();
+    assert.equal(answer.status, 200);
+  }
+});
+
+test("so are they while it has more streams than there are threads", async (t) => {
+  const one = await withGreedy(t, [...trust, "--threads", "8"], 40, streamed);
+  for (let i = 0; i < 5; ++i) {
+    const answer = await simulate(one.url, {"X-Forwarded-For": "192.0.2.2"});
+    await answer.text();
+    assert.equal(answer.status, 200);
+  }
+});
+
+test("an API key is a client, wherever its requests come from; the log names it, not its secret", async (t) => {
+  const keys = join(await mkdtemp(join(tmpdir(), "vines-")), "keys");
+  const greedy = "the-key-of-a-greedy-client";
+  const modest = "the-key-of-a-modest-client";
+  await writeFile(keys, `${greedy}\n${modest}\n`);
+  const one = await withGreedy(
+    t,
+    ["--compute-queue", "8", "--api-key-file", keys],
+    60,
+    run,
+    `Authorization: Bearer ${greedy}`,
+  );
+  const answer = await simulate(one.url, {Authorization: `Bearer ${modest}`});
+  await answer.text();
+  assert.equal(answer.status, 200);
+  // printf %s KEY | sha256sum | cut -c1-8
+  await until(() => one.log().includes('"key":"53525422"'));
+  assert.ok(!one.log().includes(greedy) && !one.log().includes(modest));
+});
+
+test("one client has a limited number of connections; beyond it its own idle ones are closed", async (t) => {
+  const one = await startService(["--client-connections", "3"]);
+  const other = await connect(one.url, {localAddress: "127.0.0.2"});
+  const own = [];
+  t.after(async () => {
+    for (const {socket} of [other, ...own]) socket.destroy();
+    await one.stop();
+  });
+  let ended = 0;
+  for (let i = 0; i < 4; ++i) {
+    const connection = await connect(one.url);
+    connection.ended.then(() => ++ended);
+    connection.socket.write("GET /livez HTTP/1.1\r\nHost: localhost\r\n\r\n");
+    own.push(connection);
+    await until(() => statuses(connection.text()).length === 1);
+  }
+  await until(() => ended === 1);
+  other.socket.write("GET /livez HTTP/1.1\r\nHost: localhost\r\n\r\n");
+  await until(() => statuses(other.text()).length === 1);
+  assert.equal(ended, 1);
+});
