@@ -5,28 +5,26 @@ const sha256 = (bytes) => createHash("sha256").update(bytes).digest("hex");
 const isObject = (value) => value !== null && typeof value === "object" && !Array.isArray(value);
 const holdsObject = (value) => isObject(value) || (Array.isArray(value) && value.some(holdsObject));
 
-/** The bytes of a value without objects, in pieces. */
-const form = (value) => {
+/** The form of a value, in pieces. */
+const form = (value, isInList = false) => {
   if (value === null) return ["n"];
   if (typeof value === "boolean") return [value ? "t" : "f"];
   if (typeof value === "string") return [JSON.stringify(value)];
-  if (Array.isArray(value)) return ["[", ...value.flatMap(form), "]"];
-  if (isObject(value)) return ["{}"];
-  const bytes = Buffer.alloc(9, "d");
-  bytes.writeDoubleLE(value + 0, 1);
-  return [bytes];
+  if (typeof value === "number") {
+    const bytes = Buffer.alloc(9, "d");
+    bytes.writeDoubleLE(value + 0, 1);
+    return [bytes];
+  }
+  if (isObject(value)) {
+    const names = Object.keys(value).sort((a, b) => Buffer.compare(Buffer.from(a), Buffer.from(b)));
+    return ["{", ...names.flatMap((name) => [form(name), form(value[name])].flat()), "}"];
+  }
+  const hashed = !isInList && !holdsObject(value);
+  const pieces = ["[", ...value.flatMap((entry) => form(entry, !holdsObject(value))), "]"];
+  const bytes = joined(pieces);
+  return hashed && bytes.length > 64 ? [sha256(bytes)] : [bytes];
 };
 const joined = (pieces) => Buffer.concat(pieces.map((piece) => Buffer.from(piece)));
 
-function* entries(value, path) {
-  if (isObject(value) ? Object.keys(value).length > 0 : holdsObject(value))
-    for (const [name, part] of Object.entries(value)) yield* entries(part, `${path}/${name}`);
-  else yield [path, Array.isArray(value) ? sha256(joined(form(value))) : joined(form(value))];
-}
-
 /** The hash of an answer without its provenance. */
-export const contentHash = ({provenance, ...answer}) => {
-  const all = [...entries(answer, "")].map(([path, bytes]) => [Buffer.from(path), bytes]);
-  all.sort(([one], [other]) => Buffer.compare(one, other));
-  return sha256(joined(all.flatMap(([path, bytes]) => [path, "=", bytes, "\n"])));
-};
+export const contentHash = ({provenance, ...answer}) => sha256(joined(form(answer)));

@@ -1,7 +1,5 @@
 #include "api/provenance.hpp"
 
-#include <fmt/format.h>
-#include <fmt/ranges.h>
 #include <openssl/evp.h>
 
 #include <algorithm>
@@ -27,6 +25,9 @@ namespace {
 
 constexpr std::string_view before_provenance = ",\"provenance\":";
 
+// A longer form of a list is replaced by its hash, which is as long.
+constexpr std::size_t longest_form = 64;
+
 // Up to 2^53 every integer is a double.
 constexpr double largest_whole = 9007199254740992;
 
@@ -46,7 +47,11 @@ public:
         unsigned int size = 0;
         if (EVP_DigestFinal_ex(context_.get(), bytes.data(), &size) != 1)
             throw std::runtime_error("libcrypto: SHA-256");
-        return fmt::format("{:02x}", fmt::join(bytes.data(), bytes.data() + size, ""));
+        std::string digits;
+        for (unsigned int k = 0; k < size; ++k)
+            for (const int half : {bytes[k] >> 4, bytes[k] & 15})
+                digits += "0123456789abcdef"[half];
+        return digits;
     }
 
 private:
@@ -65,6 +70,17 @@ bool holds_object(const Json& value) {
            (value.is_array() && std::any_of(value.begin(), value.end(), holds_object));
 }
 
+std::size_t packed_lists(const Json& value) {
+    std::size_t count = value.is_binary();
+    if (value.is_object() || holds_object(value))
+        for (const Json& part : value) count += packed_lists(part);
+    return count;
+}
+
+void put_form(const std::string& text, std::string& to) {
+    if (needs_no_escape(text)) to.append(1, '"').append(text).append(1, '"');
+    else to += Json(text).dump();
+}
 void put_form(double number, std::string& to) {
     if (!std::isfinite(number)) {
         to += 'n';
@@ -86,84 +102,131 @@ void put_form(const std::array<Entry, 4>& row, std::string& to) {
 
 /// The form of a value without objects and packed lists.
 void put_form(const Json& value, std::string& to) {
-    if (value.is_null()) return put_form(std::numeric_limits<double>::quiet_NaN(), to);
-    if (value.is_boolean()) return put_form(value.get<bool>(), to);
-    if (value.is_number()) return put_form(value.get<double>(), to);
-    if (value.is_string()) {
-        const auto& text = value.get_ref<const std::string&>();
-        to += needs_no_escape(text) ? '"' + text + '"' : value.dump();
-        return;
+    switch (value.type()) {
+        case Json::value_t::null: to += 'n'; return;
+        case Json::value_t::boolean: return put_form(value.get<bool>(), to);
+        case Json::value_t::string: return put_form(value.get_ref<const std::string&>(), to);
+        case Json::value_t::array:
+            to += '[';
+            for (const Json& entry : value) put_form(entry, to);
+            to += ']';
+            return;
+        case Json::value_t::object:
+        case Json::value_t::binary: throw std::logic_error("a packed list in a list");
+        default: return put_form(value.get<double>(), to);
     }
-    if (value.is_object()) {  // empty
-        to += "{}";
-        return;
-    }
-    if (value.is_binary()) throw std::logic_error("a packed list in a list");
-    to += '[';
-    for (const Json& entry : value) put_form(entry, to);
-    to += ']';
 }
 
-std::string list_hash(const Json& list) {
-    std::string form;
-    put_form(list, form);
-    return sha256(form);
-}
+/// A list's form, or its hash if the form is long.
+class ListForm {
+public:
+    template <class Entry>
+    void add(const Entry& entry) {
+        put_form(entry, form_);
+        if (form_.size() >= large) flush();
+    }
+    std::string end() {
+        form_ += ']';
+        if (!hash_ && form_.size() <= longest_form) return std::move(form_);
+        flush();
+        return hash_->end();
+    }
+
+private:
+    static constexpr std::size_t large = 16384;
+
+    void flush() {
+        if (!hash_) hash_.emplace();
+        hash_->add(form_);
+        form_.clear();
+    }
+
+    std::string form_ = "[";
+    std::optional<Sha256> hash_;
+};
 
 template <class Entry>
-std::string list_hash(std::span<const std::uint8_t> bytes) {
-    constexpr std::size_t large = 16384;
-    Sha256 hash;
-    std::string form = "[";
+std::string list_form(std::span<const std::uint8_t> bytes) {
+    ListForm form;
     for (std::size_t at = 0; at < bytes.size(); at += sizeof(Entry)) {
         Entry entry;
         std::memcpy(&entry, bytes.data() + at, sizeof entry);
-        put_form(entry, form);
-        if (form.size() < large) continue;
-        hash.add(form);
-        form.clear();
+        form.add(entry);
     }
-    hash.add(form + "]");
-    return hash.end();
+    return form.end();
 }
 
-std::string list_hash(const PackedList& list) {
+std::string list_form(const PackedList& list) {
     switch (list.packing) {
-        case Packed::quadruples: return list_hash<Quadruple>(list.bytes);
-        case Packed::matrices: return list_hash<MatrixByRows>(list.bytes);
-        case Packed::integers: return list_hash<int>(list.bytes);
-        case Packed::flags: return list_hash<bool>(list.bytes);
-        default: return list_hash<double>(list.bytes);
+        case Packed::quadruples: return list_form<Quadruple>(list.bytes);
+        case Packed::matrices: return list_form<MatrixByRows>(list.bytes);
+        case Packed::integers: return list_form<int>(list.bytes);
+        case Packed::flags: return list_form<bool>(list.bytes);
+        default: return list_form<double>(list.bytes);
     }
+}
+
+std::string list_form(const Json& list) {
+    ListForm form;
+    for (const Json& entry : list) form.add(entry);
+    return form.end();
 }
 
 }  // namespace
 
-ContentHash::ContentHash(const Json& answer) { add_entries(answer, ""); }
+ContentHash::ContentHash(const Json& answer) { put(answer, 0); }
 
-void ContentHash::add_entries(const Json& value, const std::string& path) {
-    if (value.is_object() && !value.empty()) {
-        for (const auto& [name, member] : value.items()) add_entries(member, path + "/" + name);
-    } else if (value.is_array() && holds_object(value)) {
-        for (std::size_t k = 0; k < value.size(); ++k)
-            add_entries(value[k], path + "/" + std::to_string(k));
-    } else if (std::string& form = entries_[path]; value.is_binary()) {
-        lists_.push_back(&form);
-    } else if (value.is_array()) {
-        form = list_hash(value);
-    } else {
-        put_form(value, form);
+void ContentHash::put(const Json& value, std::size_t list) {
+    if (value.is_object()) return put_object(value, list);
+    if (value.is_binary()) return places_.push_back({text_.size(), list});
+    if (!value.is_array()) return put_form(value, text_);
+    if (!holds_object(value)) {
+        text_ += list_form(value);
+        return;
     }
+    text_ += '[';
+    for (const Json& entry : value) {
+        put(entry, list);
+        list += packed_lists(entry);
+    }
+    text_ += ']';
 }
 
-void ContentHash::add(const PackedList& list) { *lists_.at(added_++) = list_hash(list); }
+void ContentHash::put_object(const Json& object, std::size_t list) {
+    struct Member {
+        const std::string* name;
+        const Json* value;
+        std::size_t list;
+    };
+    std::vector<Member> members;
+    members.reserve(object.size());
+    for (const auto& [name, value] : object.get_ref<const Json::object_t&>()) {
+        members.push_back({&name, &value, list});
+        list += packed_lists(value);
+    }
+    std::sort(members.begin(), members.end(), [](const Member& a, const Member& b) {
+        return *a.name < *b.name;
+    });
+    text_ += '{';
+    for (const Member& member : members) {
+        put_form(*member.name, text_);
+        put(*member.value, member.list);
+    }
+    text_ += '}';
+}
+
+void ContentHash::add(const PackedList& list) { lists_.push_back(list_form(list)); }
 
 std::string ContentHash::end() const {
     Sha256 hash;
-    for (const auto& [path, form] : entries_) {
-        hash.add(path);
-        hash.add("=" + form + "\n");
+    const std::string_view text = text_;
+    std::size_t done = 0;
+    for (const Place& place : places_) {
+        hash.add(text.substr(done, place.at - done));
+        hash.add(lists_.at(place.list));
+        done = place.at;
     }
+    hash.add(text.substr(done));
     return hash.end();
 }
 

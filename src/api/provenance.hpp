@@ -2,7 +2,6 @@
 #pragma once
 
 #include <cstddef>
-#include <map>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -30,11 +29,10 @@ Json canonical(const Json& request);
 std::string sha256(std::string_view text);
 
 /// SHA-256 of an answer's content, whatever the order of its keys and the spelling of its numbers
-/// and strings: of the lines PATH=FORM for each value that is neither an object nor a list of
-/// objects, in the order of their paths. docs/api.md, Provenance, has the definition.
+/// and strings: of a form of the value that docs/api.md, Provenance, defines.
 class ContentHash {
 public:
-    /// Hashes everything but packed lists.
+    /// Reads everything but packed lists.
     explicit ContentHash(const Json& answer);
     /// Adds the next packed list, in the order of the answer.
     void add(const PackedList& list);
@@ -42,11 +40,16 @@ public:
     std::string end() const;
 
 private:
-    void add_entries(const Json& value, const std::string& path);
+    /// `list`: the number of packed lists before the value.
+    void put(const Json& value, std::size_t list);
+    void put_object(const Json& object, std::size_t list);
 
-    std::map<std::string, std::string> entries_;
-    std::vector<std::string*> lists_;  // forms of the packed lists
-    std::size_t added_ = 0;            // of these
+    struct Place {
+        std::size_t at, list;
+    };
+    std::string text_;                ///< the form without packed lists
+    std::vector<Place> places_;       ///< of these
+    std::vector<std::string> lists_;  ///< their forms, in the order of the answer
 };
 
 /// The same for an answer whose lists are all in memory.
