@@ -4,8 +4,12 @@
 
 #include <algorithm>
 #include <chrono>
+#include <condition_variable>
 #include <functional>
+#include <list>
 #include <memory>
+#include <mutex>
+#include <optional>
 #include <utility>
 
 #include "api/cancellation.hpp"
@@ -80,12 +84,27 @@ constexpr std::size_t large = 16 << 20;
 // Largest body that is read in a small part of the grace period, bytes.
 constexpr std::size_t max_body_in_grace = 16 << 10;
 
-// One number per four characters of the largest default body. A measured record has at least eight
-// characters per number. These take at most 300 MB while they are read.
-constexpr std::size_t most_numbers = 16'000'000;
+// Bodies up to this size are read at any time, by as many requests as have a slot; of the larger
+// ones so many that they have no more bytes than this together, or one. While they are read and
+// computed they take up to fifteen times their size, one of the largest up to 340 MB. Bytes.
+constexpr std::size_t immediate_body = 1 << 20, bodies_at_once = 16 << 20;
+
+// Larger bodies that wait, and their bytes; each occupies a worker.
+constexpr std::size_t most_waiting_bodies = 32, most_waiting_bytes = 256 << 20;
+
+// One number per eight characters of the largest default body: a measured record has no fewer. They
+// take 64 MB while they are read. To identify a record takes up to 120 bytes for each sample.
+constexpr std::size_t most_numbers = 8'000'000;
 
 // Numbers outside the record: impact_times_s can list every impact in it.
 constexpr std::size_t most_beside = 1'000'000;
+
+// The answer lists the impacts in more than 250 bytes each: the default --answer-limit permits half
+// a million.
+constexpr std::size_t most_impacts = 500'000;
+
+// Impacts fitted to a record: 25 minutes at 13 per second. A fit takes 2 kB for each.
+constexpr std::size_t most_fitted = 20'000;
 
 // Arrays, objects and names: a start of a sweep is an object with up to six names, and there are at
 // most as many starts as points. All other fields together have a few thousand.
@@ -96,6 +115,67 @@ constexpr std::size_t max_hash = 256;
 
 /// Ends the request of a client that has left; only the log shows its status.
 [[noreturn]] void throw_client_left() { throw Problem(499, "the client has left"); }
+
+/// The right to read a large body and to compute with it, in order of arrival. It comes before the
+/// permit to compute, so that waiting requests hold no slot.
+class BodyTurn {
+public:
+    /// Waits for at most `seconds`. Problem 503 if too many wait or the time is over.
+    BodyTurn(const Request& r, const AdmissionControl& admission, double seconds)
+        : bytes_(r.body.size() > immediate_body ? r.body.size() : 0) {
+        if (bytes_ == 0) return;
+        const auto deadline = Stopwatch::Clock::now() + std::chrono::duration<double>(seconds);
+        std::unique_lock lock(mutex_);
+        std::size_t bytes = 0;
+        for (const BodyTurn* other : waiting_) bytes += other->bytes_;
+        if (!waiting_.empty() &&
+            (waiting_.size() >= most_waiting_bodies || bytes + bytes_ > most_waiting_bytes))
+            refuse();
+        const auto place = waiting_.insert(waiting_.end(), this);
+        while (!may_begin()) {
+            changed_.wait_for(lock, client_check_interval);
+            if (may_begin()) break;
+            lock.unlock();
+            const bool left = r.left(), late = Stopwatch::Clock::now() > deadline;
+            lock.lock();
+            if (!left && !late && !admission.all_stopped()) continue;
+            waiting_.erase(place);
+            changed_.notify_all();
+            if (left) throw_client_left();
+            if (admission.all_stopped()) throw *stopping_refusal().problem;
+            refuse();
+        }
+        waiting_.erase(place);
+        in_work_ += bytes_;
+        changed_.notify_all();
+    }
+    ~BodyTurn() { end(); }
+    BodyTurn(const BodyTurn&) = delete;
+    BodyTurn& operator=(const BodyTurn&) = delete;
+
+    void end() {
+        if (bytes_ == 0) return;
+        trim_memory();
+        const std::lock_guard lock(mutex_);
+        in_work_ -= std::exchange(bytes_, 0);
+        changed_.notify_all();
+    }
+
+private:
+    bool may_begin() const {
+        return waiting_.front() == this && (in_work_ == 0 || in_work_ + bytes_ <= bodies_at_once);
+    }
+    [[noreturn]] static void refuse() {
+        throw Problem::unavailable(
+            "memory", "other large bodies are being read; try again in a second");
+    }
+
+    std::size_t bytes_;
+    static inline std::mutex mutex_;
+    static inline std::condition_variable changed_;
+    static inline std::list<const BodyTurn*> waiting_;
+    static inline std::size_t in_work_ = 0;
+};
 
 /// Waits for the request's permit to compute; Problem 503 if the queue is full.
 Permit permit_for(const Request& request, AdmissionControl& admission, Stopwatch& watch) {
@@ -108,12 +188,13 @@ Permit permit_for(const Request& request, AdmissionControl& admission, Stopwatch
     return permit;
 }
 
-api::ReadLimits reading_of(const RouteOptions& options, const api::Stop& stop) {
+api::ReadLimits reading_of(const api::Stop& stop, std::size_t most_containers = least_parts) {
     return {
         .gives_up = stop.requested,
         .most_numbers = most_numbers,
         .most_other_values = most_beside,
-        .most_containers = std::max(least_parts, parts_of_a_point * options.sweep_points)};
+        .most_containers = most_containers,
+        .most_impacts = most_impacts};
 }
 
 /// Calls read(). If it is stopped, nothing is computed that could be returned: a Problem.
@@ -133,10 +214,12 @@ auto read_in_time(const Request& r, const Service& service, const Read& read) {
     }
 }
 
-Json body_of(const Request& r, const api::ReadLimits& reading) {
+Json body_of(
+    const Request& r, const api::ReadLimits& reading,
+    api::Columns columns = api::Columns::as_values) {
     if (!r.query.empty())
         throw Problem(400, "a POST takes its fields from the body; the query must be empty");
-    return api::parse_object(r.body, reading);
+    return api::parse_object(r.body, reading, columns);
 }
 
 /// The fields of an identification's CSV file are in the query, like those of a GET.
@@ -147,8 +230,9 @@ api::AnswerRequest asked(const Request& r, const api::ReadLimits& reading) {
     const api::FieldTable& table = identifies                 ? api::identify_fields()
                                    : r.path == "/v1/manifold" ? api::manifold_fields()
                                                               : api::simulate_fields();
-    Json fields =
-        r.method == "POST" && !is_columns ? body_of(r, reading) : api::from_query(table, r.query);
+    const api::Columns columns = identifies ? api::Columns::packed : api::Columns::as_values;
+    Json fields = r.method == "POST" && !is_columns ? body_of(r, reading, columns)
+                                                    : api::from_query(table, r.query);
     return api::read_answer_request(r.path, std::move(fields), {r.body, is_columns}, reading);
 }
 
@@ -186,11 +270,13 @@ std::string encoded(
 }  // namespace
 
 Response answer(const Request& r, const Service& service, Stopwatch& watch) {
-    Permit permit = permit_for(r, service.admission, watch);
     const RouteOptions& options = service.options;
+    BodyTurn turn(r, service.admission, options.deadline);
+    Permit permit = permit_for(r, service.admission, watch);
     const api::Stop stop = stop_conditions(options.deadline, r, service.admission, permit);
     api::AnswerRequest request =
-        read_in_time(r, service, [&] { return asked(r, reading_of(options, stop)); });
+        read_in_time(r, service, [&] { return asked(r, reading_of(stop)); });
+    std::string().swap(r.body);
     std::optional<api::Format>& format = request.form.format;
     if (!format) format = accepted_format(r.accept);
     const std::string provenance = api::describe(request.provenance, nullptr).dump();
@@ -199,8 +285,10 @@ Response answer(const Request& r, const Service& service, Stopwatch& watch) {
         return {.status = 304, .tag = tag, .headers = {varies}};
     watch.lap("parse", permit.waited());
     api::Answer answer = api::compute_answer(
-        std::move(request),
-        {.stop = stop, .most_bytes = options.answer_limit, .most_kept = options.most_kept_impacts});
+        std::move(request), {.stop = stop,
+                             .most_bytes = options.answer_limit,
+                             .most_kept = options.most_kept_impacts,
+                             .most_fitted = most_fitted});
     const bool renewed = permit.renew();
     watch.lap("solve", permit.waited());
     if (!renewed) throw_client_left();
@@ -212,6 +300,7 @@ Response answer(const Request& r, const Service& service, Stopwatch& watch) {
     }
     std::string bytes = encoded(
         std::move(answer), *format, options.answer_limit, provenance.size() + max_hash, r.left);
+    turn.end();
     if (stop.requested()) tag = {};  // a repeated request can get further
     Response response{
         .content_type = api::name_of(*format).media_type,
@@ -224,11 +313,13 @@ Response answer(const Request& r, const Service& service, Stopwatch& watch) {
 }
 
 Response sweep(const Request& r, const Service& service, Stopwatch& watch) {
-    Permit permit = permit_for(r, service.admission, watch);  // for reading the request
     const RouteOptions& options = service.options;
+    const BodyTurn turn(r, service.admission, options.deadline);
+    Permit permit = permit_for(r, service.admission, watch);  // for reading the request
     const api::Stop stop = stop_conditions(options.deadline, r, service.admission, permit);
     api::SweepRequest request = read_in_time(r, service, [&] {
-        return api::read_sweep_request(body_of(r, reading_of(options, stop)), options.sweep_points);
+        const std::size_t parts = std::max(least_parts, parts_of_a_point * options.sweep_points);
+        return api::read_sweep_request(body_of(r, reading_of(stop, parts)), options.sweep_points);
     });
     watch.lap("parse", permit.waited());
     return stream_sweep(
