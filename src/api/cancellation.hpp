@@ -53,6 +53,8 @@ struct ReadLimits {
     std::size_t most_other_values = any_number;
     /// Arrays, objects and names in them; about 100 bytes each.
     std::size_t most_containers = any_number;
+    /// Impacts of a list; they take 400 bytes each until the exponents are known.
+    std::size_t most_impacts = any_number;
 
     /// Returns a check for one pass through a text.
     CancelCheck check() const { return CancelCheck(gives_up, CancelCheck::steps_between_polls); }

@@ -46,6 +46,7 @@ public:
         rest_.remove_prefix(std::min(end + (two ? 2 : 1), rest_.size()));
         return line;
     }
+    std::size_t left() const { return rest_.size(); }  ///< bytes
 
 private:
     std::string_view rest_;
@@ -284,6 +285,10 @@ Csv parse_csv(std::string_view bytes, const ReadLimits& limits) {
             }
             csv.columns =
                 heading.columns(*line, cells_of(line->text, *separator).size(), *separator);
+            // Room for lines like this one: columns of a large record are not copied as they grow.
+            const std::size_t rows = lines.left() / (line->text.size() + 1) + 2;
+            for (CsvColumn& column : csv.columns) column.values.reserve(rows);
+            csv.lines.reserve(rows);
         } else if (comment_of(line->text)) {
             continue;
         }

@@ -17,6 +17,9 @@ namespace vines::api {
 
 namespace {
 
+// Members of an answer: more than there are. They are copied if their object grows.
+constexpr std::size_t most_parts = 20;
+
 /// The impacts that an answer lists: without the last ones of a chatter that ends in sticking.
 std::vector<IdentifiedImpact> listed(std::vector<IdentifiedImpact> impacts) {
     std::erase_if(impacts, [](const IdentifiedImpact& i) { return i.comes_to_rest; });
@@ -24,9 +27,14 @@ std::vector<IdentifiedImpact> listed(std::vector<IdentifiedImpact> impacts) {
 }
 
 Json describe_identified(const std::vector<IdentifiedImpact>& impacts) {
-    const std::vector<IdentifiedImpact> shown = listed(impacts);
-    Json j = describe(identified_wall_columns, shown);
-    j.update(describe(identified_columns, shown));
+    // A long list is copied only if it has to be.
+    const bool all = std::ranges::none_of(impacts, &IdentifiedImpact::comes_to_rest);
+    const std::vector<IdentifiedImpact> some =
+        all ? std::vector<IdentifiedImpact>() : listed(impacts);
+    const std::vector<IdentifiedImpact>& shown = all ? impacts : some;
+    Json j = describe(identified_wall_columns, shown), others = describe(identified_columns, shown);
+    make_room(j, others.size());
+    for (auto& [name, value] : others.get_ref<Json::object_t&>()) j[name] = std::move(value);
     return j;
 }
 
@@ -299,6 +307,12 @@ MeasurementResult watched_result(const IdentifyRequest& r, const IdentificationW
                 few.seen, r.measurement.threshold),
             {{"/threshold", r.measurement.threshold, Json::array({3, 1000}),
               "lower threshold, or give impact_times_s"}});
+    } catch (const TooManyImpacts&) {
+        throw Problem(
+            413, fmt::format(
+                     "the record shows more than {} impacts, this server's limit: send a shorter "
+                     "record or give a higher threshold",
+                     watch.most_impacts));
     } catch (const IdentificationStopped& at) {
         const std::size_t samples = r.measurement.record.tau.size();
         throw Problem(
@@ -326,6 +340,7 @@ Json identify_answer(const IdentifyRequest& r, const IdentificationWatch& watch)
     const Identification& found = result.found;
     const IdentifiedExponents& judged = result.judged;
     Json answer = {{"version", version()}, {"parameters", describe_system(used)}};
+    make_room(answer, most_parts);
     answer["parameters"]["derived"] = describe_derived(used);
     if (result.refined) {
         answer["signal"] = describe_signal(m, result, r.system.si->omega0());

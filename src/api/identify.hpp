@@ -34,8 +34,9 @@ IdentifyRequest read_identify_request(
 bool has_phase(const Json& impacts);
 
 /// Reads columns of impacts into the request's measurement; notes report fitted values. Problem 422
-/// for invalid columns; throws Cancelled.
-void read_impact_list(IdentifyRequest& request, Json impacts, CancelCheck& cancel);
+/// for invalid columns, Problem 413 for more than `most` impacts; throws Cancelled.
+void read_impact_list(
+    IdentifyRequest& request, Json impacts, std::size_t most, CancelCheck& cancel);
 
 /// Problem 422 if the record shows no impacts; Problem 413 naming the stage if `watch` stops it.
 Json identify_answer(const IdentifyRequest& request, const IdentificationWatch& watch = {});

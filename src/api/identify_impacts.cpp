@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "api/columns.hpp"
+#include "api/parse.hpp"
 #include "api/schema/check.hpp"
 #include "core/measurement/identified_impact.hpp"
 #include "core/motion/elementary.hpp"
@@ -28,8 +29,9 @@ const char* name_in(const Json& list, const Quantity& q) {
 
 class ImpactColumnReader {
 public:
-    ImpactColumnReader(const IdentifyRequest& r, const Json& given, CancelCheck& cancel)
+    ImpactColumnReader(const IdentifyRequest& r, Json& given, std::size_t most, CancelCheck& cancel)
         : given_(given),
+          most_(most),
           cancel_(cancel),
           omega0_(r.system.si ? std::optional(r.system.si->omega0()) : std::nullopt) {}
 
@@ -67,26 +69,34 @@ public:
 
 private:
     std::vector<double> values_of(const std::string& name, double factor, bool may_be_null) {
-        const Json& given = given_[name];
+        Json& given = given_[name];
         std::vector<double> values;
         if (!given.is_array()) {
             fail(name, nullptr, name + " is an array of numbers");
             return values;
         }
-        if (!first_.empty() && given.size() != size_)
-            fail(name, given.size(), name + " differs in length from " + first_);
-        if (first_.empty()) first_ = name, size_ = given.size();
-        values.reserve(given.size());
-        for (std::size_t i = 0; i < given.size(); ++i) {
+        const std::size_t size = entries_of(given);
+        if (size > most_)
+            throw Problem(
+                413, fmt::format(
+                         "the list has {} impacts, more than this server's limit of {}: send a "
+                         "part of them",
+                         size, most_));
+        if (!first_.empty() && size != size_)
+            fail(name, size, name + " differs in length from " + first_);
+        if (first_.empty()) first_ = name, size_ = size;
+        values.reserve(size);
+        take_entries(given, [&](std::size_t i, double number, const Json& value) {
             cancel_.step();
-            if (given[i].is_number()) values.push_back(factor * given[i].get<double>());
-            else if (may_be_null && given[i].is_null()) values.push_back(nan);
-            else fail(name + "/" + std::to_string(i), beginning_of(given[i]), "must be a number");
-        }
+            if (!std::isnan(number)) values.push_back(factor * number);
+            else if (may_be_null && value.is_null()) values.push_back(nan);
+            else fail(name + "/" + std::to_string(i), beginning_of(value), "must be a number");
+        });
         return values;
     }
 
-    const Json& given_;
+    Json& given_;
+    const std::size_t most_;
     CancelCheck& cancel_;
     const std::optional<double> omega0_;
     std::string first_;  // name and length of the first column
@@ -156,13 +166,13 @@ bool has_phase(const Json& impacts) {
     return impacts.is_object() && name_in(impacts, impact_list.phase);
 }
 
-void read_impact_list(IdentifyRequest& r, Json given, CancelCheck& cancel) {
+void read_impact_list(IdentifyRequest& r, Json given, std::size_t most, CancelCheck& cancel) {
     if (!given.is_object())
         refuse(
             {{"/impacts", nullptr, nullptr,
               "impacts is an object of columns, as in the answer of /v1/simulate"}});
-    ImpactColumnReader list(r, given, cancel);
-    const ListedColumns c = read_columns(list);
+    ImpactColumnReader list(r, given, most, cancel);
+    ListedColumns c = read_columns(list);
     given = nullptr;
     const Parameters& p = r.system.parameters;
     const auto flow = Flow::shared_free(p);
@@ -184,6 +194,7 @@ void read_impact_list(IdentifyRequest& r, Json given, CancelCheck& cancel) {
         if (!c.y_after.empty()) impact.y_dot_after = c.y_after[i];
         impacts.push_back(impact);
     }
+    c = {};
     take_motion(r, cancel);
     set_flight_velocities(p, impacts);
     complete_impacts(p, impacts, 0);

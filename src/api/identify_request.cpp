@@ -7,6 +7,7 @@
 
 #include "api/cancellation.hpp"
 #include "api/fitted_unknowns.hpp"
+#include "api/parse.hpp"
 #include "api/record_columns.hpp"
 #include "api/schema/check.hpp"
 
@@ -16,11 +17,8 @@ namespace {
 
 constexpr std::size_t fewest_samples = 100;
 
-/// Checks the samples; warns of gaps and clipping. `lines`: line numbers of the samples in a CSV
-/// text.
-void check_record(
-    const std::vector<double>& time, const std::vector<std::uint32_t>& lines,
-    const MeasuredRecord& r, double omega0, std::vector<std::string>& notes) {
+/// Checks the times, in seconds. `lines`: line numbers of the samples in a CSV text.
+void check_times(const std::vector<double>& time, const std::vector<std::uint32_t>& lines) {
     const std::size_t n = time.size();
     if (n < fewest_samples)
         refuse(
@@ -35,6 +33,10 @@ void check_record(
                                  : "line " + std::to_string(lines[i])) +
                       ", column of time: time must increase, but " + Json(time[i]).dump() +
                       " follows " + Json(time[i - 1]).dump()}});
+}
+
+/// Warns of gaps and clipping.
+void note_flaws(const MeasuredRecord& r, double omega0, std::vector<std::string>& notes) {
     const std::vector<TimeGap> gaps = time_gaps(r);
     if (!gaps.empty())
         notes.push_back(
@@ -130,21 +132,16 @@ void read_known_forcing(IdentifyRequest& r, const Json& given) {
     }
 }
 
-/// change(value) for each value.
 template <class Change>
-std::vector<double> changed(
-    const std::vector<double>& values, CancelCheck& cancel, const Change& change) {
-    std::vector<double> all;
-    all.reserve(values.size());
-    for (const double v : values) {
+void change_each(std::vector<double>& values, CancelCheck& cancel, const Change& change) {
+    for (double& v : values) {
         cancel.step();
-        all.push_back(change(v));
+        v = change(v);
     }
-    return all;
 }
 
-void read_record(IdentifyRequest& r, const Json& fields, const Csv& csv, CancelCheck& cancel) {
-    const std::vector<CsvColumn>& columns = csv.columns;
+void read_record(IdentifyRequest& r, const Json& fields, Csv csv, CancelCheck& cancel) {
+    std::vector<CsvColumn>& columns = csv.columns;
     const RecordColumn time = find_column(columns, fields, time_channel),
                        x = find_column(columns, fields, displacement_channel),
                        a = find_column(columns, fields, acceleration_channel);
@@ -160,16 +157,22 @@ void read_record(IdentifyRequest& r, const Json& fields, const Csv& csv, CancelC
               "displacement_column and acceleration_column"}});
     const double omega0 = r.system.si->omega0();
     MeasuredRecord& record = r.measurement.record;
-    const std::vector<double> seconds =
-        changed(time.column->values, cancel, [&](double t) { return t * time.factor; });
-    record.tau = changed(seconds, cancel, [&](double t) { return t * omega0; });
-    if (x.column)
-        record.x = changed(x.column->values, cancel, [&](double v) { return v * x.factor; });
-    if (a.column)
-        record.x_ddot = changed(
-            a.column->values, cancel, [&](double v) { return v * a.factor / (omega0 * omega0); });
-    check_record(seconds, csv.lines, record, omega0, r.notes);
-    cancel.step(seconds.size());
+    // A column can serve as two channels; one that serves as no other is not copied.
+    const auto take = [&columns](const RecordColumn& from, bool again) {
+        std::vector<double>& values =
+            columns[static_cast<std::size_t>(from.column - columns.data())].values;
+        return again ? values : std::move(values);
+    };
+    if (a.column) record.x_ddot = take(a, a.column == x.column || a.column == time.column);
+    if (x.column) record.x = take(x, x.column == time.column);
+    record.tau = take(time, false);
+    change_each(record.tau, cancel, [&](double t) { return t * time.factor; });
+    check_times(record.tau, csv.lines);
+    change_each(record.tau, cancel, [&](double t) { return t * omega0; });
+    change_each(record.x, cancel, [&](double v) { return v * x.factor; });
+    change_each(record.x_ddot, cancel, [&](double v) { return v * a.factor / (omega0 * omega0); });
+    note_flaws(record, omega0, r.notes);
+    cancel.step(record.tau.size());
     if (!x.column)
         r.notes.push_back(
             "without a displacement, x at the impacts rests on the acceleration alone, whose "
@@ -197,15 +200,15 @@ std::vector<CsvColumn> read_record_columns(Json record, CancelCheck& cancel) {
         CsvColumn column{name, {}, {}};
         if (!values.is_array())
             refuse({{"/record/" + name, nullptr, nullptr, "a column is an array of numbers"}});
-        column.values.reserve(values.size());
-        for (std::size_t i = 0; i < values.size(); ++i) {
+        column.values.reserve(entries_of(values));
+        take_entries(values, [&](std::size_t i, double number, const Json& value) {
             cancel.step();
-            if (!values[i].is_number())
+            if (std::isnan(number))
                 refuse(
-                    {{"/record/" + name + "/" + std::to_string(i), beginning_of(values[i]), nullptr,
+                    {{"/record/" + name + "/" + std::to_string(i), beginning_of(value), nullptr,
                       "must be a number"}});
-            column.values.push_back(values[i].get<double>());
-        }
+            column.values.push_back(number);
+        });
         if (!columns.empty() && column.values.size() != columns[0].values.size())
             refuse(
                 {{"/record/" + name, column.values.size(), nullptr,
@@ -226,7 +229,7 @@ Json taken(Json& object, const char* name) {
 
 /// Request with a record: reads the forcing, the fields and the columns in this order, because a
 /// measured channel of the forcing supplies f unless the request gives it.
-IdentifyRequest read_request_of_record(const Json& given, const Csv& csv, CancelCheck& cancel) {
+IdentifyRequest read_request_of_record(const Json& given, Csv csv, CancelCheck& cancel) {
     // Checks all fields first: the lookup of columns below reads them unchecked.
     if (auto errors = check(identify_fields(), given); !errors.empty()) refuse(std::move(errors));
     const std::optional<MeasuredForcing> forcing = measured_forcing(csv.columns, given, cancel);
@@ -238,7 +241,7 @@ IdentifyRequest read_request_of_record(const Json& given, const Csv& csv, Cancel
     read_known_forcing(r, fields);
     if (forcing && !f_is_given)
         r.system.origin["f"] = r.system.origin["Omega"] = "measured with the record";
-    read_record(r, fields, csv, cancel);
+    read_record(r, fields, std::move(csv), cancel);
     return r;
 }
 
@@ -255,11 +258,11 @@ IdentifyRequest read_identify_request(Json fields, const ReadLimits& limits) {
               "their states"}});
     if (has_impacts) {
         IdentifyRequest r = read_fields(fields, false, !has_phase(impacts));
-        read_impact_list(r, std::move(impacts), cancel);
+        read_impact_list(r, std::move(impacts), limits.most_impacts, cancel);
         return r;
     }
-    const Csv columns{read_record_columns(std::move(record), cancel), {}};
-    return read_request_of_record(fields, columns, cancel);
+    return read_request_of_record(
+        fields, {read_record_columns(std::move(record), cancel), {}}, cancel);
 }
 
 IdentifyRequest read_identify_request(

@@ -6,7 +6,9 @@
 
 #include <algorithm>
 #include <charconv>
+#include <cstring>
 #include <iterator>
+#include <limits>
 #include <string>
 #include <unordered_set>
 #include <utility>
@@ -24,14 +26,14 @@ namespace {
 constexpr std::size_t deepest = 16;
 // Names in one object; requests have several times fewer.
 constexpr std::size_t most_names = 1000;
-// Strings in the whole text; a record holds numbers.
-constexpr std::size_t most_texts = 10000;
+// Strings in the whole text, and bytes of strings and names; a record holds numbers.
+constexpr std::size_t most_texts = 10000, most_text_bytes = 4000000;
 // Characters of one number and of one text. The library collects each before it hands it over, in a
 // buffer that is doubled and copied.
 constexpr std::size_t longest_number = 1000, longest_string = 1000000;
-// Longer lists are built in pieces of this size. serve() makes malloc map and unmap blocks of this
-// size one by one, so that joining the pieces replaces their memory instead of doubling it.
-constexpr std::size_t piece = std::size_t{1} << 18;
+// Bytes of a piece of a packed column. serve() makes malloc map and unmap blocks of this size one
+// by one, so that reading the pieces replaces their memory instead of doubling it.
+constexpr std::size_t piece = std::size_t{4} << 20;
 // Characters between two polls for cancellation: a few hundred microseconds.
 constexpr std::size_t characters_between_polls = 8192;
 
@@ -87,17 +89,29 @@ private:
 /// searches an array again for each element, and an object for each name.)
 class Builder {
 public:
-    explicit Builder(const ReadLimits& limits) : limits_(limits) {}
+    Builder(const ReadLimits& limits, Columns columns) : limits_(limits), columns_(columns) {}
 
-    bool null() { return add(nullptr); }
-    bool boolean(bool value) { return add(value); }
-    bool number_integer(Json::number_integer_t value) { return add(value); }
-    bool number_unsigned(Json::number_unsigned_t value) { return add(value); }
-    bool number_float(Json::number_float_t value, const std::string&) { return add(value); }
+    bool null() {
+        count_value();
+        if (in_column()) append(std::numeric_limits<double>::quiet_NaN());
+        else place_other(nullptr);
+        return true;
+    }
+    bool boolean(bool value) {
+        count_value();
+        place_other(value);
+        return true;
+    }
+    bool number_integer(Json::number_integer_t value) { return number(value); }
+    bool number_unsigned(Json::number_unsigned_t value) { return number(value); }
+    bool number_float(Json::number_float_t value, const std::string&) { return number(value); }
     bool string(std::string& value) {
         if (++texts_ > most_texts)
             throw Problem(400, fmt::format("the JSON text has more than {} strings", most_texts));
-        return add(std::move(value));
+        count_text(value);
+        count_value();
+        place_other(std::move(value));
+        return true;
     }
     bool binary(Json::binary_t&) { return false; }  // not a type of JSON text
     bool start_object(std::size_t) { return open(Json::object()); }
@@ -110,6 +124,7 @@ public:
         if (names.size() >= most_names)
             throw Problem(
                 400, fmt::format("an object of the JSON text has more than {} names", most_names));
+        count_text(name);
         if (!names.insert(name).second)
             throw Problem(
                 400, "the name \"" + shortened(name) + "\" comes twice in the same JSON object");
@@ -129,11 +144,14 @@ public:
     Json take() { return std::move(whole_); }
 
 private:
+    enum class Holder : std::uint8_t { other, measurement, column };
     struct Open {
         Json* value;
+        Holder holder;
         std::unordered_set<std::string> names = {};
-        std::vector<Json::array_t> pieces = {};  ///< full pieces of an array
     };
+
+    bool in_column() const { return !open_.empty() && open_.back().holder == Holder::column; }
 
     void count_part() {
         if (++parts_ > limits_.most_containers)
@@ -142,13 +160,60 @@ private:
                          "the JSON text holds more than {} arrays, objects and names",
                          limits_.most_containers));
     }
-
-    bool add(Json value) {
+    void count_value() {
         if (++numbers_ > limits_.most_numbers)
             throw Problem(
                 413, fmt::format("the JSON text holds more than {} numbers", limits_.most_numbers));
-        place(std::move(value));
+    }
+    void count_text(const std::string& text) {
+        if ((text_bytes_ += text.size()) > most_text_bytes)
+            throw Problem(
+                400, fmt::format(
+                         "the strings and names of the JSON text have more than {} bytes",
+                         most_text_bytes));
+    }
+
+    template <class Number>
+    bool number(Number value) {
+        count_value();
+        if (in_column()) append(static_cast<double>(value));
+        else place_other(value);
         return true;
+    }
+
+    /// Appends a number to the column.
+    void append(double value) {
+        const std::size_t at = packed_.size();
+        packed_.resize(at + sizeof value);
+        std::memcpy(packed_.data() + at, &value, sizeof value);
+        if (packed_.size() == piece) end_piece();
+    }
+    void end_piece() {
+        if (packed_.empty()) return;
+        open_.back().value->push_back(
+            Json::binary(std::move(packed_), static_cast<std::uint8_t>(Packed::numbers)));
+        packed_ = {};
+    }
+
+    /// Stores a value that is no number of a column. Beyond the limit none is shown: the reader of
+    /// the request refuses other fields, and a measurement after the first errors.
+    void place_other(Json value) {
+        if (columns_ == Columns::packed && !in_column()) {
+            const bool is_measured = open_.size() > 1 && open_[1].holder == Holder::measurement;
+            std::size_t& others = is_measured ? measured_others_ : others_;
+            if (others > limits_.most_other_values) return;
+            ++others;
+        }
+        place(std::move(value));
+    }
+
+    Holder holder_of(const Json& value) const {
+        if (columns_ == Columns::as_values) return Holder::other;
+        if (open_.size() == 1 && (name_ == "record" || name_ == "impacts"))
+            return Holder::measurement;
+        const bool is_column = open_.size() == 2 && open_[1].holder == Holder::measurement &&
+                               open_[1].value->is_object() && value.is_array();
+        return is_column ? Holder::column : Holder::other;
     }
 
     bool open(Json value) {
@@ -156,64 +221,58 @@ private:
             throw Problem(
                 400, fmt::format("the JSON text is nested deeper than {} levels", deepest));
         count_part();
-        open_.push_back({&place(std::move(value))});
+        const Holder holder = holder_of(value);
+        open_.push_back({&place(std::move(value)), holder});
+        if (holder == Holder::column) faults_ = 0;
         return true;
     }
 
     bool close() {
-        if (!open_.back().pieces.empty()) join(open_.back());
+        if (in_column()) end_piece();
         open_.pop_back();
         return true;
-    }
-
-    /// Joins the pieces of an array, freeing each after its values are moved.
-    static void join(Open& open) {
-        auto& rest = open.value->get_ref<Json::array_t&>();
-        open.pieces.push_back(std::move(rest));
-        Json::array_t whole;
-        whole.reserve((open.pieces.size() - 1) * piece + open.pieces.back().size());
-        for (Json::array_t& values : open.pieces) {
-            std::move(values.begin(), values.end(), std::back_inserter(whole));
-            Json::array_t().swap(values);
-        }
-        rest = std::move(whole);
     }
 
     /// Stores a value and returns its address, which stays valid while the value is open, since its
     /// container does not grow meanwhile.
     Json& place(Json value) {
         if (open_.empty()) return whole_ = std::move(value);
-        Json& holder = *open_.back().value;
-        if (holder.is_array()) {
-            auto& values = holder.get_ref<Json::array_t&>();
-            if (values.size() == piece) {
-                open_.back().pieces.push_back(std::move(values));
-                values = {};
-                values.reserve(piece);
+        if (in_column()) {
+            // No more errors are reported.
+            if (++faults_ > most_errors) {
+                append(std::numeric_limits<double>::quiet_NaN());
+                return dropped_ = std::move(value);
             }
-            return values.emplace_back(std::move(value));
+            end_piece();
         }
+        Json& holder = *open_.back().value;
+        if (holder.is_array())
+            return holder.get_ref<Json::array_t&>().emplace_back(std::move(value));
         // key() has checked that the name is new; no search is needed.
         auto& members = static_cast<Json::object_t::Container&>(holder.get_ref<Json::object_t&>());
         return members.emplace_back(std::move(name_), std::move(value)).second;
     }
 
-    Json whole_;
+    Json whole_, dropped_;
     std::vector<Open> open_;  // objects and arrays, the outermost first
     std::string name_;
+    std::vector<std::uint8_t> packed_;  // numbers of the column that no piece holds yet
     const ReadLimits& limits_;
-    std::size_t texts_ = 0, numbers_ = 0, parts_ = 0;
+    const Columns columns_;
+    std::size_t texts_ = 0, text_bytes_ = 0, numbers_ = 0, parts_ = 0;
+    std::size_t others_ = 0, measured_others_ = 0;  // values outside and inside a measurement
+    std::size_t faults_ = 0;                        // values of the column that are no numbers
 };
 
 }  // namespace
 
-Json parse_object(std::string_view text, const ReadLimits& limits) {
+Json parse_object(std::string_view text, const ReadLimits& limits, Columns columns) {
     // The library would treat a NUL as the end of the text.
     if (text.find('\0') != std::string_view::npos) invalid("it holds a NUL byte");
     if (text.find_first_not_of(" \t\r\n") == std::string_view::npos)
         throw Problem(
             400, "the body is empty; send a JSON object of parameters, {} for the defaults");
-    Builder builder(limits);
+    Builder builder(limits, columns);
     const CancelCheck cancel = limits.check();
     const char* const begin = text.data();
     Json::sax_parse(Characters(begin, cancel), Characters(begin + text.size(), cancel), &builder);
@@ -222,6 +281,14 @@ Json parse_object(std::string_view text, const ReadLimits& limits) {
         throw Problem(
             400, "the body must be a JSON object, not " + std::string(object.type_name()));
     return object;
+}
+
+std::size_t entries_of(const Json& list) {
+    std::size_t all = 0;
+    for (const Json& entry : list)
+        all +=
+            packing_of(entry) == Packed::numbers ? entry.get_binary().size() / sizeof(double) : 1;
+    return all;
 }
 
 namespace {

@@ -1,22 +1,54 @@
 // Parses the text of requests: JSON bodies from untrusted clients, and queries.
 #pragma once
 
+#include <cmath>
+#include <cstdint>
 #include <string>
 #include <string_view>
 #include <utility>
 #include <vector>
 
+#include "api/answer_json.hpp"
 #include "api/cancellation.hpp"
 #include "api/schema/field.hpp"
 #include "api/schema/json.hpp"
 
 namespace vines::api {
 
+/// How the lists of `record` and `impacts` are held.
+enum class Columns : std::uint8_t {
+    as_values,  ///< an array with a JSON value for each number
+    packed      ///< an array of packed lists of numbers, for take_entries()
+};
+
 /// Parses a JSON object in linear time. Problem 400, with the position, for text that is not a JSON
 /// object, for nesting deeper than 16 (the library overflows the stack at greater depth), and for
 /// an object with more than 1000 names or a repeated one (the library would keep the last). Problem
 /// 413 and Cancelled by `limits`.
-Json parse_object(std::string_view text, const ReadLimits& limits = {});
+Json parse_object(
+    std::string_view text, const ReadLimits& limits = {}, Columns columns = Columns::as_values);
+
+/// Length of a list of `record` or `impacts`.
+std::size_t entries_of(const Json& list);
+
+/// Calls take(index, number, value) for each entry of such a list and frees what it has read:
+/// `number` is NaN for an entry that is no number, and `value` is that entry.
+template <class Take>
+void take_entries(Json& list, Take take) {
+    std::size_t index = 0;
+    for (Json& entry : list) {
+        if (packing_of(entry) != Packed::numbers) {
+            const double number = entry.is_number() ? entry.get<double>() : std::nan("");
+            take(index++, number, entry);
+            continue;
+        }
+        change_numbers(entry.get_binary(), [&](double number) {
+            take(index++, number, Json());
+            return number;
+        });
+        entry = nullptr;
+    }
+}
 
 /// Names and values in their order.
 using Query = std::vector<std::pair<std::string, std::string>>;

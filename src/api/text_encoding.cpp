@@ -6,20 +6,20 @@
 #include <array>
 #include <cerrno>
 #include <memory>
-#include <optional>
 #include <type_traits>
 
 namespace vines::api {
 
 namespace {
 
-/// nullopt if the bytes are invalid in that encoding.
-std::optional<std::string> converted(std::string_view bytes, const char* encoding) {
+/// Appends the text to `text` unless that is null; false if the bytes are invalid in that encoding.
+bool convert(std::string_view bytes, const char* encoding, std::string* text) {
     const iconv_t opened = iconv_open("UTF-8", encoding);
-    if (opened == reinterpret_cast<iconv_t>(-1)) return std::nullopt;
+    if (opened == reinterpret_cast<iconv_t>(-1)) return false;
     const std::unique_ptr<std::remove_pointer_t<iconv_t>, int (*)(iconv_t)> converter(
         opened, &iconv_close);
-    std::string text;
+    // The longest text: two bytes for one of Latin-1, three for two of UTF-16.
+    if (text) text->reserve(2 * bytes.size());
     std::array<char, 4096> piece;
     char* from = const_cast<char*>(bytes.data());  // iconv only reads it
     std::size_t left = bytes.size();
@@ -28,9 +28,9 @@ std::optional<std::string> converted(std::string_view bytes, const char* encodin
         std::size_t room = piece.size();
         const bool whole =
             iconv(converter.get(), &from, &left, &to, &room) != static_cast<std::size_t>(-1);
-        text.append(piece.data(), piece.size() - room);
-        if (whole) return text;
-        if (errno != E2BIG) return std::nullopt;
+        if (text) text->append(piece.data(), piece.size() - room);
+        if (whole) return true;
+        if (errno != E2BIG) return false;
     }
 }
 
@@ -50,9 +50,7 @@ const char* encoding_of(std::string_view bytes) {
 
 }  // namespace
 
-bool is_utf8(std::string_view bytes) {
-    return is_ascii(bytes) || converted(bytes, "UTF-8").has_value();
-}
+bool is_utf8(std::string_view bytes) { return is_ascii(bytes) || convert(bytes, "UTF-8", nullptr); }
 
 std::string_view as_utf8(std::string_view bytes, std::string& room) {
     const std::string_view encoding = encoding_of(bytes);
@@ -60,8 +58,9 @@ std::string_view as_utf8(std::string_view bytes, std::string& room) {
         if (bytes.starts_with("\xef\xbb\xbf")) bytes.remove_prefix(3);
         if (is_utf8(bytes)) return bytes;
     }
-    auto text = converted(bytes, encoding.data());
-    room = text ? std::move(*text) : converted(bytes, "ISO-8859-1").value_or(std::string());
+    if (encoding != "UTF-8" && convert(bytes, encoding.data(), &room)) return room;
+    room.clear();
+    convert(bytes, "ISO-8859-1", &room);
     return room;
 }
 

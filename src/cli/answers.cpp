@@ -74,7 +74,7 @@ api::AnswerRequest read_identification(const std::string& text, const AnswerOpti
     api::Json fields = given_fields(o.fields, api::identify_fields());
     const bool is_columns = !is_json(text);
     if (!is_columns) {
-        api::Json request = api::parse_object(text);
+        api::Json request = api::parse_object(text, {}, api::Columns::packed);
         request.merge_patch(fields);
         fields = std::move(request);
     }

@@ -3,6 +3,8 @@
 #include <chrono>
 #include <utility>
 
+#include "http/memory.hpp"
+
 namespace vines::http {
 
 // --- Slots ---
@@ -111,6 +113,76 @@ AdmissionControl::SweepSlot AdmissionControl::acquire_sweep(const std::string& c
     return {this, [this, place = sweeps_.insert(client)](void*) {
                 const std::lock_guard ending(mutex_);
                 sweeps_.erase(place);
+            }};
+}
+
+// --- Large bodies ---
+
+namespace {
+
+// Bodies up to this size are read at any time, by as many requests as have a slot; of the larger
+// ones so many that they have no more bytes than this together, or one. While they are read and
+// computed they take up to fifteen times their size, one of the largest up to 340 MB. Bytes.
+constexpr std::size_t immediate_body = 1 << 20, bodies_at_once = 16 << 20;
+
+// Larger bodies that wait, and their bytes; each occupies a worker.
+constexpr std::size_t most_waiting_bodies = 32, most_waiting_bytes = 256 << 20;
+
+}  // namespace
+
+/// False if a body finds no place in the queue, even if others whose turn is later lose theirs.
+bool AdmissionControl::make_room(const std::string& client, std::size_t bytes) {
+    const auto is_full = [this, bytes] {
+        std::size_t waiting = 0;
+        bodies_.for_each([&waiting](const Body* body) { waiting += body->bytes; });
+        return !bodies_.empty() &&
+               (bodies_.size() >= most_waiting_bodies || waiting + bytes > most_waiting_bytes);
+    };
+    while (is_full()) {
+        if (!bodies_.precedes_last(client)) return false;
+        Body& displaced = *bodies_.pop_last();
+        displaced.displaced = true;
+        displaced.changed.notify_one();
+    }
+    return true;
+}
+
+void AdmissionControl::assign_turns() {
+    while (!bodies_.empty() &&
+           (bodies_in_work_ == 0 || bodies_in_work_ + bodies_.front()->bytes <= bodies_at_once)) {
+        Body& next = **bodies_.pop();
+        bodies_in_work_ += next.bytes;
+        next.has_turn = true;
+        next.changed.notify_one();
+    }
+}
+
+AdmissionControl::BodyTurn AdmissionControl::acquire_body(
+    const std::string& client, std::size_t bytes, const std::function<bool()>& gives_up) {
+    if (bytes <= immediate_body) return {this, [](void*) {}};
+    std::unique_lock lock(mutex_);
+    if (!make_room(client, bytes)) return nullptr;
+    Body body{.bytes = bytes};
+    bodies_.push(client, &body);
+    assign_turns();
+    bool given_up = false;
+    while (!body.has_turn && !body.displaced && !given_up) {
+        body.changed.wait_for(lock, give_up_check);
+        if (body.has_turn || body.displaced) break;
+        lock.unlock();
+        given_up = gives_up();
+        lock.lock();
+    }
+    if (!body.has_turn) {
+        bodies_.remove(&body);
+        assign_turns();
+        return nullptr;
+    }
+    return {this, [this, bytes](void*) {
+                trim_memory();
+                const std::lock_guard ending(mutex_);
+                bodies_in_work_ -= bytes;
+                assign_turns();
             }};
 }
 

@@ -84,6 +84,14 @@ public:
     using SweepSlot = std::shared_ptr<void>;
     SweepSlot acquire_sweep(const std::string& client);
 
+    /// The right to read a large body and to compute with it. At most one, or several that are
+    /// small together, have it at once, since these take many times their size; others wait. Null
+    /// if too many wait whose turn is earlier, or gives_up() returned true; it is polled every
+    /// 50 ms. Smaller bodies have it at once.
+    using BodyTurn = std::shared_ptr<void>;
+    BodyTurn acquire_body(
+        const std::string& client, std::size_t bytes, const std::function<bool()>& gives_up);
+
     /// Running sweeps end at their next check and no new one starts. Requests still compute.
     void stop_sweeps();
     bool sweeps_stopped() const { return sweeps_stopped_; }
@@ -101,16 +109,26 @@ private:
         bool displaced = false;  ///< by another client, whose turn is earlier
     };
     using Queue = FairQueue<Waiter*>;
+    struct Body {
+        std::size_t bytes = 0;
+        std::condition_variable changed = {};
+        bool has_turn = false;
+        bool displaced = false;
+    };
 
     bool is_full() const;
     void assign_slots();
     bool end_wait(Queue& queue, Waiter& waiter);
+    bool make_room(const std::string& client, std::size_t bytes);
+    void assign_turns();
 
     const AdmissionLimits limits_;
     mutable std::mutex mutex_;
     int free_, graces_ = 0;              // nobody waits while free_ > 0
     std::multiset<std::string> sweeps_;  // their clients
     Queue foreground_, background_;
+    FairQueue<Body*> bodies_;
+    std::size_t bodies_in_work_ = 0;  // bytes
     // Written under the mutex; running work reads them without it.
     std::atomic<bool> foreground_waits_ = false, background_waits_ = false;
     std::atomic<bool> sweeps_stopped_ = false, all_stopped_ = false;

@@ -6,6 +6,7 @@
 #include <chrono>
 #include <functional>
 #include <memory>
+#include <optional>
 #include <utility>
 
 #include "api/cancellation.hpp"
@@ -81,12 +82,23 @@ constexpr std::size_t large = 16 << 20;
 // Largest body that is read in a small part of the grace period, bytes.
 constexpr std::size_t max_body_in_grace = 16 << 10;
 
-// One number per four characters of the largest default body. A measured record has at least eight
-// characters per number. These take at most 300 MB while they are read.
-constexpr std::size_t most_numbers = 16'000'000;
+// Starts of a sweep take 90 times their size while they are read: bodies of all routes but
+// /v1/identify count this many times.
+constexpr std::size_t weight_of_fields = 16;
+
+// One number per eight characters of the largest default body: a measured record has no fewer. They
+// take 64 MB while they are read. To identify a record takes up to 120 bytes for each sample.
+constexpr std::size_t most_numbers = 8'000'000;
 
 // Numbers outside the record: impact_times_s can list every impact in it.
 constexpr std::size_t most_beside = 1'000'000;
+
+// The answer lists the impacts in more than 250 bytes each: the default --answer-limit permits half
+// a million.
+constexpr std::size_t most_impacts = 500'000;
+
+// Impacts fitted to a record: 25 minutes at 13 per second. A fit takes 2 kB for each.
+constexpr std::size_t most_fitted = 20'000;
 
 // Arrays, objects and names: a start of a sweep is an object with up to six names, and there are at
 // most as many starts as points. All other fields together have a few thousand.
@@ -97,6 +109,21 @@ constexpr std::size_t max_hash = 256;
 
 /// Ends the request of a client that has left; only the log shows its status.
 [[noreturn]] void throw_client_left() { throw Problem(499, "the client has left"); }
+
+/// Waits for the turn of a large body, for at most `seconds`; Problem 503 if there is none. It
+/// comes before the permit to compute, so that waiting requests hold no slot.
+AdmissionControl::BodyTurn turn_of(const Request& r, AdmissionControl& admission, double seconds) {
+    const std::size_t bytes = r.body.size() * (r.path == "/v1/identify" ? 1 : weight_of_fields);
+    const auto deadline = Stopwatch::Clock::now() + std::chrono::duration<double>(seconds);
+    auto turn = admission.acquire_body(r.client, bytes, [&] {
+        return r.left() || admission.all_stopped() || Stopwatch::Clock::now() > deadline;
+    });
+    if (turn) return turn;
+    if (r.left()) throw_client_left();
+    if (admission.all_stopped()) throw *stopping_refusal().problem;
+    throw Problem::unavailable(
+        "memory", "other large bodies are being read; try again in a second");
+}
 
 /// Waits for the request's permit to compute; Problem 503 if the queue is full.
 Permit permit_for(const Request& request, AdmissionControl& admission, Stopwatch& watch) {
@@ -110,12 +137,15 @@ Permit permit_for(const Request& request, AdmissionControl& admission, Stopwatch
     return permit;
 }
 
-api::ReadLimits reading_of(const RouteOptions& options, const api::Stop& stop) {
+api::ReadLimits reading_of(const Request& r, const RouteOptions& options, const api::Stop& stop) {
+    // The fields of an identification are copied several times and can be as large as a record.
+    const std::size_t points = r.path == "/v1/identify" ? 0 : options.sweep_points;
     return {
         .gives_up = stop.requested,
         .most_numbers = most_numbers,
         .most_other_values = most_beside,
-        .most_containers = std::max(least_parts, parts_of_a_point * options.sweep_points)};
+        .most_containers = std::max(least_parts, parts_of_a_point * points),
+        .most_impacts = most_impacts};
 }
 
 /// Calls read(). If it is stopped, nothing is computed that could be returned: a Problem.
@@ -135,10 +165,12 @@ auto read_in_time(const Request& r, const Service& service, const Read& read) {
     }
 }
 
-Json body_of(const Request& r, const api::ReadLimits& reading) {
+Json body_of(
+    const Request& r, const api::ReadLimits& reading,
+    api::Columns columns = api::Columns::as_values) {
     if (!r.query.empty())
         throw Problem(400, "a POST takes its fields from the body; the query must be empty");
-    return api::parse_object(r.body, reading);
+    return api::parse_object(r.body, reading, columns);
 }
 
 /// The fields of an identification's CSV file are in the query, like those of a GET.
@@ -149,8 +181,9 @@ api::AnswerRequest asked(const Request& r, const api::ReadLimits& reading) {
     const api::FieldTable& table = identifies                 ? api::identify_fields()
                                    : r.path == "/v1/manifold" ? api::manifold_fields()
                                                               : api::simulate_fields();
-    Json fields =
-        r.method == "POST" && !is_columns ? body_of(r, reading) : api::from_query(table, r.query);
+    const api::Columns columns = identifies ? api::Columns::packed : api::Columns::as_values;
+    Json fields = r.method == "POST" && !is_columns ? body_of(r, reading, columns)
+                                                    : api::from_query(table, r.query);
     return api::read_answer_request(r.path, std::move(fields), {r.body, is_columns}, reading);
 }
 
@@ -188,11 +221,13 @@ std::string encoded(
 }  // namespace
 
 Response answer(const Request& r, const Service& service, Stopwatch& watch) {
-    Permit permit = permit_for(r, service.admission, watch);
     const RouteOptions& options = service.options;
+    AdmissionControl::BodyTurn turn = turn_of(r, service.admission, options.deadline);
+    Permit permit = permit_for(r, service.admission, watch);
     const api::Stop stop = stop_conditions(options.deadline, r, service.admission, permit);
     api::AnswerRequest request =
-        read_in_time(r, service, [&] { return asked(r, reading_of(options, stop)); });
+        read_in_time(r, service, [&] { return asked(r, reading_of(r, options, stop)); });
+    std::string().swap(r.body);
     std::optional<api::Format>& format = request.form.format;
     if (!format) format = accepted_format(r.accept);
     const std::string provenance = api::describe(request.provenance, nullptr).dump();
@@ -201,8 +236,10 @@ Response answer(const Request& r, const Service& service, Stopwatch& watch) {
         return {.status = 304, .tag = tag, .headers = {varies}};
     watch.lap("parse", permit.waited());
     api::Answer answer = api::compute_answer(
-        std::move(request),
-        {.stop = stop, .most_bytes = options.answer_limit, .most_kept = options.most_kept_impacts});
+        std::move(request), {.stop = stop,
+                             .most_bytes = options.answer_limit,
+                             .most_kept = options.most_kept_impacts,
+                             .most_fitted = most_fitted});
     const bool renewed = permit.renew();
     watch.lap("solve", permit.waited());
     if (!renewed) throw_client_left();
@@ -214,6 +251,7 @@ Response answer(const Request& r, const Service& service, Stopwatch& watch) {
     }
     std::string bytes = encoded(
         std::move(answer), *format, options.answer_limit, provenance.size() + max_hash, r.left);
+    turn.reset();
     if (stop.requested()) tag = {};  // a repeated request can get further
     Response response{
         .content_type = api::name_of(*format).media_type,
@@ -226,12 +264,13 @@ Response answer(const Request& r, const Service& service, Stopwatch& watch) {
 }
 
 Response sweep(const Request& r, const Service& service, Stopwatch& watch) {
-    Permit permit = permit_for(r, service.admission, watch);  // for reading the request
     const RouteOptions& options = service.options;
+    const auto turn = turn_of(r, service.admission, options.deadline);
+    Permit permit = permit_for(r, service.admission, watch);  // for reading the request
     const api::Stop stop = stop_conditions(options.deadline, r, service.admission, permit);
     std::optional<api::Format> format;
     api::SweepRequest request = read_in_time(r, service, [&] {
-        const Json body = body_of(r, reading_of(options, stop));
+        const Json body = body_of(r, reading_of(r, options, stop));
         format = api::sweep_format(body);
         return api::read_sweep_request(body, options.sweep_points);
     });

@@ -1,5 +1,5 @@
-// A queue in which clients take turns (start-time fair queueing with equal costs): the first entries
-// of all clients, then their second ones, and so on; in order of arrival among equals.
+// A queue in which clients take turns (start-time fair queueing with equal costs): the first
+// entries of all clients, then their second ones, and so on; in order of arrival among equals.
 #pragma once
 
 #include <algorithm>
@@ -18,12 +18,12 @@ class FairQueue {
 public:
     bool empty() const { return entries_.empty(); }
     std::size_t size() const { return entries_.size(); }
+    const T& front() const { return entries_.front().value; }
 
     void push(const std::string& client, T value) {
         const long turn = last_turns_[client] = next_turn(client);
-        const auto later = std::find_if(entries_.begin(), entries_.end(), [turn](const Entry& e) {
-            return e.turn > turn;
-        });
+        const auto later = std::find_if(
+            entries_.begin(), entries_.end(), [turn](const Entry& e) { return e.turn > turn; });
         entries_.insert(later, {client, turn, std::move(value)});
     }
     /// True if an entry of this client would come before the last one.
@@ -47,8 +47,9 @@ public:
         return pop([](const std::string&) { return true; });
     }
     void remove(const T& value) {
-        const auto found = std::find_if(
-            entries_.begin(), entries_.end(), [&value](const Entry& e) { return e.value == value; });
+        const auto found = std::find_if(entries_.begin(), entries_.end(), [&value](const Entry& e) {
+            return e.value == value;
+        });
         if (found != entries_.end()) take(found);
     }
     /// Calls visit(value) for each entry.

@@ -49,7 +49,7 @@ struct Request {
     std::string method, path;
     api::Query query;
     std::string content_type;
-    std::string body;
+    mutable std::string body;          ///< a route frees a large one once it is read
     std::string accept = {};           ///< header Accept
     std::string accept_encoding = {};  ///< header Accept-Encoding
     std::string if_none_match = {};    ///< header If-None-Match

@@ -8,6 +8,7 @@
 #include <set>
 
 #include "api/cancellation.hpp"
+#include "api/identify.hpp"
 #include "api/parse.hpp"
 #include "api/presets.hpp"
 #include "api/schema/check.hpp"
@@ -143,6 +144,55 @@ TEST_CASE("a long list is read completely, next to other lists and inside them")
     list += "]";
     const std::string text = R"({"a":)" + list + R"(,"b":[)" + list + R"(,[1],{"c":2}],"d":3})";
     CHECK(parse_object(text) == Json::parse(text));
+}
+
+TEST_CASE("columns packed while they are read give the same errors as JSON values") {
+    const std::string system = R"("m1":1,"c1":1,"k1":1000,"m2":0.1,"b":0.01,"f":5)";
+    for (const char* const lists :
+         {R"("record":{"time_s":[0,1,null,3]})", R"("record":{"time_s":[0,1],"x":[0,"a",true]})",
+          R"("record":{"time_s":[0,1,[2,3],4]})", R"("record":{"time_s":[0,1],"x":[0]})",
+          R"("record":{"time_s":[],"displacement_m":[]})", R"("record":[1,2])",
+          R"("record":{"time_s":{"a":[1]}})", R"("impacts":{"tau":1})", R"("impacts":[[1]])",
+          R"("impacts":{"tau":[1,null,{"a":[1,2]},18446744073709551615],"x":[1,2,3]})",
+          R"("impacts":{"tau":[1,2],"x":[0,0],"x_dot_before":[1,"b"],"x_dot_after":[false,[]]})",
+          R"("impacts":{"tau":[1],"x":[0],"x_dot_before":[1],"x_dot_after":[0]},"b":"c")"}) {
+        const std::string text = "{" + system + "," + lists + "}";
+        CAPTURE(text);
+        const auto refusal = [&](Columns columns) {
+            return problem_of([&] { read_identify_request(parse_object(text, {}, columns)); })
+                .body();
+        };
+        CHECK(refusal(Columns::packed) == refusal(Columns::as_values));
+    }
+}
+
+TEST_CASE("packed columns of any length and nulls of optional ones are read completely") {
+    std::string times = "0", values = "0", mixed = "null";
+    for (int k = 1; k < 600000; ++k)
+        times += "," + std::to_string(k), values += ",1.5", mixed += k % 2 ? ",true" : ",2";
+    Json packed = parse_object(
+        R"({"record":{"a":[)" + times + R"(],"b":[)" + values + R"(]},"impacts":{"c":[)" + mixed +
+            R"(]}})",
+        {}, Columns::packed);
+    Json& list = packed["record"]["a"];
+    CHECK(entries_of(list) == 600000);
+    CHECK(list.size() < 3);
+    bool counts = true;
+    take_entries(list, [&](std::size_t index, double number, const Json&) {
+        counts = counts && number == static_cast<double>(index);
+    });
+    CHECK(counts);
+    CHECK(entries_of(packed["record"]["b"]) == 600000);
+    CHECK(entries_of(packed["impacts"]["c"]) == 600000);
+    CHECK(packed["impacts"]["c"].size() < 50);
+}
+
+TEST_CASE("all strings and names together are limited") {
+    std::string text = "{\"a\":[\"\"";
+    for (int k = 0; k < 5; ++k) text += ",\"" + std::string(900000, 's') + "\"";
+    CHECK(
+        std::string(refused(text + "]}").what()) ==
+        "the strings and names of the JSON text have more than 4000000 bytes");
 }
 
 TEST_CASE("a problem quotes only the beginning of a large value") {

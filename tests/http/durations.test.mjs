@@ -83,5 +83,5 @@ test("a large body is read within the deadline, in a few times its size, and its
     // A sanitizer keeps freed memory.
     if (!sanitized) assert.ok((await memory(one.pid)) - before < 60, what);
   }
-  if (!sanitized) assert.ok((await memory(one.pid, "VmHWM")) < 600);
+  if (!sanitized) assert.ok((await memory(one.pid, "VmHWM")) < 300);
 });

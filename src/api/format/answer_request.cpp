@@ -194,8 +194,10 @@ Answer computed(const ManifoldRequest& request, const AnswerForm&, const Compute
 
 Answer computed(const IdentifyRequest& request, const AnswerForm&, const ComputeOptions& options) {
     return {
-        .json =
-            identify_answer(request, {.stop = options.stop.requested, .reached = options.reached})};
+        .json = identify_answer(
+            request, {.stop = options.stop.requested,
+                      .reached = options.reached,
+                      .most_impacts = options.most_fitted})};
 }
 
 }  // namespace

@@ -58,6 +58,7 @@ struct ComputeOptions {
     Stop stop = {};
     std::size_t most_bytes = any_size;          ///< JSON of a simulation; see simulate_in_parts()
     std::size_t most_kept = most_kept_impacts;  ///< longer impact lists are streamed; JSON only
+    std::size_t most_fitted = any_size;         ///< impacts of a record that are fitted
     /// Called as an identification reaches each stage and round.
     std::function<void(IdentificationStage, int round)> reached = {};
 };

@@ -129,6 +129,7 @@ std::vector<Row> rows_of(
     const UnknownValues given = given_unknowns(p);
     const OscillatorFlows flows(given, false);
     std::vector<Row> rows;
+    rows.reserve(2 * impacts.size());
     for (std::size_t i = 1; i < impacts.size(); ++i) {
         look();
         const IdentifiedImpact &from = impacts[i - 1], &to = impacts[i];

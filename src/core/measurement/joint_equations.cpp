@@ -11,6 +11,8 @@ namespace vines {
 namespace {
 
 constexpr Eigen::Index globals = unknowns, sensed = sensed_unknowns;
+// Entries of a column: an interval is coupled with two others, five times and all globals.
+constexpr int entries_of_column = 32;
 // Relative to the ridge of the intervals: times in tau are far larger than positions in m.
 constexpr double ridge_of_others = 1e-4;
 
@@ -21,7 +23,15 @@ JointEquations::JointEquations(std::size_t intervals, double ridge)
       intervals_(static_cast<Eigen::Index>(intervals)),
       size_(3 * intervals_ - 1 + globals),
       own_(intervals),
+      matrix_(size_, size_),
       right_(Eigen::VectorXd::Zero(size_)) {}
+
+double& JointEquations::entry(Eigen::Index row, Eigen::Index column) {
+    // Not in the constructor: a copy of a matrix has no space for entries.
+    if (matrix_.isCompressed())
+        matrix_.reserve(Eigen::VectorXi::Constant(size_, entries_of_column));
+    return matrix_.coeffRef(row, column);
+}
 
 void JointEquations::add(
     std::size_t interval, const Eigen::RowVector2d& by_start, const UnknownRow& by_unknowns,
@@ -37,7 +47,8 @@ void JointEquations::add(
 void JointEquations::add(const std::vector<Term>& row, double left, double weight) {
     for (const Term& a : row) {
         right_(a.at) += weight * a.by * left;
-        for (const Term& b : row) triplets_.emplace_back(a.at, b.at, weight * a.by * b.by);
+        for (const Term& b : row)
+            if (b.at <= a.at) entry(a.at, b.at) += weight * a.by * b.by;
     }
 }
 
@@ -59,29 +70,23 @@ void JointEquations::gather() {
         const Eigen::Index at = start_of(i);
         for (Eigen::Index j = 0; j < 2; ++j) {
             right_(at + j) += own_[i].g(j);
-            for (Eigen::Index k = 0; k < 2; ++k)
-                triplets_.emplace_back(at + j, at + k, own_[i].N(j, k));
-            for (Eigen::Index k = 0; k < sensed; ++k) {
-                triplets_.emplace_back(at + j, first + k, own_[i].C(j, k));
-                triplets_.emplace_back(first + k, at + j, own_[i].C(j, k));
-            }
+            for (Eigen::Index k = 0; k <= j; ++k) entry(at + j, at + k) += own_[i].N(j, k);
+            for (Eigen::Index k = 0; k < sensed; ++k) entry(first + k, at + j) += own_[i].C(j, k);
         }
     }
     for (Eigen::Index j = 0; j < sensed; ++j) {
         right_(first + j) += g_(j);
-        for (Eigen::Index k = 0; k < sensed; ++k)
-            triplets_.emplace_back(first + j, first + k, N_(j, k));
+        for (Eigen::Index k = 0; k <= j; ++k) entry(first + j, first + k) += N_(j, k);
     }
     for (Eigen::Index k = 0; k < size_; ++k)
-        triplets_.emplace_back(k, k, k < 2 * intervals_ ? ridge_ : ridge_of_others * ridge_);
+        entry(k, k) += k < 2 * intervals_ ? ridge_ : ridge_of_others * ridge_;
 }
 
 bool JointEquations::solve() {
     gather();
-    Eigen::SparseMatrix<double> all(size_, size_);
-    all.setFromTriplets(triplets_.begin(), triplets_.end());
-    triplets_ = {};
-    const Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>> solver(all);
+    matrix_.makeCompressed();
+    const Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>> solver(matrix_);
+    matrix_ = {};
     if (solver.info() != Eigen::Success) return false;
     step = solver.solve(right_);
     Eigen::MatrixXd units = Eigen::MatrixXd::Zero(size_, globals);

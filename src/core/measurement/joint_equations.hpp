@@ -62,6 +62,7 @@ public:
 
 private:
     void gather();
+    double& entry(Eigen::Index row, Eigen::Index column);
 
     double ridge_;
     Eigen::Index intervals_, size_;
@@ -71,7 +72,8 @@ private:
         Eigen::Matrix<double, sensed_unknowns, sensed_unknowns>::Zero();
     Eigen::Matrix<double, sensed_unknowns, 1> g_ =
         Eigen::Matrix<double, sensed_unknowns, 1>::Zero();
-    std::vector<Eigen::Triplet<double>> triplets_;
+    // The lower triangle, which is all that the solver reads.
+    Eigen::SparseMatrix<double> matrix_;
     Eigen::VectorXd right_;
 };
 

@@ -160,13 +160,16 @@ void apply_step(JointFitState& state) {
 
 /// Updates the scale of the residuals for the weights of the next step.
 void update_scales(JointFitState& state) {
-    std::vector<double> x, a;
+    std::vector<double> good;
+    good.reserve(state.record.tau.size());
     for (std::size_t k = 0; k < state.fit.x_residual.size(); ++k)
-        if (!state.bad.x[k]) x.push_back(state.fit.x_residual[k]);
+        if (!state.bad.x[k]) good.push_back(state.fit.x_residual[k]);
+    state.scale_x = std::max(robust_deviation(std::move(good)), state.statistics.x.noise);
+    good = {};
+    good.reserve(state.record.tau.size());
     for (std::size_t k = 0; k < state.fit.a_residual.size(); ++k)
-        if (!state.bad.a[k] && !state.in_pulse[k]) a.push_back(state.fit.a_residual[k]);
-    state.scale_x = std::max(robust_deviation(std::move(x)), state.statistics.x.noise);
-    state.scale_a = std::max(robust_deviation(std::move(a)), state.statistics.x_ddot.noise);
+        if (!state.bad.a[k] && !state.in_pulse[k]) good.push_back(state.fit.a_residual[k]);
+    state.scale_a = std::max(robust_deviation(std::move(good)), state.statistics.x_ddot.noise);
     ++state.scales_taken;
     // The first scales belong to a motion of zero.
     state.weights_trusted = state.scales_taken > 2;
@@ -214,6 +217,7 @@ FittedImpact JointFitState::motion_at_border(std::size_t k, const MotionRow& end
 JointFit fit_jointly(
     const JointFitInput& input, const std::vector<ImpactTime>& impacts, const UnknownValues& values,
     const JointFit* before) {
+    input.progress.check_impacts(impacts.size());
     JointFitState state = initial_state(input, impacts, values, before);
     for (int step = 0; step < most_steps; ++step) {
         input.progress.look();

@@ -77,6 +77,7 @@ ResidualStatistics statistics_of(
     const std::vector<char>& bad) {
     std::vector<char> ignored(state.in_pulse);
     std::vector<double> clean;
+    clean.reserve(residual.size());
     for (std::size_t k = 0; k < residual.size(); ++k) {
         if (bad[k]) ignored[k] = 1;
         if (!ignored[k]) clean.push_back(residual[k]);

@@ -10,6 +10,7 @@ namespace vines {
 
 double sample_interval(const MeasuredRecord& r) {
     std::vector<double> steps;
+    steps.reserve(r.tau.size());
     for (std::size_t k = 1; k < r.tau.size(); ++k) steps.push_back(r.tau[k] - r.tau[k - 1]);
     return median(std::move(steps));
 }

@@ -3,6 +3,7 @@
 
 #include <cstddef>
 #include <functional>
+#include <limits>
 #include <utility>
 
 namespace vines {
@@ -16,7 +17,12 @@ struct IdentificationWatch {
     std::function<bool()> stop = {};  ///< called often; true ends the identification
     /// Called at the start of a stage, or of one of its rounds (from 1; 0: no rounds).
     std::function<void(IdentificationStage, int round)> reached = {};
+    /// Impacts of one fit, which takes 2 kB for each.
+    std::size_t most_impacts = std::numeric_limits<std::size_t>::max();
 };
+
+/// Thrown when a record shows more impacts than the watch permits.
+struct TooManyImpacts {};
 
 /// Thrown when the watch requests a stop.
 struct IdentificationStopped {
@@ -35,6 +41,9 @@ public:
     }
     void look() const {
         if (watch_.stop && watch_.stop()) throw at_;
+    }
+    void check_impacts(std::size_t impacts) const {
+        if (impacts > watch_.most_impacts) throw TooManyImpacts();
     }
     /// For inner loops: calls look() now and then. work: amount since the last call, in units of a
     /// few hundred operations.

@@ -174,7 +174,9 @@ public:
     /// solution.
     bool fit(const std::vector<PulseSample>& samples, double scatter) {
         const Eigen::Index n = value_.size();
-        std::vector<Eigen::Triplet<double>> triplets;
+        // Entries of the matrix from one point to itself and to the next: there are far fewer than
+        // samples.
+        Eigen::MatrixXd sums = Eigen::MatrixXd::Zero(3, n);
         Eigen::VectorXd right = Eigen::VectorXd::Zero(n);
         for (const PulseSample& s : samples) {
             const auto [k, share] = place_of(s);
@@ -183,9 +185,16 @@ public:
             const double by[2] = {1 - share, share};
             for (Eigen::Index a = 0; a < 2; ++a) {
                 right(k + a) += weight * by[a] * s.value;
-                for (Eigen::Index b = 0; b < 2; ++b)
-                    triplets.emplace_back(k + a, k + b, weight * by[a] * by[b]);
+                sums(0, k + a) += weight * by[a] * by[a];
+                sums(1 + a, k) += weight * by[a] * by[1 - a];
             }
+        }
+        std::vector<Eigen::Triplet<double>> triplets;
+        for (Eigen::Index k = 0; k < n; ++k) {
+            triplets.emplace_back(k, k, sums(0, k));
+            if (k + 1 == n) break;
+            triplets.emplace_back(k, k + 1, sums(1, k));
+            triplets.emplace_back(k + 1, k, sums(2, k));
         }
         add_smoothness(triplets);
         Eigen::SparseMatrix<double> N(n, n);

@@ -38,6 +38,7 @@ double third_difference_noise(
     if (v.size() < 4) return nan;
     const double step = (tau.back() - tau.front()) / static_cast<double>(tau.size() - 1);
     std::vector<double> scaled;  // to the variance of the noise
+    scaled.reserve(v.size());
     for (std::size_t i = 0; i + 3 < v.size(); ++i) {
         const auto is_spoiled = [&](std::size_t k) { return !spoiled.empty() && spoiled[k]; };
         // Allows one missing sample among the four.

@@ -160,8 +160,10 @@ void fit_with_mass(ImpactSearch& s) {
     JointFitInput with_mass = fit_input(s);
     with_mass.sides = &s.sides;
     JointFit fit = s.found.fit;
-    for (int run = 0; run < most_runs_with_mass && !(run > 0 && fit.converged); ++run)
+    for (int run = 0; run < most_runs_with_mass && !(run > 0 && fit.converged); ++run) {
+        fit.x_residual = {}, fit.a_residual = {};
         fit = fit_jointly(with_mass, impact_times(s), fit.values, &fit);
+    }
     s.mass_values = fit.values;
     s.found.with_mass = fit.converged;
     if (fit.converged) s.found.fit = std::move(fit);
