@@ -88,6 +88,9 @@ constexpr std::size_t max_body_in_grace = 16 << 10;
 // ones so many that they have no more bytes than this together, or one. While they are read and
 // computed they take up to fifteen times their size, one of the largest up to 340 MB. Bytes.
 constexpr std::size_t immediate_body = 1 << 20, bodies_at_once = 16 << 20;
+// Starts of a sweep take 90 times their size while they are read: bodies of all routes but
+// /v1/identify count this many times.
+constexpr std::size_t weight_of_fields = 16;
 
 // Larger bodies that wait, and their bytes; each occupies a worker.
 constexpr std::size_t most_waiting_bodies = 32, most_waiting_bytes = 256 << 20;
@@ -122,7 +125,8 @@ class BodyTurn {
 public:
     /// Waits for at most `seconds`. Problem 503 if too many wait or the time is over.
     BodyTurn(const Request& r, const AdmissionControl& admission, double seconds)
-        : bytes_(r.body.size() > immediate_body ? r.body.size() : 0) {
+        : bytes_(r.body.size() * (r.path == "/v1/identify" ? 1 : weight_of_fields)) {
+        if (bytes_ <= immediate_body) bytes_ = 0;
         if (bytes_ == 0) return;
         const auto deadline = Stopwatch::Clock::now() + std::chrono::duration<double>(seconds);
         std::unique_lock lock(mutex_);
@@ -188,12 +192,14 @@ Permit permit_for(const Request& request, AdmissionControl& admission, Stopwatch
     return permit;
 }
 
-api::ReadLimits reading_of(const api::Stop& stop, std::size_t most_containers = least_parts) {
+api::ReadLimits reading_of(const Request& r, const RouteOptions& options, const api::Stop& stop) {
+    // The fields of an identification are copied several times and can be as large as a record.
+    const std::size_t points = r.path == "/v1/identify" ? 0 : options.sweep_points;
     return {
         .gives_up = stop.requested,
         .most_numbers = most_numbers,
         .most_other_values = most_beside,
-        .most_containers = most_containers,
+        .most_containers = std::max(least_parts, parts_of_a_point * points),
         .most_impacts = most_impacts};
 }
 
@@ -275,7 +281,7 @@ Response answer(const Request& r, const Service& service, Stopwatch& watch) {
     Permit permit = permit_for(r, service.admission, watch);
     const api::Stop stop = stop_conditions(options.deadline, r, service.admission, permit);
     api::AnswerRequest request =
-        read_in_time(r, service, [&] { return asked(r, reading_of(stop)); });
+        read_in_time(r, service, [&] { return asked(r, reading_of(r, options, stop)); });
     std::string().swap(r.body);
     std::optional<api::Format>& format = request.form.format;
     if (!format) format = accepted_format(r.accept);
@@ -318,8 +324,8 @@ Response sweep(const Request& r, const Service& service, Stopwatch& watch) {
     Permit permit = permit_for(r, service.admission, watch);  // for reading the request
     const api::Stop stop = stop_conditions(options.deadline, r, service.admission, permit);
     api::SweepRequest request = read_in_time(r, service, [&] {
-        const std::size_t parts = std::max(least_parts, parts_of_a_point * options.sweep_points);
-        return api::read_sweep_request(body_of(r, reading_of(stop, parts)), options.sweep_points);
+        return api::read_sweep_request(
+            body_of(r, reading_of(r, options, stop)), options.sweep_points);
     });
     watch.lap("parse", permit.waited());
     return stream_sweep(
