@@ -257,15 +257,30 @@ test("Prometheus accepts its files, and each alert is raised by its cause", asyn
   }
 });
 
-test("every metric in an alert is exported by the service", async () => {
+const dashboard = () => JSON.parse(texts["grafana.json"]).panels.flatMap(({targets}) => targets);
+
+test("Prometheus accepts each query of the dashboard", async (t) => {
+  const folder = await mkdtemp(join(tmpdir(), "vines-rules-"));
+  t.after(() => rm(folder, {recursive: true}));
+  const rules = dashboard().map(({expr}, i) => ({record: `query_${i}`, expr}));
+  const file = join(folder, "queries.yml");
+  await writeFile(file, JSON.stringify({groups: [{name: "dashboard", rules}]}));
+  const {code, text} = await promtool(["check", "rules", file]);
+  assert.equal(code, 0, text);
+  assert.match(text, new RegExp(`${rules.length} rules found`));
+});
+
+test("every metric in an alert or in the dashboard is exported by the service", async () => {
   const service = await startService();
   await (await fetch(`${service.url}/v1/simulate?tau_end=20`)).text();
   const text = await (await fetch(`${service.url}/metrics`)).text();
   await service.stop();
   const served = new Set([...text.matchAll(/^\w+/gm)].map(([name]) => name));
   const rules = parse(texts["alerts.yml"]).groups.flatMap((group) => group.rules);
-  const names = rules.flatMap(({expr}) => expr.match(/\b(?:vines|process)_\w+/g) ?? []);
-  assert.ok(names.length >= 5);
+  const names = [...rules, ...dashboard()].flatMap(
+    ({expr}) => expr.match(/\b(?:vines|process)_\w+/g) ?? [],
+  );
+  assert.ok(names.length >= 20);
   for (const name of names) assert.ok(served.has(name), name);
 });
 
