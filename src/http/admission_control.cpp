@@ -106,22 +106,29 @@ void AdmissionControl::release() {
 }
 
 AdmissionControl::SweepSlot AdmissionControl::acquire_sweep(const std::string& client) {
-    const std::lock_guard lock(mutex_);
-    const auto most = static_cast<std::size_t>(limits_.sweeps);
-    if (sweeps_.size() >= most || sweeps_stopped_) return nullptr;
-    if (most > 1 && sweeps_.count(client) >= most - 1) return nullptr;
-    return {this, [this, place = sweeps_.insert(client)](void*) {
+    std::unique_lock lock(mutex_);
+    if (!has_sweeps_left() || sweeps_stopped_) return nullptr;
+    if (limits_.sweeps > 1 && static_cast<int>(sweeps_.count(client)) >= limits_.sweeps - 1)
+        return nullptr;
+    const auto place = sweeps_.insert(client);
+    lock.unlock();
+    return {this, [this, place](void*) {
                 const std::lock_guard ending(mutex_);
                 sweeps_.erase(place);
             }};
+}
+
+bool AdmissionControl::sweeps_left() const {
+    const std::lock_guard lock(mutex_);
+    return has_sweeps_left();
 }
 
 // --- Large bodies ---
 
 namespace {
 
-// Bodies up to this size are read at any time, by as many requests as have a slot; of the larger
-// ones so many that they have no more bytes than this together, or one. While they are read and
+// Bodies up to this size need no permit. Larger ones run together up to `bodies_at_once` bytes, or
+// one alone. While they are read and
 // computed they take up to fifteen times their size, one of the largest up to 340 MB. Bytes.
 constexpr std::size_t immediate_body = 1 << 20, bodies_at_once = 16 << 20;
 
@@ -130,59 +137,61 @@ constexpr std::size_t most_waiting_bodies = 32, most_waiting_bytes = 256 << 20;
 
 }  // namespace
 
-/// False if a body finds no place in the queue, even if others whose turn is later lose theirs.
-bool AdmissionControl::make_room(const std::string& client, std::size_t bytes) {
-    const auto is_full = [this, bytes] {
-        std::size_t waiting = 0;
-        bodies_.for_each([&waiting](const Body* body) { waiting += body->bytes; });
-        return !bodies_.empty() &&
-               (bodies_.size() >= most_waiting_bodies || waiting + bytes > most_waiting_bytes);
+/// False if a body finds no space in the queue, even instead of the last one.
+bool AdmissionControl::make_space(const std::string& client, std::size_t bytes) {
+    std::size_t waiting = 0;
+    bodies_.for_each([&waiting](const Body* body) { waiting += body->bytes; });
+    const auto fits = [bytes](std::size_t bodies, std::size_t others) {
+        return bodies == 0 ||
+               (bodies < most_waiting_bodies && others + bytes <= most_waiting_bytes);
     };
-    while (is_full()) {
-        if (!bodies_.precedes_last(client)) return false;
-        Body& displaced = *bodies_.pop_last();
-        displaced.displaced = true;
-        displaced.changed.notify_one();
-    }
+    if (fits(bodies_.size(), waiting)) return true;
+    if (!bodies_.precedes_last(client) ||
+        !fits(bodies_.size() - 1, waiting - bodies_.back()->bytes))
+        return false;
+    Body& displaced = *bodies_.pop_last();
+    displaced.displaced = true;
+    displaced.changed.notify_one();
     return true;
 }
 
-void AdmissionControl::assign_turns() {
+void AdmissionControl::assign_body_permits() {
     while (!bodies_.empty() &&
            (bodies_in_work_ == 0 || bodies_in_work_ + bodies_.front()->bytes <= bodies_at_once)) {
         Body& next = **bodies_.pop();
         bodies_in_work_ += next.bytes;
-        next.has_turn = true;
+        next.has_permit = true;
         next.changed.notify_one();
     }
 }
 
-AdmissionControl::BodyTurn AdmissionControl::acquire_body(
+AdmissionControl::BodyPermit AdmissionControl::acquire_body(
     const std::string& client, std::size_t bytes, const std::function<bool()>& gives_up) {
     if (bytes <= immediate_body) return {this, [](void*) {}};
     std::unique_lock lock(mutex_);
-    if (!make_room(client, bytes)) return nullptr;
+    if (!make_space(client, bytes)) return nullptr;
     Body body{.bytes = bytes};
     bodies_.push(client, &body);
-    assign_turns();
+    assign_body_permits();
     bool given_up = false;
-    while (!body.has_turn && !body.displaced && !given_up) {
+    while (!body.has_permit && !body.displaced && !given_up) {
         body.changed.wait_for(lock, give_up_check);
-        if (body.has_turn || body.displaced) break;
+        if (body.has_permit || body.displaced) break;
         lock.unlock();
         given_up = gives_up();
         lock.lock();
     }
-    if (!body.has_turn) {
+    if (!body.has_permit) {
         bodies_.remove(&body);
-        assign_turns();
+        assign_body_permits();
         return nullptr;
     }
+    lock.unlock();
     return {this, [this, bytes](void*) {
                 trim_memory();
                 const std::lock_guard ending(mutex_);
                 bodies_in_work_ -= bytes;
-                assign_turns();
+                assign_body_permits();
             }};
 }
 

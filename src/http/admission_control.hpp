@@ -83,13 +83,14 @@ public:
     /// or sweeps are stopped.
     using SweepSlot = std::shared_ptr<void>;
     SweepSlot acquire_sweep(const std::string& client);
+    bool sweeps_left() const;  ///< by the limit of all clients
 
     /// The right to read a large body and to compute with it. At most one, or several that are
     /// small together, have it at once, since these take many times their size; others wait. Null
     /// if too many wait whose turn is earlier, or gives_up() returned true; it is polled every
     /// 50 ms. Smaller bodies have it at once.
-    using BodyTurn = std::shared_ptr<void>;
-    BodyTurn acquire_body(
+    using BodyPermit = std::shared_ptr<void>;
+    BodyPermit acquire_body(
         const std::string& client, std::size_t bytes, const std::function<bool()>& gives_up);
 
     /// Running sweeps end at their next check and no new one starts. Requests still compute.
@@ -112,15 +113,16 @@ private:
     struct Body {
         std::size_t bytes = 0;
         std::condition_variable changed = {};
-        bool has_turn = false;
+        bool has_permit = false;
         bool displaced = false;
     };
 
     bool is_full() const;
+    bool has_sweeps_left() const { return static_cast<int>(sweeps_.size()) < limits_.sweeps; }
     void assign_slots();
     bool end_wait(Queue& queue, Waiter& waiter);
-    bool make_room(const std::string& client, std::size_t bytes);
-    void assign_turns();
+    bool make_space(const std::string& client, std::size_t bytes);
+    void assign_body_permits();
 
     const AdmissionLimits limits_;
     mutable std::mutex mutex_;

@@ -77,8 +77,9 @@ std::string client_address(const Head& head, const std::string& peer, const Netw
 }
 
 std::string owner_of(const std::string& address) {
+    static const Network v4 = *Network::read("0.0.0.0/0");
     std::optional<Bytes> bytes = bytes_of(address);
-    if (!bytes || Network::read("0.0.0.0/0")->contains(address)) return address;
+    if (!bytes || v4.contains(address)) return address;
     clear_after(*bytes, owner_bits);
     std::array<char, INET6_ADDRSTRLEN> text{};
     return ::inet_ntop(AF_INET6, bytes->data(), text.data(), text.size());

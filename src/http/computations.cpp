@@ -91,7 +91,7 @@ constexpr std::size_t weight_of_fields = 16;
 constexpr std::size_t most_numbers = 8'000'000;
 
 // Numbers outside the record: impact_times_s can list every impact in it.
-constexpr std::size_t most_beside = 1'000'000;
+constexpr std::size_t most_outside_record = 1'000'000;
 
 // The answer lists the impacts in more than 250 bytes each: the default --answer-limit permits half
 // a million.
@@ -110,15 +110,16 @@ constexpr std::size_t max_hash = 256;
 /// Ends the request of a client that has left; only the log shows its status.
 [[noreturn]] void throw_client_left() { throw Problem(499, "the client has left"); }
 
-/// Waits for the turn of a large body, for at most `seconds`; Problem 503 if there is none. It
+/// Waits for the permit of a large body, for at most `seconds`; Problem 503 if there is none. It
 /// comes before the permit to compute, so that waiting requests hold no slot.
-AdmissionControl::BodyTurn turn_of(const Request& r, AdmissionControl& admission, double seconds) {
+AdmissionControl::BodyPermit body_permit_for(
+    const Request& r, AdmissionControl& admission, double seconds) {
     const std::size_t bytes = r.body.size() * (r.path == "/v1/identify" ? 1 : weight_of_fields);
     const auto deadline = Stopwatch::Clock::now() + std::chrono::duration<double>(seconds);
-    auto turn = admission.acquire_body(r.client, bytes, [&] {
+    auto permit = admission.acquire_body(r.client, bytes, [&] {
         return r.left() || admission.all_stopped() || Stopwatch::Clock::now() > deadline;
     });
-    if (turn) return turn;
+    if (permit) return permit;
     if (r.left()) throw_client_left();
     if (admission.all_stopped()) throw *stopping_refusal().problem;
     throw Problem::unavailable(
@@ -143,7 +144,7 @@ api::ReadLimits reading_of(const Request& r, const RouteOptions& options, const 
     return {
         .gives_up = stop.requested,
         .most_numbers = most_numbers,
-        .most_other_values = most_beside,
+        .most_other_values = most_outside_record,
         .most_containers = std::max(least_parts, parts_of_a_point * points),
         .most_impacts = most_impacts};
 }
@@ -222,7 +223,8 @@ std::string encoded(
 
 Response answer(const Request& r, const Service& service, Stopwatch& watch) {
     const RouteOptions& options = service.options;
-    AdmissionControl::BodyTurn turn = turn_of(r, service.admission, options.deadline);
+    AdmissionControl::BodyPermit body_permit =
+        body_permit_for(r, service.admission, options.deadline);
     Permit permit = permit_for(r, service.admission, watch);
     const api::Stop stop = stop_conditions(options.deadline, r, service.admission, permit);
     api::AnswerRequest request =
@@ -251,7 +253,7 @@ Response answer(const Request& r, const Service& service, Stopwatch& watch) {
     }
     std::string bytes = encoded(
         std::move(answer), *format, options.answer_limit, provenance.size() + max_hash, r.left);
-    turn.reset();
+    body_permit.reset();
     if (stop.requested()) tag = {};  // a repeated request can get further
     Response response{
         .content_type = api::name_of(*format).media_type,
@@ -265,7 +267,7 @@ Response answer(const Request& r, const Service& service, Stopwatch& watch) {
 
 Response sweep(const Request& r, const Service& service, Stopwatch& watch) {
     const RouteOptions& options = service.options;
-    const auto turn = turn_of(r, service.admission, options.deadline);
+    const auto body_permit = body_permit_for(r, service.admission, options.deadline);
     Permit permit = permit_for(r, service.admission, watch);  // for reading the request
     const api::Stop stop = stop_conditions(options.deadline, r, service.admission, permit);
     std::optional<api::Format> format;

@@ -44,7 +44,7 @@ std::optional<std::size_t> receive(int socket, char* data, std::size_t size) {
 }
 
 void send_continue(int socket) {
-    // The socket's buffer is empty: these are the first bytes of an answer.
+    // A client that waits for them has read the answers before: they fit into the socket's buffer.
     static_cast<void>(
         ::send(socket, continue_line.data(), continue_line.size(), MSG_DONTWAIT | MSG_NOSIGNAL));
 }
@@ -55,6 +55,7 @@ Connection::Connection(
     int socket, std::string peer, const HeadCheck& check_head, MemoryBudget& memory)
     : socket_(socket),
       peer_(std::move(peer)),
+      owner_(owner_of(peer_)),
       check_head_(check_head),
       held_(memory),
       sender_{.address = peer_},
@@ -167,19 +168,14 @@ Exchange Connection::take() {
     return exchange;
 }
 
-void Connection::deliver() {
-    const Outbox::State state = delivery_->outbox->send();
+void Connection::deliver(std::size_t max_bytes) {
+    const Outbox::State state = delivery_->outbox->send(max_bytes);
     if (state == Outbox::State::open) return;
     const Delivery delivery = *std::exchange(delivery_, {});
     delivery.ended(state);
     aborted_ = state == Outbox::State::broken;
     if (delivery.keep_alive && !aborted_) begin_waiting();
     else begin_closing();
-}
-
-void Connection::break_off() {
-    delivery_->outbox->cancel();
-    deliver();
 }
 
 void Connection::begin_closing() {

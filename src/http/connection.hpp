@@ -1,11 +1,12 @@
-// One client's connection. It reads the bytes that arrive, without blocking, and turns them into
-// one complete request after another.
+// One client's connection. It turns the bytes that arrive into one complete request after another,
+// and sends the answers, without blocking.
 // Its time limits: 10 s for a head, 10 s for each further 64 KiB of a body, 60 s idle between
 // requests.
 #pragma once
 
 #include <chrono>
 #include <functional>
+#include <limits>
 #include <memory>
 #include <optional>
 #include <string>
@@ -31,6 +32,7 @@ struct Exchange {
 struct Delivery {
     std::shared_ptr<Outbox> outbox;
     bool keep_alive = false;                        ///< the connection can be reused after it
+    bool is_streaming = false;                      ///< computed while it is sent
     std::function<void(Outbox::State)> ended = {};  ///< called once: sent or broken
 };
 
@@ -84,11 +86,13 @@ public:
     /// To be called with an answer; deliver() then sends it.
     void begin_delivery(Delivery delivery) { delivery_ = std::move(delivery); }
     bool is_delivering() const { return delivery_.has_value(); }
+    bool is_streaming() const { return delivery_ && delivery_->is_streaming; }
     /// Sends what the socket takes of the answer. At its end the connection waits for the next
     /// request, or closes: with a reset if the answer is broken off, so that the client does not
     /// take the part for the whole.
-    void deliver();
-    void break_off();  ///< ends the delivery
+    void deliver(std::size_t max_bytes = std::numeric_limits<std::size_t>::max());
+    bool can_send_more() const { return delivery_->outbox->can_send_more(); }
+    void break_off() { delivery_->outbox->cancel(); }  ///< deliver() then ends the delivery
     bool client_is_slow(bool scarce) {
         return delivery_->outbox->client_is_slow(Clock::now(), scarce);
     }
@@ -103,6 +107,7 @@ public:
 
     int socket() const { return socket_; }
     const std::string& peer() const { return peer_; }
+    const std::string& owner() const { return owner_; }  ///< owner_of(peer())
     /// Whose request it is, once its head is complete.
     const Sender& sender() const { return sender_; }
 
@@ -119,7 +124,7 @@ private:
     void begin_waiting();
 
     const int socket_;
-    const std::string peer_;
+    const std::string peer_, owner_;
     const HeadCheck& check_head_;
     MemoryShare held_;
     std::string bytes_;  // received, not yet taken

@@ -29,14 +29,17 @@ constexpr auto expiry_interval = 250ms;
 
 // Time for which a worker waits for a client's next request, in ms: cheaper than to return the
 // connection to the event loop and get it back.
-constexpr int next_request_wait = 1;  // ms
+constexpr int next_request_wait = 1;
 
 // Answers to one client in a row; then the others get their turn.
 constexpr int max_answers_in_row = 16;
 
 // Time for which a resource counts as scarce after a request was refused for lack of it: longer
-// than a client that tries again waits (Retry-After: 1).
-constexpr auto scarce_time = 2s;
+// than a client that reads slowly may pause then, and than a refused one waits (Retry-After: 1).
+constexpr auto scarce_time = 4s;
+
+// Bytes sent to one client before the others get their turn.
+constexpr std::size_t max_sent = 1 << 20;
 
 // Unsent bytes of one client in the kernel, in addition to those on their way.
 constexpr int unsent_in_kernel = 1 << 17;
@@ -92,13 +95,8 @@ EventLoop::EventLoop(int listening, const ConnectionLimits& limits, Handlers han
           work(std::move(connection));
       }) {
     ::fcntl(listening_, F_SETFL, ::fcntl(listening_, F_GETFL) | O_NONBLOCK);
-    add(poll_, wake_);
+    add(poll_.number(), wake_.number());
     listen(true);
-}
-
-EventLoop::~EventLoop() {
-    ::close(poll_);
-    ::close(wake_);
 }
 
 void EventLoop::run() {
@@ -116,21 +114,21 @@ void EventLoop::stop() {
 
 void EventLoop::wake() const {
     const std::uint64_t one = 1;
-    static_cast<void>(!::write(wake_, &one, sizeof one));
+    static_cast<void>(!::write(wake_.number(), &one, sizeof one));
 }
 
 void EventLoop::wait() {
     std::array<epoll_event, 256> events;
     const int n = ::epoll_wait(
-        poll_, events.data(), events.size(),
+        poll_.number(), events.data(), events.size(),
         ready_.empty() ? static_cast<int>((stopping_ ? 20ms : expiry_interval).count()) : 0);
     for (int i = 0; i < n; ++i) {
         const epoll_event& event = events[static_cast<std::size_t>(i)];
         const int socket = event.data.fd;
         if (socket == listening_) accept_all();
-        else if (socket == wake_) {
+        else if (socket == wake_.number()) {
             std::uint64_t count = 0;
-            static_cast<void>(!::read(wake_, &count, sizeof count));
+            static_cast<void>(!::read(wake_.number(), &count, sizeof count));
         } else handle(socket, event.events & (EPOLLERR | EPOLLHUP));
     }
     for (const int socket : std::exchange(ready_, {})) handle(socket);
@@ -138,7 +136,7 @@ void EventLoop::wait() {
 
 void EventLoop::listen(bool on) {
     if (on == listens_) return;
-    on ? add(poll_, listening_) : remove(poll_, listening_);
+    on ? add(poll_.number(), listening_) : remove(poll_.number(), listening_);
     listens_ = on;
 }
 
@@ -148,7 +146,10 @@ void EventLoop::accept_all() {
     for (;;) {
         const bool full = load().open >= max_connections_;
         Connection* other = full ? eviction_candidate() : nullptr;
-        if (full && !other) return listen(false);
+        if (full && !other) {
+            connections_scarce_ = Clock::now();
+            return listen(false);
+        }
         sockaddr_storage address{};
         socklen_t size = sizeof address;
         auto* const peer = reinterpret_cast<sockaddr*>(&address);
@@ -160,21 +161,17 @@ void EventLoop::accept_all() {
         }
         if (socket < 0 && errno != EAGAIN) return listen(false);  // out of memory or descriptors
         if (socket < 0) return;
+        auto connection = std::make_unique<Connection>(
+            socket, numeric(peer, size), handlers_.check_head, memory_);
+        if (is_at_limit(*connection) && !(other = eviction_candidate(connection->owner())))
+            continue;  // closes the new one
         if (other) close(other->socket());
-        const std::string from = numeric(peer, size);
-        if (!other && is_at_limit(from)) {
-            if (!(other = eviction_candidate(owner_of(from)))) {
-                ::close(socket);
-                continue;
-            }
-            close(other->socket());
-        }
         const int yes = 1;
         ::setsockopt(socket, IPPROTO_TCP, TCP_NODELAY, &yes, sizeof yes);
         ::setsockopt(
             socket, IPPROTO_TCP, TCP_NOTSENT_LOWAT, &unsent_in_kernel, sizeof unsent_in_kernel);
-        ++open_[owner_of(from)];
-        watch(std::make_unique<Connection>(socket, from, handlers_.check_head, memory_));
+        ++open_[connection->owner()];
+        watch(std::move(connection));
     }
 }
 
@@ -188,7 +185,7 @@ Connection* EventLoop::eviction_candidate(const std::string& owner) const {
         return a.waiting_since() < b.waiting_since();
     };
     for (const Owned& c : connections_)
-        if (c && !c->is_delivering() && (owner.empty() || owner_of(c->peer()) == owner) &&
+        if (c && !c->is_delivering() && (owner.empty() || c->owner() == owner) &&
             (!chosen || before(*c, *chosen)))
             chosen = c.get();
     return chosen;
@@ -202,33 +199,35 @@ void EventLoop::watch(Owned connection) {
     Connection& watched = *connections_[static_cast<std::size_t>(socket)];
     ++count_;
     if (watched.is_delivering()) ++delivering_;
-    wait_for(poll_, EPOLL_CTL_ADD, watched);
+    wait_for(poll_.number(), EPOLL_CTL_ADD, watched);
 }
 
-/// True if the address may open no more connections: behind a proxy are many clients.
-bool EventLoop::is_at_limit(const std::string& address) const {
-    if (contain(proxies_, address)) return false;
-    const auto open = open_.find(owner_of(address));
+/// True if the client may open no more connections. Behind a proxy are many clients.
+bool EventLoop::is_at_limit(const Connection& connection) const {
+    if (contain(proxies_, connection.peer())) return false;
+    const auto open = open_.find(connection.owner());
     return open != open_.end() && open->second >= max_per_client_;
 }
 
 EventLoop::Owned EventLoop::release(int socket) {
-    remove(poll_, socket);
+    remove(poll_.number(), socket);
     --count_;
     return std::move(connections_[static_cast<std::size_t>(socket)]);
 }
 
 void EventLoop::close(int socket) {
     const Owned connection = release(socket);
-    const auto open = open_.find(owner_of(connection->peer()));
+    const auto open = open_.find(connection->owner());
     if (--open->second == 0) open_.erase(open);
 }
 
 void EventLoop::handle(int socket, bool failed) {
     const Owned& connection = connections_[static_cast<std::size_t>(socket)];
     if (!connection) return;  // closed after the event
-    if (connection->is_delivering()) deliver(*connection, failed);
-    else if (!connection->is_closing()) read(*connection);
+    if (connection->is_delivering()) {
+        if (failed) connection->break_off();
+        deliver(*connection);
+    } else if (!connection->is_closing()) read(*connection);
     else if (connection->finish_closing()) close(socket);
 }
 
@@ -266,18 +265,19 @@ bool EventLoop::answer_here(Connection& connection) {
     handlers_.answer(connection, connection.take());
     ++delivering_;
     connection.deliver();
-    if (connection.is_delivering()) wait_for(poll_, EPOLL_CTL_MOD, connection);
+    if (connection.is_delivering()) wait_for(poll_.number(), EPOLL_CTL_MOD, connection);
     else --delivering_;
     return !connection.is_delivering() && !connection.is_closing();
 }
 
-/// failed: the client has reset the connection.
-void EventLoop::deliver(Connection& connection, bool failed) {
-    if (failed) connection.break_off();
-    else connection.deliver();
-    if (connection.is_delivering()) return;
+void EventLoop::deliver(Connection& connection) {
+    connection.deliver(max_sent);
+    if (connection.is_delivering()) {
+        if (connection.can_send_more()) ready_.push_back(connection.socket());
+        return;
+    }
     --delivering_;
-    wait_for(poll_, EPOLL_CTL_MOD, connection);
+    wait_for(poll_.number(), EPOLL_CTL_MOD, connection);
     if (!connection.is_closing()) read(connection);
 }
 
@@ -305,12 +305,10 @@ void EventLoop::expire() {
         ::shutdown(listening_, SHUT_RDWR);
         idle_until_ = now + drain_time;
     }
-    const bool scarce = is_scarce();
+    expire_deliveries();
     for (const Owned& c : connections_)
-        if (c && c->is_delivering()) {
-            if (c->client_is_slow(scarce)) deliver(*c, true);
-        } else if (
-            c && now > (c->is_closing() ? c->deadline() : std::min(c->deadline(), idle_until_)))
+        if (c && !c->is_delivering() &&
+            now > (c->is_closing() ? c->deadline() : std::min(c->deadline(), idle_until_)))
             time_out(*c);
     if (!stopping_) listen(true);
 }
@@ -326,17 +324,28 @@ void EventLoop::time_out(Connection& connection) {
     answer_here(connection);
 }
 
-bool EventLoop::is_scarce() {
-    return memory_.is_full() || workers_.jobs_wait() ||
-           Clock::now() - scarce_since_.load() < scarce_time;
+/// Breaks off answers that are read too slowly. A finished answer holds memory and a connection; a
+/// stream also a thread, and a sweep's place.
+void EventLoop::expire_deliveries() {
+    const auto was_scarce = [this](Clock::time_point last) {
+        return checked_ - last < scarce_time;
+    };
+    const bool scarce = memory_.is_full() || was_scarce(connections_scarce_);
+    const bool streams = scarce || workers_.jobs_wait() || was_scarce(streams_scarce_);
+    for (const Owned& c : connections_)
+        if (c && c->is_delivering() && c->client_is_slow(c->is_streaming() ? streams : scarce)) {
+            c->break_off();
+            deliver(*c);
+        }
 }
 
 bool EventLoop::is_done() const { return closing_ && count_ == 0 && with_workers_ == 0; }
 
 void EventLoop::work(Owned connection) {
+    const std::string client = connection->sender().client();
     for (;;) {
-        const Task rest = handlers_.answer(*connection, connection->take());
-        if (rest) return finish_stream(std::move(connection), rest);
+        Task rest = handlers_.answer(*connection, connection->take());
+        if (rest) return finish_stream(std::move(connection), std::move(rest));
         connection->deliver();
         if (connection->is_delivering() || connection->is_closing()) break;
         Connection::Progress progress = connection->advance();
@@ -344,19 +353,19 @@ void EventLoop::work(Owned connection) {
             progress = connection->advance();
         if (progress == Connection::Progress::ended) connection->begin_closing();
         if (progress != Connection::Progress::complete) break;
-        // Others have waited longer.
-        if (workers_.jobs_wait()) {
-            const std::string client = connection->sender().client();
-            return workers_.put_back(client, std::move(connection));
-        }
+        // Others have waited longer, or the thread is another client's, behind a proxy.
+        const std::string next = connection->sender().client();
+        if (workers_.jobs_wait() || next != client)
+            return workers_.put_back(next, std::move(connection));
     }
     return_connection(std::move(connection));
 }
 
-void EventLoop::finish_stream(Owned connection, const Task& rest) {
+void EventLoop::finish_stream(Owned connection, Task rest) {
     const int socket = connection->socket();
     return_connection(std::move(connection));
     rest();
+    rest = {};  // with a sweep's place, before the client learns of the end
     {
         const std::lock_guard lock(mutex_);
         ended_.push_back(socket);

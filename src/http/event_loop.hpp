@@ -17,6 +17,7 @@
 #include "http/connection.hpp"
 #include "http/metrics.hpp"
 #include "http/worker_pool.hpp"
+#include "program/descriptor.hpp"
 
 namespace vines::http {
 
@@ -44,7 +45,6 @@ public:
     /// listening: a listening socket, which becomes non-blocking. Throws std::system_error if no
     /// worker thread can be started.
     EventLoop(int listening, const ConnectionLimits& limits, Handlers handlers);
-    ~EventLoop();
 
     /// Runs until stop() has been called and all connections are closed.
     void run();
@@ -55,9 +55,9 @@ public:
             .in_flight = with_workers_ + delivering_,
             .held_bytes = memory_.bytes()};
     }
-    /// To be called when a request is refused for lack of a resource: for a while, clients that
-    /// read slowly lose theirs sooner.
-    void note_scarcity() { scarce_since_ = Clock::now(); }
+    /// To be called when a request is refused because streams hold what it needs: for a while
+    /// those that are read slowly are broken off sooner.
+    void note_scarcity_of_streams() { streams_scarce_ = Clock::now(); }
     /// From any thread, once: accepts no new connections, answers requests that arrive on open ones
     /// within 300 ms, waits for the answers in progress, and lets run() return.
     void stop();
@@ -70,7 +70,7 @@ private:
     void wait();
     void accept_all();
     Connection* eviction_candidate(const std::string& owner = {}) const;
-    bool is_at_limit(const std::string& address) const;
+    bool is_at_limit(const Connection& connection) const;
     void listen(bool on);
     void watch(Owned connection);
     Owned release(int socket);
@@ -80,32 +80,33 @@ private:
     void hand_over(Owned connection);
     void refuse(Owned connection);
     bool answer_here(Connection& connection);
-    void deliver(Connection& connection, bool failed);
+    void deliver(Connection& connection);
+    void expire_deliveries();
     void collect_returned();
     void expire();
     void time_out(Connection& connection);
-    bool is_scarce();
     bool is_done() const;
     // Called by workers.
     void work(Owned connection);
     bool next_request_is_near(Connection& connection);
     void return_connection(Owned connection);
-    void finish_stream(Owned connection, const Task& rest);
+    void finish_stream(Owned connection, Task rest);
     void wake() const;
 
     const int listening_;
     const Handlers handlers_;
     const std::size_t max_connections_, max_per_client_;
     const Networks proxies_;
-    const int poll_, wake_;
+    const Descriptor poll_, wake_;
     MemoryBudget memory_;
     std::vector<Owned> connections_;             // indexed by socket; used by run() only
     std::map<std::string, std::size_t> open_;    // connections by client, also those with workers
-    std::vector<int> ready_;                     // sockets with more pipelined requests to read
+    std::vector<int> ready_;                     // sockets with more to read or to send
     std::atomic<std::size_t> count_ = 0;         // number of connections_
     std::atomic<std::size_t> delivering_ = 0;    // those of them that take an answer
     std::atomic<std::size_t> with_workers_ = 0;  // or returned and not yet collected
-    std::atomic<Clock::time_point> scarce_since_{};
+    std::atomic<Clock::time_point> streams_scarce_{};
+    Clock::time_point connections_scarce_{};
     std::atomic<bool> stopping_ = false;
     bool listens_ = false, closing_ = false;
     Clock::time_point checked_ = Clock::now();

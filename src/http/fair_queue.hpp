@@ -19,6 +19,7 @@ public:
     bool empty() const { return entries_.empty(); }
     std::size_t size() const { return entries_.size(); }
     const T& front() const { return entries_.front().value; }
+    const T& back() const { return entries_.back().value; }
 
     void push(const std::string& client, T value) {
         const long turn = last_turns_[client] = next_turn(client);

@@ -80,13 +80,14 @@ struct Response {
     /// Writes the answer instead of a body; false closes the connection with a reset.
     std::function<bool(Writer&)> stream = {};
     std::size_t held = 0;       ///< bytes a stream holds until its end, approximately
-    bool compressible = false;  ///< the stream can be sent gzipped
-    /// The stream sends nothing until it is computed: a client that has closed its sending side
+    bool compressible = false;  ///< the stream can be sent gzipped; after complete(): it is
+    /// The stream sends no body until it is computed: a client that has closed its sending side
     /// counts as one that has left.
     bool silent = false;
     /// For an error: the body is made from it when sent.
     std::optional<api::Problem> problem = {};
-    Timing timing = {};  ///< header Server-Timing
+    bool own_limit = false;  ///< refused for what the client itself holds
+    Timing timing = {};      ///< header Server-Timing
 };
 
 /// The function that answers a method and path.

@@ -31,22 +31,24 @@ constexpr std::string_view status_line_begin = "HTTP/1.1 ";
 
 }  // namespace
 
-// A client slower than that would hold memory, a thread or a sweep's place for nothing.
+// A client slower than this would hold memory, a thread or a sweep's place for nothing.
 Outbox::Outbox(int socket)
     : socket_(socket),
       usual_{.allowed = 30s, .rate = 8192},
-      while_scarce_{.allowed = 2s, .rate = 65536} {}
+      while_scarce_{.allowed = 2s, .rate = 65536} {
+    before_ = queued();
+}
 
 bool Outbox::client_has_left() {
-    pollfd state{socket_, POLLIN | POLLRDHUP, 0};
+    pollfd state{socket_, POLLRDHUP, 0};
     if (::poll(&state, 1, 0) <= 0) return false;
     if (state.revents & (POLLERR | POLLHUP | POLLNVAL)) return true;
     if (state.revents & POLLRDHUP) probe();
     return false;
 }
 
-/// Sends the next byte of the answer's begin; the interval doubles each time. At most half of the
-/// work for a client that has left is then wasted, and the nine bytes last for minutes.
+/// Sends the next byte of the answer's beginning; the interval doubles each time. At most half of
+/// the work for a client that has left is then wasted, and the nine bytes last for minutes.
 void Outbox::probe() {
     const auto now = Clock::now();
     if (probed_ == status_line_begin.size() || now < probe_at_) return;
@@ -81,9 +83,10 @@ bool Outbox::wait_for_space() {
     return !broken_;
 }
 
-Outbox::State Outbox::send() {
+Outbox::State Outbox::send(std::size_t max_bytes) {
     const std::lock_guard lock(mutex_);
-    while (unsent_ > 0 && !broken_) {
+    const std::size_t sent_before = sent_;
+    while (unsent_ > 0 && !broken_ && sent_ - sent_before < max_bytes) {
         std::array<iovec, max_parts> pieces;
         std::size_t n = 0;
         for (auto part = parts_.begin(); part != parts_.end() && n < pieces.size(); ++part, ++n)
@@ -119,19 +122,30 @@ bool Outbox::client_is_slow(Clock::time_point now, bool scarce) {
     const std::chrono::duration<double> waited = wait - std::exchange(counted_wait_, wait);
     const double read = bytes - std::exchange(counted_bytes_, bytes);
     for (Lag* lag : {&usual_, &while_scarce_}) {
-        // Bytes in advance make nothing good: they can lie unread in the client's system.
+        // Bytes read in advance give no credit: they can lie unread in the client's system.
         lag->time += waited - std::chrono::duration<double>(read / lag->rate);
         lag->time = std::max(lag->time, std::chrono::duration<double>(0));
     }
+    if (!scarce) while_scarce_.time = {};
     const Lag& lag = scarce ? while_scarce_ : usual_;
     return lag.time > lag.allowed;
 }
 
 /// Bytes that the client's system has received: those in the socket's buffer are not read yet.
 std::size_t Outbox::acknowledged() const {
-    int queued = 0;
-    if (::ioctl(socket_, SIOCOUTQ, &queued) != 0) return sent_;
-    return sent_ - std::min(sent_, static_cast<std::size_t>(queued));
+    const std::size_t all = before_ + sent_;
+    return all - std::min(all, queued());
+}
+
+/// Bytes in the socket's buffer that the client has not acknowledged.
+std::size_t Outbox::queued() const {
+    int bytes = 0;
+    return ::ioctl(socket_, SIOCOUTQ, &bytes) == 0 ? static_cast<std::size_t>(bytes) : 0;
+}
+
+bool Outbox::can_send_more() const {
+    const std::lock_guard lock(mutex_);
+    return unsent_ > 0 && !blocked_ && !broken_;
 }
 
 bool Outbox::is_broken() const {

@@ -7,9 +7,9 @@
 #include <condition_variable>
 #include <cstddef>
 #include <deque>
+#include <limits>
 #include <mutex>
 #include <string>
-#include <string_view>
 
 namespace vines::http {
 
@@ -37,8 +37,10 @@ public:
         sent,   ///< the socket has taken the whole answer
         broken  ///< not all of it can be sent
     };
-    /// Sends what the socket takes.
-    State send();
+    /// Sends what the socket takes, up to about max_bytes.
+    State send(std::size_t max_bytes = std::numeric_limits<std::size_t>::max());
+    /// True if the last send() has stopped at its limit.
+    bool can_send_more() const;
     /// Nothing more is sent; wait_for_space() returns.
     void cancel();
 
@@ -54,6 +56,7 @@ public:
 private:
     State state() const;
     void drop_sent(std::size_t bytes);
+    std::size_t queued() const;
     std::size_t acknowledged() const;
     void probe();
 
@@ -62,6 +65,7 @@ private:
     std::condition_variable changed_;
     std::deque<std::string> parts_;  // not yet sent, from begin_ on
     std::size_t begin_ = 0, unsent_ = 0, sent_ = 0, probed_ = 0;
+    std::size_t before_ = 0;  // bytes of earlier answers in the socket's buffer
     bool ended_ = false, broken_ = false;
     // Time in which the socket took nothing more.
     bool blocked_ = false;

@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <cstring>
 #include <ctime>
+#include <exception>
 #include <functional>
 #include <string_view>
 #include <utility>
@@ -27,25 +28,26 @@ std::string server_timing(const Timing& timing) {
     return text;
 }
 
-/// Sets ETag and Cache-Control; 304 if the client has the answer. known: it is 304 already.
-void set_validators(const Head& head, bool known, Response& response) {
+/// Sets ETag and Cache-Control; 304 if the client has the answer. was_304: its tag is known to
+/// match.
+void set_validators(const Head& head, bool was_304, Response& response) {
     const bool reads = head.method == "GET" || head.method == "HEAD";
-    if (!reads || (response.status != 200 && !known)) return;
+    if (!reads || (response.status != 200 && !was_304)) return;
     const std::string tag = response.tag.empty() ? entity_tag(response.body) : response.tag;
     response.headers.emplace_back("ETag", tag);
     // Cached for a year, or revalidated with the tag.
     response.headers.emplace_back(
         "Cache-Control", response.immutable ? "max-age=31536000, immutable" : "no-cache");
     const std::string_view having = head.header("if-none-match");
-    if (known || having == "*" || matches_tag(having, tag)) response.status = 304;
+    if (was_304 || having == "*" || matches_tag(having, tag)) response.status = 304;
 }
 
 /// Compresses a body for a client that accepts it, and says so.
-void set_encoding(const Head& head, bool known, Response& response) {
+void set_encoding(const Head& head, bool was_304, Response& response) {
     const bool is_zipped = response.uncompressed_size > 0;
     const bool zips = response.compressible || is_zipped || !response.gzipped.empty() ||
                       response.body.size() >= compress_from;
-    if (zips || known) response.headers.emplace_back("Vary", "Accept-Encoding");
+    if (zips || was_304) response.headers.emplace_back("Vary", "Accept-Encoding");
     response.compressible = zips && accepts_gzip(head.header("accept-encoding"));
     if (!response.compressible || response.status == 304) return;
     response.headers.emplace_back("Content-Encoding", "gzip");
@@ -65,9 +67,9 @@ void complete(const Head& head, const std::string& request_id, Response& respons
         headers.emplace_back("Server-Timing", server_timing(response.timing));
     // Without it a browser could guess the type and run the bytes as a script.
     headers.emplace_back("X-Content-Type-Options", "nosniff");
-    const bool known = response.status == 304;
-    if (!response.stream) set_validators(head, known, response);
-    set_encoding(head, known, response);
+    const bool was_304 = response.status == 304;
+    if (!response.stream) set_validators(head, was_304, response);
+    set_encoding(head, was_304, response);
 }
 
 // --- Writing it ---
@@ -131,6 +133,10 @@ public:
             // The length of a 304 would be that of the known answer, not 0; parts are not sent.
             if (out.status == 304) out.headers.erase("Content-Length");
             out.headers.erase("Accept-Ranges");
+        });
+        // httplib's own handler would write an answer.
+        set_exception_handler([](const auto&, auto&, std::exception_ptr thrown) {
+            std::rethrow_exception(std::move(thrown));
         });
     }
     /// method: HEAD for the head alone. False if the answer was broken off.
@@ -212,6 +218,7 @@ bool write(const Head& head, bool keep_alive, Response response, Outbox& outbox)
         set_head(out, response);
         const auto nothing = [](std::size_t, std::size_t, httplib::DataSink&) { return false; };
         if (response.stream) provide_stream(head, response, out);
+        else if (response.body.empty()) out.set_header("Content-Type", response.content_type);
         else if (response.status != 304)
             out.set_content_provider(response.body.size(), response.content_type, nothing);
     };

@@ -84,7 +84,6 @@ struct Server::Implementation {
         .answer = [](const Request&) { return Response{.body = "{}\n"}; },
         .on_event_loop = true};
     Listener listener;
-    std::optional<EventLoop> event_loop;
     std::atomic<bool> closing = false;
 
     /// A request that is being answered.
@@ -98,36 +97,48 @@ struct Server::Implementation {
     /// answers read only members that stay constant while the request is in the list.
     std::mutex mutex;
     std::list<std::shared_ptr<const Work>> works;
+    std::optional<EventLoop> event_loop;  // destroyed first: it still answers
+
+    Response completed_response(Work& work) const {
+        try {
+            return completed(work, response_to(work));
+        } catch (...) {
+            log_failure(std::string(work.exchange.head.path()), work.id, std::current_exception());
+            return completed(
+                work, problem_response(500, "the server failed; the reason is in its log"));
+        }
+    }
+
+    Response completed(const Work& work, Response response) const {
+        const Head& head = work.exchange.head;
+        const std::size_t size = std::max(response.body.size(), response.uncompressed_size);
+        if (size + response.held > small_answer && event_loop->memory().is_full())
+            response = memory_refusal();
+        for (auto& header : cors_headers(head, options.access))
+            response.headers.push_back(std::move(header));
+        complete(head, work.id, response);
+        return response;
+    }
 
     Response response_to(Work& work) const {
         Exchange& exchange = work.exchange;
         if (exchange.refused) return std::move(*exchange.refused);
+        const Head& head = exchange.head;
         const std::size_t size = exchange.body.size();
-        Response response = answer_of_route(work);
+        Response response = exchange.route->answer(
+            {.method = head.method,
+             .path = std::string(head.path()),
+             .query = api::parse_query(head.query()),
+             .content_type = std::string(head.header("content-type")),
+             .body = std::move(exchange.body),
+             .accept = std::string(head.header("accept")),
+             .accept_encoding = std::string(head.header("accept-encoding")),
+             .if_none_match = std::string(head.header("if-none-match")),
+             .id = work.id,
+             .client = exchange.sender.client(),
+             .left = [&work] { return work.outbox->client_has_left(); }});
         if (size >= large_body) trim_memory();
         return response;
-    }
-
-    Response answer_of_route(Work& work) const {
-        Exchange& exchange = work.exchange;
-        const Head& head = exchange.head;
-        try {
-            return exchange.route->answer(
-                {.method = head.method,
-                 .path = std::string(head.path()),
-                 .query = api::parse_query(head.query()),
-                 .content_type = std::string(head.header("content-type")),
-                 .body = std::move(exchange.body),
-                 .accept = std::string(head.header("accept")),
-                 .accept_encoding = std::string(head.header("accept-encoding")),
-                 .if_none_match = std::string(head.header("if-none-match")),
-                 .id = work.id,
-                 .client = exchange.sender.client(),
-                 .left = [&work] { return work.outbox->client_has_left(); }});
-        } catch (...) {
-            log_failure(std::string(head.path()), work.id, std::current_exception());
-            return problem_response(500, "the server failed; the reason is in its log");
-        }
     }
 
     /// The log entry of a request, as far as it is known before the answer.
@@ -150,24 +161,19 @@ struct Server::Implementation {
         const auto work = std::make_shared<Work>(Work{
             std::move(exchange), std::move(id), std::make_shared<Outbox>(connection.socket())});
         const auto registered = enter(work);
-        Response response = response_to(*work);
-        const std::size_t size = std::max(response.body.size(), response.uncompressed_size);
-        if (size + response.held > small_answer && event_loop->memory().is_full())
-            response = memory_refusal();
-        const Head& head = work->exchange.head;
-        for (auto& header : cors_headers(head, options.access))
-            response.headers.push_back(std::move(header));
+        Response response = completed_response(*work);
         work->served.timing = response.timing;
         if (response.problem) work->served.lacking = response.problem->lacking;
-        if (!work->served.lacking.empty()) event_loop->note_scarcity();
-        complete(head, work->id, response);
+        if (work->served.lacking == "sweeps" && !response.own_limit)
+            event_loop->note_scarcity_of_streams();
         work->served.status = response.status;
         connection.hold(response.body.size() + response.held);
+        const Head& head = work->exchange.head;
         // Without chunks only the end of the connection marks the end of a stream.
         const bool keep_alive = head.keep_alive && !work->exchange.refused && !closing &&
                                 (head.takes_chunks || !response.stream);
         connection.begin_delivery(
-            {work->outbox, keep_alive,
+            {work->outbox, keep_alive, static_cast<bool>(response.stream),
              [this, work, registered](Outbox::State state) { finish(*work, registered, state); }});
         const auto send = [work, keep_alive](Response answer) {
             work->outbox->end(write_or_log(*work, keep_alive, std::move(answer)));

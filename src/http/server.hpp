@@ -3,8 +3,9 @@
 //    (access.hpp) accept or refuse it before its body is read (connection.hpp).
 // 2. A worker takes the complete request and calls the route's function. Routes that compute wait
 //    for admission (admission_control.hpp).
-// 3. The worker sends the answer through httplib (send.hpp), logs and counts it, and returns the
-//    connection to the event loop.
+// 3. The worker sends what the client's socket takes of the answer (send.hpp, outbox.hpp); the
+// event
+//    loop sends the rest. At its end the answer is logged and counted.
 #pragma once
 
 #include <memory>
@@ -20,7 +21,7 @@ namespace vines::http {
 struct ServerOptions {
     std::string host = "127.0.0.1";
     int port = 8080;                 ///< 0: any free port
-    int threads = 128;               ///< worker threads; a client that reads slowly occupies one
+    int threads = 128;               ///< worker threads; a stream that is read slowly occupies one
     std::size_t connections = 4096;  ///< open connections, including idle ones
     std::size_t client_connections = 1024;  ///< of them those of one client
     std::size_t payload_limit = 1 << 20;    ///< largest request body, bytes

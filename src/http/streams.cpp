@@ -348,6 +348,16 @@ private:
     std::string warning_ = {};
 };
 
+Response sweep_refusal(const AdmissionControl& admission) {
+    if (admission.sweeps_stopped()) return stopping_refusal();
+    const bool own_limit = admission.sweeps_left();
+    Response response = problem_response(api::Problem::unavailable(
+        "sweeps", own_limit ? "all sweeps but one are yours; wait for the end of one"
+                            : "the maximum number of sweeps is running; try again later"));
+    response.own_limit = own_limit;
+    return response;
+}
+
 }  // namespace
 
 Response stream_sweep(
@@ -361,13 +371,7 @@ Response stream_sweep(
     if (form.format != api::Format::json)
         table = std::make_shared<api::SweepTable>(*shared, form.format, form.most_bytes);
     const AdmissionControl::SweepSlot sweep_slot = admission.acquire_sweep(asked.client);
-    if (!sweep_slot)
-        return admission.sweeps_stopped()
-                   ? stopping_refusal()
-                   : problem_response(api::Problem::unavailable(
-                         "sweeps",
-                         "the maximum number of sweeps is running, or the maximum of one client; "
-                         "try again later"));
+    if (!sweep_slot) return sweep_refusal(admission);
     return {
         .content_type =
             table ? api::name_of(form.format).media_type : api::sweep_format_names[0].media_type,

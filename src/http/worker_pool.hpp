@@ -65,10 +65,10 @@ public:
         const std::lock_guard lock(mutex_);
         jobs_.push(client, std::move(job));
     }
-    /// True if a job waits for a thread.
+    /// True if a job waits for a thread, other than one whose client has its share of them.
     bool jobs_wait() {
         const std::lock_guard lock(mutex_);
-        return jobs_.size() > free_ || (!jobs_.empty() && !jobs_.has(may_begin()));
+        return jobs_.size() > free_ && jobs_.has(may_begin());
     }
 
 private:
@@ -125,9 +125,9 @@ private:
     const std::function<void(Job)> work_;
     std::mutex mutex_;
     /// Posted once per job, and by each thread at the end; a thread looks for another job before it
-    /// waits. A semaphore, because posting never
-    /// blocks: notifying a condition variable can block until previously woken threads have run,
-    /// and the thread that adds jobs also answers health checks.
+    /// waits. A semaphore, because posting never blocks: notifying a condition variable can block
+    /// until previously woken threads have run, and the thread that adds jobs also answers health
+    /// checks.
     sem_t wake_{};
     FairQueue<Job> jobs_;
     std::map<std::string, std::size_t> running_;  // jobs by client

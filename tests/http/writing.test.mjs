@@ -7,14 +7,14 @@ import {connect, statuses, until} from "./raw.mjs";
 // Time within which others get what such a client holds, ms.
 const soon = 5000;
 
-const post = (path, body) =>
-  `POST ${path} HTTP/1.1\r\nHost: localhost\r\nContent-Length: ${body.length}\r\n\r\n${body}`;
+const post = (path, body, more = "") =>
+  `POST ${path} HTTP/1.1\r\nHost: localhost\r\n${more}Content-Length: ${body.length}\r\n\r\n${body}`;
 
-/** A client that sends a request and reads only the begin of its answer. */
-async function unread(url, path, body) {
+/** A client that sends a request and reads only the beginning of its answer. */
+async function unread(url, path, body, address) {
   const connection = await connect(url);
   connection.socket.once("data", () => connection.socket.pause());
-  connection.socket.write(post(path, JSON.stringify(body)));
+  connection.socket.write(post(path, JSON.stringify(body), `X-Forwarded-For: ${address}\r\n`));
   await until(() => connection.text().length > 0);
   return connection;
 }
@@ -41,9 +41,9 @@ const sweep = {
   base: {damping: "closed_form"},
 };
 
-/** A service and clients that do not read: {url, accepted: the number of answers 200}. */
+/** A service and two addresses that do not read: {url, accepted: the number of answers 200}. */
 async function serviceWith(t, args, count, path, body) {
-  const one = await startService(args);
+  const one = await startService(["--trust-proxy", "127.0.0.1", ...args]);
   const sockets = [];
   t.after(async () => {
     for (const socket of sockets) socket.destroy();
@@ -51,7 +51,7 @@ async function serviceWith(t, args, count, path, body) {
   });
   let accepted = 0;
   for (let i = 0; i < count; ++i) {
-    const {socket, text} = await unread(one.url, path, body);
+    const {socket, text} = await unread(one.url, path, body, `192.0.2.${1 + (i % 2)}`);
     sockets.push(socket);
     if (statuses(text())[0] === 200) ++accepted;
   }
@@ -98,7 +98,7 @@ test("answers that are not read give their memory to others", async (t) => {
 });
 
 test("sweeps that are not read give their places to others", async (t) => {
-  const {url, accepted} = await serviceWith(t, ["--sweeps", "5"], 4, "/v1/sweep", sweep);
+  const {url, accepted} = await serviceWith(t, ["--sweeps", "4"], 4, "/v1/sweep", sweep);
   assert.equal(accepted, 4);
   await until(async () => {
     const answer = await fetched(url, "/v1/sweep", {...sweep, cycles: 40});
