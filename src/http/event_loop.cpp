@@ -155,11 +155,16 @@ void EventLoop::accept_all() {
         auto* const peer = reinterpret_cast<sockaddr*>(&address);
         const int socket = ::accept4(listening_, peer, &size, SOCK_NONBLOCK | SOCK_CLOEXEC);
         if (socket < 0 && (errno == EINTR || errno == ECONNABORTED)) continue;
-        if (socket < 0 && (errno == EMFILE || errno == ENFILE) && (other = eviction_candidate())) {
-            close(other->socket());
-            continue;
+        if (socket < 0 && (errno == EMFILE || errno == ENFILE)) {
+            pollfd pending{listening_, POLLIN, 0};  // it also fails if there is none
+            if (::poll(&pending, 1, 0) == 0) return;
+            if ((other = eviction_candidate())) {
+                close(other->socket());
+                continue;
+            }
+            return listen(false);
         }
-        if (socket < 0 && errno != EAGAIN) return listen(false);  // out of memory or descriptors
+        if (socket < 0 && errno != EAGAIN) return listen(false);  // out of memory
         if (socket < 0) return;
         auto connection = std::make_unique<Connection>(
             socket, numeric(peer, size), handlers_.check_head, memory_);
