@@ -205,7 +205,7 @@ std::vector<CsvColumn> read_record_columns(Json record, CancelCheck& cancel) {
             cancel.step();
             if (std::isnan(number))
                 refuse(
-                    {{"/record/" + name + "/" + std::to_string(i), beginning_of(value), nullptr,
+                    {{"/record/" + column.name + "/" + std::to_string(i), beginning_of(value), nullptr,
                       "must be a number"}});
             column.values.push_back(number);
         });
