@@ -205,8 +205,8 @@ std::vector<CsvColumn> read_record_columns(Json record, CancelCheck& cancel) {
             cancel.step();
             if (std::isnan(number))
                 refuse(
-                    {{"/record/" + column.name + "/" + std::to_string(i), beginning_of(value), nullptr,
-                      "must be a number"}});
+                    {{"/record/" + column.name + "/" + std::to_string(i), beginning_of(value),
+                      nullptr, "must be a number"}});
             column.values.push_back(number);
         });
         if (!columns.empty() && column.values.size() != columns[0].values.size())

@@ -126,14 +126,18 @@ AdmissionControl::BodyPermit body_permit_for(
         "memory", "other large bodies are being read; try again in a second");
 }
 
+/// Ends a request that has no permit: its client has left, or work whose turn is earlier came.
+[[noreturn]] void throw_without_permit(const Request& request) {
+    if (request.left()) throw_client_left();
+    throw Problem::unavailable(
+        "computing", "the queue for computing is full; try again in a second");
+}
+
 /// Waits for the request's permit to compute; Problem 503 if the queue is full.
 Permit permit_for(const Request& request, AdmissionControl& admission, Stopwatch& watch) {
     Permit permit(
         admission, request.client, request.left, request.body.size() <= max_body_in_grace);
-    if (!permit && request.left()) throw_client_left();
-    if (!permit)
-        throw Problem::unavailable(
-            "computing", "the queue for computing is full; try again in a second");
+    if (!permit) throw_without_permit(request);
     watch.lap("queue");
     return permit;
 }
@@ -151,12 +155,13 @@ api::ReadLimits reading_of(const Request& r, const RouteOptions& options, const 
 
 /// Calls read(). If it is stopped, nothing is computed that could be returned: a Problem.
 template <class Read>
-auto read_in_time(const Request& r, const Service& service, const Read& read) {
+auto read_in_time(
+    const Request& r, const Service& service, const Permit& permit, const Read& read) {
     try {
         return read();
     } catch (const api::Cancelled&) {
-        if (r.left()) throw_client_left();
         if (service.admission.all_stopped()) throw *stopping_refusal().problem;
+        if (!permit || r.left()) throw_without_permit(r);
         throw Problem(
             413,
             fmt::format(
@@ -228,7 +233,7 @@ Response answer(const Request& r, const Service& service, Stopwatch& watch) {
     Permit permit = permit_for(r, service.admission, watch);
     const api::Stop stop = stop_conditions(options.deadline, r, service.admission, permit);
     api::AnswerRequest request =
-        read_in_time(r, service, [&] { return asked(r, reading_of(r, options, stop)); });
+        read_in_time(r, service, permit, [&] { return asked(r, reading_of(r, options, stop)); });
     std::string().swap(r.body);
     std::optional<api::Format>& format = request.form.format;
     if (!format) format = accepted_format(r.accept);
@@ -244,7 +249,7 @@ Response answer(const Request& r, const Service& service, Stopwatch& watch) {
                              .most_fitted = most_fitted});
     const bool renewed = permit.renew();
     watch.lap("solve", permit.waited());
-    if (!renewed) throw_client_left();
+    if (!renewed) throw_without_permit(r);
     service.metrics.count_impacts(answer.impacts);
     if (answer.run) {
         Response response = stream_answer(std::move(answer), r, service.admission);
@@ -260,7 +265,8 @@ Response answer(const Request& r, const Service& service, Stopwatch& watch) {
         .body = std::move(bytes),
         .tag = std::move(tag),
         .headers = {varies}};
-    if (!compress(response, r, [&] { return !permit.renew() || r.left(); })) throw_client_left();
+    if (!compress(response, r, [&] { return !permit.renew() || r.left(); }))
+        throw_without_permit(r);
     watch.lap("encode", permit.waited());
     return response;
 }
@@ -271,7 +277,7 @@ Response sweep(const Request& r, const Service& service, Stopwatch& watch) {
     Permit permit = permit_for(r, service.admission, watch);  // for reading the request
     const api::Stop stop = stop_conditions(options.deadline, r, service.admission, permit);
     std::optional<api::Format> format;
-    api::SweepRequest request = read_in_time(r, service, [&] {
+    api::SweepRequest request = read_in_time(r, service, permit, [&] {
         const Json body = body_of(r, reading_of(r, options, stop));
         format = api::sweep_format(body);
         return api::read_sweep_request(body, options.sweep_points);

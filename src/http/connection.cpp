@@ -19,8 +19,8 @@ using namespace std::chrono_literals;
 
 // Time from the first byte of a head to its last.
 constexpr auto head_time = 10s;
-// Time for each further step of a body.
-constexpr auto body_time = 10s;
+// Time for each further step of a body, and of a large one while memory is scarce.
+constexpr auto body_time = 10s, scarce_body_time = 2s;
 constexpr std::size_t body_step = 65536;
 
 // Bodies up to this size, in bytes, are accepted even when the memory budget is used up.
@@ -112,6 +112,11 @@ Connection::Progress Connection::read_request() {
 /// Large bodies only: the number of connections bounds the small ones.
 bool Connection::exceeds_memory() const {
     return head_ && head_->content_length > small_body && held_.memory().is_full();
+}
+
+Connection::Clock::time_point Connection::deadline(bool memory_is_scarce) const {
+    const bool is_large = head_ && !delivery_ && head_->content_length > small_body;
+    return memory_is_scarce && is_large ? deadline_ - (body_time - scarce_body_time) : deadline_;
 }
 
 void Connection::begin_request() {

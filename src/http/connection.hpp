@@ -74,8 +74,9 @@ public:
     /// Turns the incomplete request into a refused one, to be returned by take().
     void refuse(Response refusal);
 
-    /// Time at which the connection times out unless further bytes arrive.
-    Clock::time_point deadline() const { return deadline_; }
+    /// Time at which the connection times out unless further bytes arrive; earlier for a large body
+    /// while memory is scarce.
+    Clock::time_point deadline(bool memory_is_scarce = false) const;
     /// True if no byte of a next request has arrived.
     bool is_idle() const { return bytes_.empty() && !head_ && !delivery_ && !is_closing(); }
     /// True if idle after at least one answer.

@@ -14,6 +14,7 @@
 #include <algorithm>
 #include <array>
 #include <cerrno>
+#include <limits>
 #include <utility>
 
 #include "http/message.hpp"
@@ -37,6 +38,10 @@ constexpr int max_answers_in_row = 16;
 // Time for which a resource counts as scarce after a request was refused for lack of it: longer
 // than a client that reads slowly may pause then, and than a refused one waits (Retry-After: 1).
 constexpr auto scarce_time = 4s;
+
+// Connections accepted before the open ones get their turn: in a flood each closes another one,
+// which is searched for.
+constexpr int max_accepted = 32;
 
 // Bytes sent to one client before the others get their turn.
 constexpr std::size_t max_sent = 1 << 20;
@@ -125,7 +130,7 @@ void EventLoop::wait() {
     for (int i = 0; i < n; ++i) {
         const epoll_event& event = events[static_cast<std::size_t>(i)];
         const int socket = event.data.fd;
-        if (socket == listening_) accept_all();
+        if (socket == listening_) accept(max_accepted);
         else if (socket == wake_.number()) {
             std::uint64_t count = 0;
             static_cast<void>(!::read(wake_.number(), &count, sizeof count));
@@ -142,8 +147,8 @@ void EventLoop::listen(bool on) {
 
 /// Accepts pending connections. Beyond the limit, or without a free file descriptor, another
 /// connection is closed for each new one.
-void EventLoop::accept_all() {
-    for (;;) {
+void EventLoop::accept(int most) {
+    for (int n = 0; n < most; ++n) {
         const bool full = load().open >= max_connections_;
         Connection* other = full ? eviction_candidate() : nullptr;
         if (full && !other) {
@@ -305,15 +310,16 @@ void EventLoop::expire() {
     const Clock::time_point now = checked_ = Clock::now();
     if (stopping_ && !closing_) {
         closing_ = true;
-        accept_all();  // those already in the listen queue
+        accept(std::numeric_limits<int>::max());  // those already in the listen queue
         listen(false);
         ::shutdown(listening_, SHUT_RDWR);
         idle_until_ = now + drain_time;
     }
     expire_deliveries();
+    const bool scarce = memory_.is_full();
     for (const Owned& c : connections_)
         if (c && !c->is_delivering() &&
-            now > (c->is_closing() ? c->deadline() : std::min(c->deadline(), idle_until_)))
+            now > (c->is_closing() ? c->deadline() : std::min(c->deadline(scarce), idle_until_)))
             time_out(*c);
     if (!stopping_) listen(true);
 }

@@ -68,7 +68,7 @@ private:
 
     // Called by the thread in run().
     void wait();
-    void accept_all();
+    void accept(int most);
     Connection* eviction_candidate(const std::string& owner = {}) const;
     bool is_at_limit(const Connection& connection) const;
     void listen(bool on);

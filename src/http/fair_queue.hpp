@@ -31,6 +31,7 @@ public:
     bool precedes_last(const std::string& client) const {
         return !empty() && next_turn(client) < entries_.back().turn;
     }
+    const std::string& last_client() const { return entries_.back().client; }
     T pop_last() { return take(std::prev(entries_.end())); }
     /// The first entry whose client may(client); nothing if there is none.
     template <class May>

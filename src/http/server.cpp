@@ -32,8 +32,9 @@ using Clock = std::chrono::steady_clock;
 // httplib's default of 5 would refuse some of 400 simultaneous clients.
 constexpr int backlog = 512;
 
-// Largest answer sent even when the memory budget is used up, bytes; one per worker at most.
-constexpr std::size_t small_answer = 1 << 20;
+// Largest answer sent even when the memory budget is used up, bytes: the number of connections
+// bounds these.
+constexpr std::size_t small_answer = 1 << 16;
 
 // From this size on the memory of a body, several times its size, is returned to the system at
 // once. That takes as long as to read a part of it. Bytes.

@@ -45,14 +45,15 @@ public:
     WorkerPool& operator=(const WorkerPool&) = delete;
 
     /// Queues a job. If the queue is full, returns the job that finds no place: this one, or one
-    /// whose turn is later.
+    /// whose turn is later or whose client has its share of threads.
     std::optional<Job> add(const std::string& client, Job job) {
         std::optional<Job> refused;
         {
             const std::lock_guard lock(mutex_);
             if (jobs_.size() >= free_ && threads_.size() < max_threads_) try_to_start_one();
             if (jobs_.size() >= free_ + max_waiting_) {
-                if (!jobs_.precedes_last(client)) return job;
+                const bool could_begin = may_begin()(client) && !may_begin()(jobs_.last_client());
+                if (!could_begin && !jobs_.precedes_last(client)) return job;
                 refused = jobs_.pop_last();
             }
             jobs_.push(client, std::move(job));

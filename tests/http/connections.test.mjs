@@ -924,7 +924,7 @@ test("the service works with fewer threads if the system allows no more", {
     cycles: 500,
   });
   const ends = await Promise.all(
-    Array.from({length: 4}, async () => {
+    Array.from({length: 3}, async () => {
       const answer = await fetch(`${url}/v1/sweep`, {method: "POST", body});
       return JSON.parse((await answer.text()).trim().split("\n").at(-1)).type;
     }),
