@@ -11,6 +11,7 @@
 #include <optional>
 #include <string>
 
+#include "http/client.hpp"
 #include "http/head.hpp"
 #include "http/memory.hpp"
 #include "http/message.hpp"
