@@ -91,7 +91,7 @@ constexpr std::string_view key_characters = "-._~+/=";  // and letters and digit
 std::size_t ApiKeys::reload() {
     std::istringstream in(
         read_regular(Descriptor(::open(path_.c_str(), open_regular)), path_, max_key_file_size));
-    std::vector<std::string> keys;
+    std::vector<Key> keys;
     std::size_t number = 0;
     for (std::string line; std::getline(in, line);) {
         ++number;
@@ -101,11 +101,11 @@ std::size_t ApiKeys::reload() {
             throw std::runtime_error(fmt::format(
                 "{}, line {}: a key must have {} or more characters: letters, digits or {}", path_,
                 number, min_length, key_characters));
-        keys.push_back(line);
+        keys.push_back({line, api::sha256(line).substr(0, 8)});
     }
     if (keys.empty()) throw std::runtime_error(fmt::format("{} contains no key", path_));
     const std::lock_guard lock(mutex_);
-    keys_ = std::make_shared<const std::vector<std::string>>(std::move(keys));
+    keys_ = std::make_shared<const std::vector<Key>>(std::move(keys));
     return keys_->size();
 }
 
@@ -113,12 +113,13 @@ std::string ApiKeys::name_of(std::string_view authorization) const {
     const std::string_view scheme = next_part(authorization, ' ');
     const std::string_view shown = trimmed(authorization);
     if (lower_case(scheme) != "bearer") return {};
-    bool found = false;
+    std::string name;
     const Keys known = keys();
-    for (const std::string& key : *known)
-        found |=
-            key.size() == shown.size() && CRYPTO_memcmp(key.data(), shown.data(), key.size()) == 0;
-    return found ? api::sha256(shown).substr(0, 8) : "";
+    for (const auto& [secret, its_name] : *known)
+        if (secret.size() == shown.size() &&
+            CRYPTO_memcmp(secret.data(), shown.data(), secret.size()) == 0)
+            name = its_name;
+    return name;
 }
 
 // --- Host names, origins, CORS ---

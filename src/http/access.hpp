@@ -46,7 +46,10 @@ public:
     static constexpr std::size_t min_length = 16;
 
 private:
-    using Keys = std::shared_ptr<const std::vector<std::string>>;
+    struct Key {
+        std::string secret, name;
+    };
+    using Keys = std::shared_ptr<const std::vector<Key>>;
     Keys keys() const {
         const std::lock_guard lock(mutex_);
         return keys_;

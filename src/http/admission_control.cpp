@@ -24,7 +24,7 @@ void AdmissionControl::assign_slots() {
     while (free_ > 0 && !(foreground_.empty() && background_.empty())) {
         Waiter& next = **(foreground_.empty() ? background_ : foreground_).pop();
         --free_;
-        next.has_slot = true;
+        next.granted = true;
         next.changed.notify_one();
     }
     foreground_waits_ = !foreground_.empty();
@@ -33,10 +33,28 @@ void AdmissionControl::assign_slots() {
 
 /// Ends a wait; returns whether it got a slot.
 bool AdmissionControl::end_wait(Queue& queue, Waiter& waiter) {
-    if (waiter.has_slot) return true;
+    if (waiter.granted) return true;
     queue.remove(&waiter);
     assign_slots();
     return false;
+}
+
+void AdmissionControl::displace_last(Queue& queue) {
+    Waiter& last = *queue.pop_last();
+    last.displaced = true;
+    last.changed.notify_one();
+}
+
+/// Waits until the waiter is granted what it waits for, is displaced, or gives up.
+void AdmissionControl::wait(Lock& lock, Waiter& waiter, const std::function<bool()>& gives_up) {
+    bool given_up = false;
+    while (!waiter.granted && !waiter.displaced && !given_up) {
+        waiter.changed.wait_for(lock, give_up_check);
+        if (waiter.granted || waiter.displaced || !gives_up) continue;
+        lock.unlock();
+        given_up = gives_up();
+        lock.lock();
+    }
 }
 
 bool AdmissionControl::is_full() const {
@@ -65,21 +83,12 @@ AdmissionControl::Slot AdmissionControl::acquire(
     if (grace.release()) --graces_;
     else if (free_ == 0 && is_full()) {
         if (!foreground_.precedes_last(client)) return nullptr;
-        Waiter& displaced = *foreground_.pop_last();
-        displaced.displaced = true;
-        displaced.changed.notify_one();
+        displace_last(foreground_);
     }
     Waiter waiter;
     foreground_.push(client, &waiter);
     assign_slots();
-    bool given_up = false;
-    while (!waiter.has_slot && !waiter.displaced && !given_up) {
-        waiter.changed.wait_for(lock, give_up_check);
-        if (waiter.has_slot || waiter.displaced || !gives_up) continue;
-        lock.unlock();
-        given_up = gives_up();
-        lock.lock();
-    }
+    wait(lock, waiter, gives_up);
     return Slot(end_wait(foreground_, waiter) ? this : nullptr);
 }
 
@@ -91,7 +100,7 @@ AdmissionControl::Slot AdmissionControl::acquire_background(
     assign_slots();
     // The wait registers with the token before it checks the condition, so that no stop is missed.
     // The thread that requests the stop must not hold the mutex, and cannot.
-    waiter.changed.wait(lock, stop, [this, &waiter] { return waiter.has_slot || sweeps_stopped_; });
+    waiter.changed.wait(lock, stop, [this, &waiter] { return waiter.granted || sweeps_stopped_; });
     if (!end_wait(background_, waiter)) return nullptr;
     if (!sweeps_stopped_) return Slot(this);
     ++free_;
@@ -128,8 +137,8 @@ bool AdmissionControl::sweeps_left() const {
 namespace {
 
 // Bodies up to this size need no permit. Larger ones run together up to `bodies_at_once` bytes, or
-// one alone. While they are read and
-// computed they take up to fifteen times their size, one of the largest up to 340 MB. Bytes.
+// one alone. While they are read and computed they take up to fifteen times their size, one of the
+// largest up to 340 MB. Bytes.
 constexpr std::size_t immediate_body = 1 << 20, bodies_at_once = 16 << 20;
 
 // Larger bodies that wait, and their bytes; each occupies a worker.
@@ -140,7 +149,7 @@ constexpr std::size_t most_waiting_bodies = 32, most_waiting_bytes = 256 << 20;
 /// False if a body finds no space in the queue, even instead of the last one.
 bool AdmissionControl::make_space(const std::string& client, std::size_t bytes) {
     std::size_t waiting = 0;
-    bodies_.for_each([&waiting](const Body* body) { waiting += body->bytes; });
+    bodies_.for_each([&waiting](const Waiter* body) { waiting += body->bytes; });
     const auto fits = [bytes](std::size_t bodies, std::size_t others) {
         return bodies == 0 ||
                (bodies < most_waiting_bodies && others + bytes <= most_waiting_bytes);
@@ -149,18 +158,16 @@ bool AdmissionControl::make_space(const std::string& client, std::size_t bytes) 
     if (!bodies_.precedes_last(client) ||
         !fits(bodies_.size() - 1, waiting - bodies_.back()->bytes))
         return false;
-    Body& displaced = *bodies_.pop_last();
-    displaced.displaced = true;
-    displaced.changed.notify_one();
+    displace_last(bodies_);
     return true;
 }
 
 void AdmissionControl::assign_body_permits() {
     while (!bodies_.empty() &&
            (bodies_in_work_ == 0 || bodies_in_work_ + bodies_.front()->bytes <= bodies_at_once)) {
-        Body& next = **bodies_.pop();
+        Waiter& next = **bodies_.pop();
         bodies_in_work_ += next.bytes;
-        next.has_permit = true;
+        next.granted = true;
         next.changed.notify_one();
     }
 }
@@ -170,18 +177,11 @@ AdmissionControl::BodyPermit AdmissionControl::acquire_body(
     if (bytes <= immediate_body) return {this, [](void*) {}};
     std::unique_lock lock(mutex_);
     if (!make_space(client, bytes)) return nullptr;
-    Body body{.bytes = bytes};
+    Waiter body{.bytes = bytes};
     bodies_.push(client, &body);
     assign_body_permits();
-    bool given_up = false;
-    while (!body.has_permit && !body.displaced && !given_up) {
-        body.changed.wait_for(lock, give_up_check);
-        if (body.has_permit || body.displaced) break;
-        lock.unlock();
-        given_up = gives_up();
-        lock.lock();
-    }
-    if (!body.has_permit) {
+    wait(lock, body, gives_up);
+    if (!body.granted) {
         bodies_.remove(&body);
         assign_body_permits();
         return nullptr;

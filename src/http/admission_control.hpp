@@ -106,21 +106,19 @@ public:
 private:
     struct Waiter {
         std::condition_variable_any changed = {};
-        bool has_slot = false;
+        bool granted = false;    ///< a slot, or a large body's permit
         bool displaced = false;  ///< by another client, whose turn is earlier
+        std::size_t bytes = 0;   ///< of a large body
     };
     using Queue = FairQueue<Waiter*>;
-    struct Body {
-        std::size_t bytes = 0;
-        std::condition_variable changed = {};
-        bool has_permit = false;
-        bool displaced = false;
-    };
+    using Lock = std::unique_lock<std::mutex>;
 
     bool is_full() const;
     bool has_sweeps_left() const { return static_cast<int>(sweeps_.size()) < limits_.sweeps; }
     void assign_slots();
     bool end_wait(Queue& queue, Waiter& waiter);
+    static void displace_last(Queue& queue);
+    static void wait(Lock& lock, Waiter& waiter, const std::function<bool()>& gives_up);
     bool make_space(const std::string& client, std::size_t bytes);
     void assign_body_permits();
 
@@ -129,7 +127,7 @@ private:
     int free_, graces_ = 0;              // nobody waits while free_ > 0
     std::multiset<std::string> sweeps_;  // their clients
     Queue foreground_, background_;
-    FairQueue<Body*> bodies_;
+    Queue bodies_;
     std::size_t bodies_in_work_ = 0;  // bytes
     // Written under the mutex; running work reads them without it.
     std::atomic<bool> foreground_waits_ = false, background_waits_ = false;

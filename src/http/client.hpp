@@ -1,5 +1,5 @@
-// Who sends a request: the unit of fairness. It is the API key, else the address; behind a trusted
-// proxy the address that the proxy states.
+// The client of a request, between which resources are shared fairly: the API key, else the
+// address; behind a trusted proxy the address that the proxy states.
 #pragma once
 
 #include <array>

@@ -110,7 +110,7 @@ public:
     int socket() const { return socket_; }
     const std::string& peer() const { return peer_; }
     const std::string& owner() const { return owner_; }  ///< owner_of(peer())
-    /// Whose request it is, once its head is complete.
+    /// The request's sender, valid once its head is complete.
     const Sender& sender() const { return sender_; }
 
     /// Sets the bytes of answers held for the client; received bytes are added.

@@ -66,7 +66,7 @@ private:
 // Memory of a run while its lists are made and sent: measured at 5 to 7 MB.
 constexpr std::size_t held_by_answer = 8 << 20;
 
-/// Whose stream it is, and the request's id, for the log.
+/// A stream's client, and its request's id for the log.
 struct StreamOf {
     explicit StreamOf(const Request& r) : client(r.client), id(r.id) {}
     std::string client, id;
