@@ -28,7 +28,7 @@ std::string reason_of(const Judgement& judgement, const Growth& g, const Regime&
     };
     switch (judgement.reason) {
         case VerdictReason::growth:
-            return fmt::format("{}; a verdict needs {:.0f}", sigmas, verdict_sigmas) +
+            return fmt::format("{}; a verdict needs {:.1f}", sigmas, student_three_sigma) +
                    (r.capture ? ", but " + captured() : "");
         case VerdictReason::on_orbit: return "the motion is on " + orbit();
         case VerdictReason::settling: return "the motion ends on " + orbit();
@@ -43,7 +43,7 @@ std::string reason_of(const Judgement& judgement, const Growth& g, const Regime&
                    "; the time limit left no time to check whether it was chaotic before";
         case VerdictReason::no_error: return "too few impacts for a standard error of lambda1";
         case VerdictReason::within_error:
-            return fmt::format("{}; a verdict needs {:.0f}", sigmas, verdict_sigmas);
+            return fmt::format("{}; a verdict needs {:.1f}", sigmas, student_three_sigma);
         case VerdictReason::little_growth:
             return fmt::format(
                 "{}, but deviations grow by no more than e^{:.1f} in this window, as they can "
@@ -74,12 +74,28 @@ Json describe_window(const TransferProduct& product) {
         {"sum_rule_residual", finite_or_null(product.sum_rule_residual())}};
 }
 
+namespace {
+
+/// 95 % interval of each exponent.
+Json describe_interval(const Exponents& lambda, const Exponents& error) {
+    const auto ends = [&](double sign) {
+        Exponents end;
+        for (int k = 0; k < 4; ++k) end[k] = lambda[k] + sign * student_95 * error[k];
+        return column(end);
+    };
+    return object({{"level", interval_level}, {"low", ends(-1)}, {"high", ends(1)}});
+}
+
+}  // namespace
+
 void add_estimators(
     Json& j, const TransferProduct& product, const Growth& growth, const ExponentOptions& shown,
     bool histories) {
     if (shown.qr) {
         Json qr = describe_final(product.qr());
         qr["standard_error"] = column(growth.standard_error);
+        qr["degrees_of_freedom"] = degrees_of_freedom;
+        qr["interval"] = describe_interval(product.qr(), growth.standard_error);
         if (histories) qr["history"] = describe(history_columns, product.qr_history());
         j["qr"] = std::move(qr);
     }

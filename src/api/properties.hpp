@@ -95,8 +95,16 @@ inline constexpr Property<EnergyBalance> balance[] = {
      at<&EnergyBalance::share_impacts>},
     {energies.at_start, at<&EnergyBalance::at_start>},
     {energies.at_end, at<&EnergyBalance::at_end>},
+    {{"share_impacts_standard_error", "as rms_standard_error, for share_impacts", number_or_null},
+     at<&EnergyBalance::share_impacts_error>},
     {{"rms", "rms of x, m"}, at<&EnergyBalance::rms>},
-    {{"peak", "maximum of |x|, m"}, at<&EnergyBalance::peak>},
+    {{"rms_standard_error",
+      "standard error of rms as an estimate for an infinite run, m; null for windows of fewer "
+      "than 32 cycles",
+      number_or_null},
+     at<&EnergyBalance::rms_error>},
+    {{"peak", "maximum of |x| over this window, m; of an irregular motion it grows with the window"},
+     at<&EnergyBalance::peak>},
 };
 
 inline constexpr Property<Unattached> unattached[] = {
@@ -107,6 +115,9 @@ inline constexpr Property<Unattached> unattached[] = {
 };
 
 inline constexpr Property<EnergyResult> energy_ratio[] = {
+    {{"peak_least", "smallest maximum of |x| in a forcing cycle, m; peak is the largest",
+      number_or_null},
+     at<&EnergyResult::peak_least>},
     {{"rms_ratio", "rms with over rms without the absorber", number_or_null},
      at<&EnergyResult::rms_ratio>},
     {{"peak_ratio", "peak with over peak without the absorber", number_or_null},
@@ -171,6 +182,11 @@ inline constexpr Property<Regime> rhythm[] = {
      at<&Regime::z>},
     {{"z_overall", "contacts per cycle from the first contact to the last, periodic or not"},
      at<&Regime::z_overall>},
+    {{"z_standard_error",
+      "standard error of z_overall as an estimate for an infinite run; null for windows of fewer "
+      "than 32 cycles",
+      number_or_null},
+     at<&Regime::z_error>},
     {{"contacts", "contacts in the window; a chatter that ends in a sticking phase counts as one",
       whole},
      at<&Regime::contacts>},
@@ -241,6 +257,10 @@ inline constexpr Property<MeasuredPoint> point[] = {
       verdict},
      result_at<&PointResult::verdict>},
     {{"z", "contacts per cycle"}, regime_at<&Regime::z>},
+    {{"z_standard_error", "standard error of z; null if periodic", number_or_null},
+     [](const MeasuredPoint& p) {
+         return json_of(p.result.regime.orbit ? nan : p.result.regime.z_error);
+     }},
     {{"regime", "I to VI, or none", regime}, regime_at<&Regime::type>},
     {{"periodic", "true if a stable orbit attracts the motion", flag},
      [](const MeasuredPoint& p) { return Json(p.result.regime.orbit.has_value()); }},
@@ -259,13 +279,22 @@ inline constexpr Property<MeasuredPoint> point[] = {
      orbit_at<[](const PeriodicOrbit& o) { return elementary::modulus(o.multipliers[0]); }>},
     {{"synchronised", "fraction of the contacts that lie in synchronised stretches"},
      regime_at<&Regime::synchronised>},
-    {{"x_max", "maximum of |x|, m"}, result_at<&PointResult::x_max>},
+    {{"x_max",
+      "maximum of |x| over the measured cycles, m; of an irregular motion it grows with their "
+      "number"},
+     result_at<&PointResult::x_max>},
     {{"x_rms", "rms of x, m"}, result_at<&PointResult::x_rms>},
+    {{"x_rms_standard_error",
+      "standard error of x_rms, m; as those of z and share_impacts null for fewer than 32 cycles",
+      number_or_null},
+     result_at<&PointResult::x_rms_error>},
     {{"x_rms_ratio", "x_rms over that of the steady motion without the absorber"},
      result_at<&PointResult::x_rms_ratio>},
     {{"x_free", "steady amplitude without the absorber, m"}, result_at<&PointResult::x_free>},
     {{"share_impacts", "fraction of the energy that impacts dissipate"},
      result_at<&PointResult::share_impacts>},
+    {{"share_impacts_standard_error", "standard error of share_impacts", number_or_null},
+     result_at<&PointResult::share_impacts_error>},
     {{"impacts", "number of impacts", whole}, result_at<&PointResult::impacts>},
     {{"sticks", "number of sticking phases", whole}, result_at<&PointResult::sticks>},
 };

@@ -84,6 +84,18 @@ struct Sentence {
             w.before, w.tau ? fmt::format("at tau = {:.1f}", *w.tau) : "after the run's end",
             w.after);
     }
+    std::string operator()(const NotStationary& w) const {
+        std::string text = "standard errors do not cover: ";
+        if (w.lambda1 || w.x_rms)
+            text += fmt::format(
+                "{}{}{} differs between the halves of the window by more than chance permits",
+                w.lambda1 ? "lambda1" : "", w.lambda1 && w.x_rms ? " and " : "",
+                w.x_rms ? "x_rms" : "");
+        if (w.conservative)
+            text += std::string(w.lambda1 || w.x_rms ? "; " : "") +
+                    "without dissipation (zeta = 0, R = 1) the energy drifts for ever";
+        return text;
+    }
     std::string operator()(const NoManifold&) const {
         return "the manifold of two symmetric impacts needs the same R at both walls: only the "
                "run's points are given";

@@ -125,7 +125,7 @@ void judge_verdict(
         else if (!chaotic(run, 0, captured) && run.returns_throughout(0, s.cycles))
             wrong.push_back("chaotic is reported for a motion that always returns");
     }
-    if (s.verdict == Verdict::regular && s.lambda1 > verdict_sigmas * s.error &&
+    if (s.verdict == Verdict::regular && s.lambda1 > student_three_sigma * s.error &&
         !s.chaotic_before && !s.periodic)
         wrong.push_back(
             sentence("regular is reported with lambda1 = %.4g +- %.2g", s.lambda1, s.error));

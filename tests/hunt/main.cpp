@@ -3,6 +3,7 @@
 #include <CLI/CLI.hpp>
 #include <cstdint>
 
+#include "coverage.hpp"
 #include "damping.hpp"
 #include "flights.hpp"
 #include "verdicts.hpp"
@@ -13,7 +14,8 @@ int main(int count, char** arguments) {
         "that "
         "reproduces it.");
     app.option_defaults()->always_capture_default();
-    int systems = 2000, damped = 200, flights = 1000000, first = 0, threads = 2;
+    int systems = 2000, damped = 200, flights = 1000000, first = 0, threads = 2, windows = 0,
+        cycles = 300;
     std::uint64_t seed = 1;
     app.add_option(
         "--systems", systems,
@@ -29,6 +31,11 @@ int main(int count, char** arguments) {
         "number of the first system and flight: --damped 0 --flights 0 --systems 1 --first 61 "
         "repeats "
         "one");
+    app.add_option(
+        "--windows", windows,
+        "prints how often this many windows of chaotic motions differ from their mean by more than "
+        "their standard errors allow");
+    app.add_option("--cycles", cycles, "length of these windows, in forcing cycles");
     app.add_option("--seed", seed, "random seed");
     app.add_option("--threads", threads);
     try {
@@ -40,5 +47,6 @@ int main(int count, char** arguments) {
     const bool exponents = damped == 0 || vines::hunt::hunt_exponents(damped, seed, threads);
     const bool verdicts = systems == 0 || vines::hunt::hunt_verdicts(systems, seed, first, threads);
     const bool contacts = flights == 0 || vines::hunt::hunt_contacts(flights, seed, first, threads);
+    if (windows > 0) vines::hunt::print_coverage(windows, cycles, threads);
     return exponents && verdicts && contacts ? 0 : 1;
 }

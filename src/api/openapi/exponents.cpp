@@ -40,7 +40,16 @@ Keys estimator_keys(Of of, const Keys& of_history = {}) {
 Json qr(Of of) {
     return object_of(
         estimator_keys(of) +
-        Keys{{"standard_error", four_exponents(), "standard error of each exponent"}});
+        Keys{
+            {"standard_error", four_exponents(),
+             "standard error of each exponent as an estimate for an infinite run"},
+            {"degrees_of_freedom", whole(), "degrees of freedom of the standard errors"},
+            {"interval",
+             object_of(
+                 {{"level", number(), "probability that an interval contains the exponent"},
+                  {"low", four_exponents(), "lower ends"},
+                  {"high", four_exponents(), "upper ends"}}),
+             "interval of each exponent, by Student's distribution"}});
 }
 
 /// The window of one estimator: a record with gaps has several stretches.

@@ -91,6 +91,7 @@ struct AnalysisRun::Observers {
           transfers(w.parameters, w.window.from, w.window.to, w.most_points),
           at_phase_zero(w.parameters, {.most = kept_states, .until = w.window.to}),
           at_section_phase(w.parameters, 0, w.section_phase),
+          cycle_peaks(w.window.from, w.window.to, w.parameters.cycle()),
           decay(w.parameters, w.window.from, decay_fractions),
           rhythm(w.parameters, w.window, w.parts.regime ? w.most_points : 0),
           half_cycles(w.parameters, w.window.from, w.window.to, w.most_points) {
@@ -119,6 +120,7 @@ struct AnalysisRun::Observers {
         observe(!w.windows.empty(), windows);
         observe(w.parts.moduli || w.parts.matrices, transfers);
         if (energy) list.push_back(&*energy);
+        observe(w.parts.energy && w.parts.unattached, cycle_peaks);
         observe(w.parts.energy && w.parameters.G == 0, decay);
         observe(w.parts.manifold, half_cycles);
         if (compared) list.push_back(&*compared);
@@ -135,6 +137,7 @@ struct AnalysisRun::Observers {
     TransferRecord transfers;
     StroboscopicRecord at_phase_zero, at_section_phase;
     std::optional<Energy> energy;  // constructed on request only: its tables take time
+    CyclePeaks cycle_peaks;
     Decay decay;
     Rhythm rhythm;
     HalfCycles half_cycles;
@@ -158,6 +161,7 @@ struct AnalysisRun::Conclusion {
         transfers();
         if (w.parts.section) sections();
         if (w.parts.energy) energy();
+        stationarity();
         if (w.parts.regime) regime();
         if (w.parts.manifold) manifold();
         if (w.perturbation) perturbation();
@@ -311,6 +315,7 @@ struct AnalysisRun::Conclusion {
         EnergyResult& e = a.energy.emplace();
         e.balance = o.energy->balance(a.reached);
         if (!w.parts.unattached) return;
+        e.peak_least = o.cycle_peaks.least();
         e.unattached = unattached(p, w.start, a.reached.from, a.reached.to);
         e.rms_ratio = ratio(e.balance.rms, e.unattached->rms);
         e.peak_ratio = ratio(e.balance.peak, e.unattached->peak);
@@ -318,6 +323,19 @@ struct AnalysisRun::Conclusion {
         const auto alone = unattached_decay(p, w.start, a.reached.from, decay_fractions);
         e.decay = {
             .with_absorber = {o.decay.tau[0], o.decay.tau[1]}, .without = {alone[0], alone[1]}};
+    }
+
+    /// A motion that settles on a periodic orbit is not stationary either, but its capture is
+    /// reported.
+    void stationarity() {
+        if (a.regime && a.regime->orbit) return;
+        const Parameters& p = w.parameters;
+        const bool estimates = w.parts.exponents || w.parts.energy;
+        const warning::NotStationary found{
+            w.parts.exponents && halves_differ(a.exponents->growth.difference_of_halves),
+            a.energy && halves_differ(a.energy->balance.difference_of_halves),
+            estimates && p.zeta() == 0 && p.R_plus == 1 && p.R_minus == 1 && p.G > 0};
+        if (found.lambda1 || found.x_rms || found.conservative) warn(found);
     }
 
     void regime() {

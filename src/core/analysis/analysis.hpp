@@ -112,6 +112,7 @@ struct EnergyResult {
     EnergyBalance balance;
     std::optional<Unattached> unattached;
     std::optional<double> rms_ratio, peak_ratio;  ///< with absorber over without
+    double peak_least = nan;  ///< CyclePeaks::least(); like these only with Parts::unattached
     struct Decays {
         DecayTimes with_absorber, without;
     };
@@ -194,6 +195,12 @@ struct CapturedTransient {
     double before, after;
     std::optional<double> tau;
 };
+/// The means of a window differ between its halves by more than chance permits, so that standard
+/// errors do not cover: lambda1, x_rms, or both. `conservative`: without dissipation (zeta = 0,
+/// R = 1) the energy drifts for ever.
+struct NotStationary {
+    bool lambda1, x_rms, conservative;
+};
 struct NoManifold {};  ///< R differs between the walls; the manifold assumes equal walls
 /// The perturbed run ended before its reference, because it reached max_impacts or was interrupted.
 struct PerturbedRunCut {
@@ -214,7 +221,7 @@ using Warning = std::variant<
     warning::RawProductOverflows, warning::SumRuleMissed, warning::NoExponents, warning::RankLost,
     warning::NearlyTangent, warning::TransfersCut, warning::ModuliCut, warning::SectionsCut,
     warning::StretchesCut, warning::OrbitSearchStopped, warning::CapturedTransient,
-    warning::NoManifold, warning::PerturbedRunCut, warning::NoDistanceSlope>;
+    warning::NotStationary, warning::NoManifold, warning::PerturbedRunCut, warning::NoDistanceSlope>;
 
 /// Appends the warnings about a product. If `histories` are requested: all; otherwise only the
 /// violation of the sum rule.

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <numbers>
 #include <numeric>
 
 #include "core/measurement/robust.hpp"
@@ -25,6 +26,9 @@ constexpr double largest_part = 30;
 // the exponent in 93 % of the cases at b = 15 mm with a width of .035, in 84 % at 13 mm, and in 92
 // to 95 % at 11, 18 and 20 mm (tests/core/measurement).
 constexpr double dependent = 0.06;
+// The estimate, which can be negative, counts as at least this fraction of the variance of
+// independent steps.
+constexpr double least_variance = 0.02;
 // Half width of a 90 % interval in standard errors: Student's t with the 22 degrees of freedom of
 // that window.
 constexpr double student = 1.717;
@@ -71,12 +75,24 @@ SlowState part_of_state(const GrowthWithStates& g, std::size_t apart, double slo
     return by.allFinite() ? SlowState(by.tail<2>()) : SlowState::Zero();
 }
 
-/// Variance of the sum of steps after `fitted` degrees of freedom were fitted.
+/// Variance of the sum of correlated steps `off`, whose mean is zero, after `fitted` degrees of
+/// freedom were fitted.
 double variance_with_fit(const std::vector<double>& off, std::size_t fitted) {
     const auto n = static_cast<double>(off.size());
     const auto lags = std::max<std::size_t>(1, static_cast<std::size_t>(dependent * n));
+    const auto covariance = [&off](std::size_t lag) {
+        return std::inner_product(
+            off.begin() + static_cast<std::ptrdiff_t>(lag), off.end(), off.begin(), 0.0);
+    };
+    const double independent = covariance(0);
+    double variance = independent;
+    for (std::size_t lag = 1; lag <= lags; ++lag)
+        variance += (1 + elementary::cos(
+                             std::numbers::pi * static_cast<double>(lag) /
+                             static_cast<double>(lags))) *
+                    covariance(lag);
     // Corrects for the fitted part and for the removed mean.
-    return variance_of_sum(off, lag_weights(lags)) / (1 - 0.75 * dependent) /
+    return std::max(variance, least_variance * independent) / (1 - 0.75 * dependent) /
            (1 - static_cast<double>(fitted) / n);
 }
 

@@ -29,7 +29,9 @@ Energy::Energy(const Parameters& p, double tau_start, double tau_end)
     : parameters_(p),
       tau_start_(tau_start),
       tau_end_(tau_end),
-      free_(Flow::shared_free(p)) {}
+      free_(Flow::shared_free(p)),
+      steps_({tau_start, tau_end}, p.cycle()),
+      next_step_(steps_.count() > 0 ? steps_.end_of(0) : infinity) {}
 
 void Energy::on_stretch(const Stretch& stretch) {
     const double from = std::max(0.0, tau_start_ - stretch.tau),
@@ -46,11 +48,49 @@ void Energy::on_stretch(const Stretch& stretch) {
         sum_ = integrals();
         if (in_closed_form) sum_ -= law.antiderivative->at(begin);
     }
+    last_ = {begin, to - from, stretch.y_dot, is_stuck, in_closed_form};
+    // A step may end with the stretch, up to rounding.
+    if (next_step_ <= stretch.tau + to + 1e-9) add_steps(law, begin, stretch.tau + from, to - from);
     sum_ += in_closed_form ? law.antiderivative->over_time(to - from)
                            : law.quadrature->over(begin, to - from);
     peak_ = peak_beyond(peak_, *law.flow, begin, to - from);
     duration_ += to - from;
-    last_ = {begin, to - from, stretch.y_dot, is_stuck, in_closed_form};
+}
+
+/// Appends the sums at the ends of steps within the part of duration `duration` that begins at tau;
+/// sum_ does not yet contain the part.
+void Energy::add_steps(const Law& law, const Oscillation& begin, double tau, double duration) {
+    do {
+        const double part = std::clamp(next_step_ - tau, 0.0, duration);
+        const Integrals sum = sum_ + (last_.in_closed_form
+                                          ? law.antiderivative->over_time(part) +
+                                                law.antiderivative->at(law.flow->after(begin, part))
+                                          : law.quadrature->over(begin, part));
+        at_steps_.push_back({sum(x_squared), sum(x_dot_squared), impacts_});
+        next_step_ =
+            at_steps_.size() < steps_.count() ? steps_.end_of(at_steps_.size()) : infinity;
+    } while (next_step_ <= tau + duration);
+}
+
+void CyclePeaks::on_stretch(const Stretch& stretch) {
+    const double from = std::max(0.0, tau_start_ - stretch.tau);
+    double duration = std::min(stretch.duration, tau_end_ - stretch.tau) - from,
+           tau = stretch.tau + from;
+    if (!(duration > 0)) return;
+    const Flow& flow = stretch.flow;
+    Oscillation o = from > 0 ? flow.after(stretch.start, from) : stretch.start;
+    while (true) {
+        const double part = std::min(duration, end_ - tau);
+        peak_ = std::max(peak_, std::abs(o.x));
+        if (peak_ < least_ && part > 0) peak_ = peak_beyond(peak_, flow, o, part);
+        if (duration < end_ - tau) return;
+        least_ = std::min(least_, peak_);
+        peak_ = 0;
+        if (part > 0) o = flow.after(o, part);
+        tau = end_;
+        duration -= part;
+        end_ += cycle_;
+    }
 }
 
 void Energy::on_impact(const Impact& i) {
@@ -61,6 +101,7 @@ void Energy::on_impact(const Impact& i) {
     if (i.tau <= tau_start_) {
         sum_.setZero();
         duration_ = peak_ = 0;
+        at_steps_.clear();
         start_ = energy_of(after, i.y_dot_after);
         last_ = {after, 0, i.y_dot_after, false, false};
         return;
@@ -94,6 +135,19 @@ EnergyBalance Energy::balance(const Interval& window) const {
                  damper = 2 * p.zeta() * sum(x_dot_squared),
                  at_end = energy_of(o, last_.is_stuck ? o.x_dot : last_.y_dot),
                  stored = at_end - start_;
+    const double total = impacts_ + damper, share = impacts_ / total,
+                 rms = duration_ > 0 ? std::sqrt(sum(x_squared) / duration_) : 0;
+    // The errors of a root and of a ratio follow by the delta method.
+    std::vector<double> squares, excess;
+    Sums before{};
+    for (const Sums& s : at_steps_) {
+        squares.push_back(s.x_squared - before.x_squared);
+        excess.push_back(
+            (1 - share) * (s.impacts - before.impacts) -
+            share * 2 * p.zeta() * (s.x_dot_squared - before.x_dot_squared));
+        before = s;
+    }
+    const double observed = steps_.duration() * static_cast<double>(at_steps_.size());
     return {
         .window = window,
         .input = p.G == 0 ? 0 : input,
@@ -104,8 +158,11 @@ EnergyBalance Energy::balance(const Interval& window) const {
         .at_start = start_,
         .at_end = at_end,
         .share_impacts = ratio(impacts_, impacts_ + damper),
-        .rms = duration_ > 0 ? std::sqrt(sum(x_squared) / duration_) : 0,
-        .peak = peak_};
+        .rms = rms,
+        .peak = peak_,
+        .rms_error = error_of_sum(squares) / observed / (2 * rms),
+        .share_impacts_error = error_of_sum(excess) / (before.impacts + 2 * p.zeta() * before.x_dot_squared),
+        .difference_of_halves = difference_of_halves(squares)};
 }
 
 std::optional<double> ratio(double numerator, double denominator) {

@@ -9,7 +9,9 @@
 #include <vector>
 
 #include "core/measures/quadrature.hpp"
+#include "core/motion/elementary.hpp"
 #include "core/motion/simulate.hpp"
+#include "core/stability/mean_error.hpp"
 
 namespace vines {
 
@@ -27,6 +29,28 @@ struct EnergyBalance {
     /// Fraction of the dissipation that is due to impacts; empty without dissipation.
     std::optional<double> share_impacts;
     double rms, peak;  ///< of x, of |x|, m
+    /// Standard errors of rms and share_impacts as estimates for an infinite run (mean_error.hpp);
+    /// NaN for windows of fewer than 32 cycles.
+    double rms_error, share_impacts_error;
+    double difference_of_halves;  ///< of the mean of x^2 (mean_error.hpp)
+};
+
+/// Smallest of the maxima of |x| in each forcing cycle of a window. A cycle needs no search once a
+/// value of |x| in it exceeds the smallest maximum so far; the states at the events usually do.
+class CyclePeaks : public Observer {
+public:
+    CyclePeaks(double tau_start, double tau_end, double cycle)
+        : tau_start_(tau_start),
+          tau_end_(tau_end),
+          cycle_(cycle),
+          end_(tau_start + cycle) {}
+
+    void on_stretch(const Stretch&) override;
+    double least() const { return least_; }  ///< m; infinity without a whole cycle
+
+private:
+    const double tau_start_, tau_end_, cycle_;
+    double end_, peak_ = 0, least_ = infinity;
 };
 
 /// Observer of the energy balance and the amplitude of x over [tau_start, tau_end].
@@ -64,8 +88,17 @@ private:
     };
     Last last_{};
     double duration_ = 0, peak_ = 0, impacts_ = 0, start_ = 0;
+    /// Integrals of x^2 and x'^2 and the dissipation of impacts, from the window's start to the end
+    /// of each step.
+    struct Sums {
+        double x_squared, x_dot_squared, impacts;
+    };
+    const WindowSteps steps_;
+    std::vector<Sums> at_steps_;
+    double next_step_;  ///< its end, in tau
 
     Integrals integrals() const;
+    void add_steps(const Law& law, const Oscillation& begin, double tau, double duration);
     Oscillation end() const;
     double energy_of(const Oscillation& o, double y_dot) const;
 };

@@ -31,6 +31,7 @@ void count_contacts(Regime& r, const RegimeEvidence& e) {
     const Synchrony& synchrony = e.rhythm.synchrony;
     r.contacts = synchrony.contacts;
     r.z = r.z_overall = e.rhythm.z();
+    r.z_error = e.rhythm.z_error();
     CycleCounts counts = e.rhythm.cycle_counts();
     r.moving_tau = std::move(counts.moving_tau);
     r.moving_z = std::move(counts.moving_z);
@@ -271,7 +272,7 @@ VerdictReason undecided_by(const Capture& capture) {
 }
 
 VerdictReason undecided_by(const Growth& g) {
-    const double error = verdict_sigmas * g.standard_error[0];
+    const double error = student_three_sigma * g.standard_error[0];
     if (std::isnan(error)) return VerdictReason::no_error;
     if (g.lambda1 < -error) return VerdictReason::negative;
     if (g.lambda1 <= error) return VerdictReason::within_error;

@@ -44,6 +44,7 @@ struct Regime {
     /// Contacts per forcing cycle: of the orbit if periodic, else between first and last contact.
     double z = 0;
     double z_overall = 0;  ///< from the first to the last contact, in any case
+    double z_error = nan;  ///< standard error of z_overall (Rhythm::z_error)
     // Lists, as far as RegimeEvidence::rhythm keeps them.
     std::vector<double> moving_tau, moving_z;  ///< over 10 cycles around tau
     std::vector<double> cycles_with;           ///< fraction of cycles with 0, 1, 2, ... contacts

@@ -122,7 +122,10 @@ Rhythm::Rhythm(const Parameters& p, const Interval& window, std::size_t most_lis
       synchrony(0.5 * p.cycle(), most_listed),
       cycle_(p.cycle()),
       window_(window),
-      most_listed_(most_listed) {}
+      most_listed_(most_listed),
+      steps_(window, p.cycle()),
+      steps_per_tau_(1 / steps_.duration()),
+      in_steps_(steps_.count()) {}
 
 void Rhythm::on_contact(const CountedContact& contact) {
     if (contact.tau < window_.from) before_ = contact;
@@ -134,6 +137,9 @@ void Rhythm::count(const CountedContact& contact) {
     last_ = contact.tau;
     synchrony.add(contact);
     if (most_listed_ > 0) positions_.add(contact.tau / cycle_);
+    const double step = (contact.tau - window_.from) * steps_per_tau_;
+    if (step >= 0 && step < static_cast<double>(in_steps_.size()))
+        ++in_steps_[static_cast<std::size_t>(step)];
 }
 
 void Rhythm::finish(const Interval& reached) {
@@ -148,6 +154,14 @@ double Rhythm::z() const {
     if (contacts() > 1) return static_cast<double>(contacts() - 1) * cycle_ / (last_ - first_);
     const double duration = reached_.to - reached_.from;
     return duration > 0 ? static_cast<double>(contacts()) * cycle_ / duration : 0;
+}
+
+double Rhythm::z_error() const {
+    const double reached = (reached_.to - window_.from) / steps_.duration();
+    // A run that ends within the window has only counted whole steps.
+    const auto steps = std::span(in_steps_).first(
+        std::min(in_steps_.size(), static_cast<std::size_t>(std::max(0.0, reached + 1e-9))));
+    return error_of_sum(steps) * cycle_ / (static_cast<double>(steps.size()) * steps_.duration());
 }
 
 std::vector<SynchronyStretch> Rhythm::last_stretches() {

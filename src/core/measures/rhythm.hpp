@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "core/motion/record.hpp"
+#include "core/stability/mean_error.hpp"
 
 namespace vines {
 
@@ -101,6 +102,9 @@ public:
     void finish(const Interval& reached);
 
     double z() const;  ///< contacts per cycle, from the first to the last contact
+    /// Standard error of z as an estimate for an infinite run (mean_error.hpp); NaN for windows of
+    /// fewer than 32 cycles.
+    double z_error() const;
     /// Starts one cycle before the first contact; the moving z is thinned to most_listed entries.
     CycleCounts cycle_counts() const;
     /// The last stretches, at most most_listed.
@@ -120,6 +124,9 @@ private:
     Interval reached_{};
     double first_ = 0, last_ = 0;
     std::optional<CountedContact> before_;  // the last contact before the window
+    const WindowSteps steps_;
+    const double steps_per_tau_;
+    std::vector<double> in_steps_;  // contacts in each step
     CyclePositions positions_;
 };
 

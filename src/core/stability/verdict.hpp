@@ -4,7 +4,7 @@
 // Verdict: chaotic, regular or undecided, never more than the evidence supports. A finite run that
 // leaves the question open gives not_decided.
 //
-// chaotic: lambda1 of the window is positive by several standard errors, and neither of two
+// chaotic: lambda1 of the window is positive beyond its error, and neither of two
 // finite-time effects explains it. Departure from one unstable orbit ends once a deviation of one
 // ulp has grown to order one, so the growth must exceed ln(1/ulp). Algebraic growth near a torus or
 // a neutral motion is at most t^3 for four deviations, which gives 3 ln 2 in the second half of the
@@ -15,48 +15,38 @@
 // chaotic motion has long quiet intervals.
 #pragma once
 
-#include <span>
 #include <vector>
 
 #include "core/stability/lyapunov.hpp"
+#include "core/stability/mean_error.hpp"
 
 namespace vines {
 
 /// none: no verdict applies, because the motion dies out or the ball meets no wall.
 enum class Verdict { chaotic, regular, not_decided, none };
 
-/// Minimum of lambda1 in standard errors.
-inline constexpr double verdict_sigmas = 3;
 /// Minimum growth over the window, ln(1/2.2e-16) (see above).
 inline constexpr double least_growth = 36.04;
 /// Minimum growth in the second half of the window, 4 ln 2 (see above): one power of t more than
 /// possible, to allow for bounded variations.
 inline constexpr double least_late_growth = 2.77;
 
-/// Growth of deviations over a window, by qr. Dimensionless except lambda1 and its errors (per unit
+/// Growth of deviations over a window, by qr. The standard errors are those of the exponents as
+/// means over the window; NaN with fewer than 32 entries in the history. Dimensionless except lambda1 and its errors (per unit
 /// of tau); NaN if unavailable.
 struct Growth {
     double lambda1;
     Exponents standard_error;  ///< of all four exponents
     /// Sum of the first exponent's logarithms over the window and over its second half.
     double whole, late;
+    /// Difference of lambda1 between both halves of the window over its standard error
+    /// (mean_error.hpp).
+    double difference_of_halves = nan;
 };
 Growth growth_of(const TransferProduct& product);
 
 /// Returns chaotic or not_decided.
 Verdict verdict_by_exponents(const Growth& growth);
-
-/// Tukey-Hanning weights of the covariances at lags 1 to `lags`, doubled for both signs.
-std::vector<double> lag_weights(std::size_t lags);
-/// Variance of a sum of steps that are correlated up to as many lags as there are weights; `off`:
-/// steps minus their mean. It is their spectrum at frequency zero, but at least a small fraction of
-/// the variance of independent steps.
-double variance_of_sum(std::span<const double> off, std::span<const double> weights);
-
-/// Standard errors of the four exponents as means over the history's window, from the variation of
-/// their sums of logarithms about a straight line; NaN with fewer than 32 entries or non-finite
-/// exponents.
-Exponents standard_error(const ExponentHistory& history, double start);
 
 /// Increments of the first exponent's sum of logarithms, lambda1(tau) tau, between the entries of a
 /// history without its first tenth. Their slope contains less of the transient than lambda1, which

@@ -117,6 +117,8 @@ void PointRun::conclude(const Outcome& outcome) {
     r.regime = without_lists(std::move(*a.regime));
     r.x_max = energy.peak;
     r.x_rms = energy.rms;
+    r.x_rms_error = energy.rms_error;
+    r.share_impacts_error = energy.share_impacts_error;
     r.x_free = free_amplitude(p);
     r.x_rms_ratio = r.x_rms / reference_rms(p, begin_, r.x_free, outcome.tau);
     r.share_impacts = energy.share_impacts;

@@ -63,6 +63,7 @@ struct PointResult {
     Regime regime;                     ///< without its lists
     /// m; m; x_rms over that of the steady motion (free decay: same start) without absorber.
     double x_max, x_rms, x_rms_ratio;
+    double x_rms_error, share_impacts_error;  ///< standard errors (EnergyBalance)
     /// Steady amplitude without absorber, m; empty at undamped resonance.
     std::optional<double> x_free;
     std::optional<double> share_impacts;  ///< fraction of dissipation; empty without dissipation

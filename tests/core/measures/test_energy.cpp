@@ -1,9 +1,11 @@
 #include <doctest/doctest.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "../support.hpp"
 #include "core/measures/energy.hpp"
+#include "core/measures/rhythm.hpp"
 
 using namespace vines;
 using namespace vines::test;
@@ -152,4 +154,64 @@ TEST_CASE("a free decay passes half and a tenth of its energy at the reported ti
     record(alone, start, 1000, 1000000, {&slow});
     CHECK(*slow.tau[0] > *decay.tau[0]);
     CHECK(*slow.tau[0] == doctest::Approx(std::log(2) / (2 * p.zeta())).epsilon(0.01));
+}
+
+TEST_CASE("the standard errors of x_rms, the fraction of impacts and z are those of many windows") {
+    const Parameters p = table1(0.025, Damping::closed_form);
+    const double length = 1000 * p.cycle();
+    constexpr int windows = 200;
+    struct Sum {
+        double value = 0, square = 0, variance = 0;
+        void add(double v, double error) { value += v, square += v * v, variance += error * error; }
+        /// Stated error over the standard deviation.
+        double ratio() const {
+            return std::sqrt(variance / (square - value * value / windows));
+        }
+    } rms, share, z;
+    State state = default_state(p);
+    for (int k = 0; k < windows; ++k) {
+        Energy energy(p, 0, length);
+        Rhythm rhythm(p, {0, length}, 0);
+        Observer* const observers[] = {&energy, &rhythm};
+        state = simulate(p, state, {length, 100000, {}}, observers).state;
+        rhythm.finish({0, length});
+        const EnergyBalance e = energy.balance({0, length});
+        rms.add(e.rms, e.rms_error);
+        share.add(*e.share_impacts, e.share_impacts_error);
+        z.add(rhythm.z(), rhythm.z_error());
+    }
+    for (const Sum& s : {rms, share, z}) {
+        CHECK(s.ratio() > 0.75);
+        CHECK(s.ratio() < 1.25);
+    }
+}
+
+TEST_CASE("windows of fewer than 32 cycles have no standard errors") {
+    const Parameters p = table1(0.025, Damping::closed_form);
+    Energy energy(p, 0, 31.5 * p.cycle());
+    Rhythm rhythm(p, {0, 31.5 * p.cycle()}, 0);
+    record(p, default_state(p), 31.5 * p.cycle(), 100000, {&energy, &rhythm});
+    rhythm.finish({0, 31.5 * p.cycle()});
+    CHECK(std::isnan(energy.balance({}).rms_error));
+    CHECK(std::isnan(rhythm.z_error()));
+}
+
+TEST_CASE("the smallest peak in a cycle is that of dense samples") {
+    for (const double b : {0.003, 0.022, 0.04}) {
+        const Parameters p = table1(b, Damping::closed_form);
+        const double from = 50.3, to = from + 60.5 * p.cycle();
+        CyclePeaks cycle_peaks(from, to, p.cycle());
+        SeriesRecord series(p.cycle() / 2000);
+        record(p, default_state(p), to, 100000, {&cycle_peaks, &series});
+        std::vector<double> peaks(60);
+        for (std::size_t i = 0; i < series.series.tau.size(); ++i) {
+            const double cycle = std::floor((series.series.tau[i] - from) / p.cycle());
+            if (cycle < 0 || cycle >= 60) continue;
+            double& peak = peaks[static_cast<std::size_t>(cycle)];
+            peak = std::max(peak, std::abs(series.series.x[i]));
+        }
+        CHECK(
+            cycle_peaks.least() ==
+            doctest::Approx(*std::ranges::min_element(peaks)).epsilon(1e-5));
+    }
 }

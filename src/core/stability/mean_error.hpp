@@ -1,0 +1,67 @@
+// Standard error of a mean over a finite window, estimated from that window alone.
+//
+// The steps of a motion are correlated, so that the variance of their sum is N times their spectral
+// density at frequency zero. It is estimated with sine tapers (Riedel and Sidorenko, IEEE Trans.
+// Signal Process. 43, 1995): the k-th taper is sqrt(2/(N+1)) sin(pi k n/(N+1)), n = 1 to N; the
+// squared sums of the tapered steps are nearly independent, each with one degree of freedom. The
+// mean of the steps is subtracted first, which removes the part (sum of v_k)^2/N of the k-th square:
+// together .96 of 8. About seven degrees of freedom remain, so that (mean - truth)/error follows
+// Student's distribution with seven degrees of freedom: wider intervals than the normal
+// distribution, because the error is itself an estimate.
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <span>
+#include <vector>
+
+#include "core/motion/simulate.hpp"
+
+namespace vines {
+
+/// Steps of equal duration into which a window is divided.
+inline constexpr int error_steps = 128;
+/// Fewest steps with a standard error. A run that ends within its window has fewer than error_steps.
+inline constexpr std::size_t fewest_error_steps = 32;
+
+/// Degrees of freedom of all standard errors.
+inline constexpr int degrees_of_freedom = 7;
+/// Probability of an interval of mean +- student_95 standard errors, and the quantile.
+inline constexpr double interval_level = 0.95, student_95 = 2.364624251010299;
+/// Quantile with the one-sided probability 0.00135 of three standard deviations of the normal
+/// distribution.
+inline constexpr double student_three_sigma = 4.529910402650086;
+
+/// Division of a window into steps of at least a forcing cycle. A window of fewer than
+/// fewest_error_steps cycles has none.
+class WindowSteps {
+public:
+    WindowSteps(const Interval& window, double cycle) : window_(window) {
+        const double cycles = std::min((window.to - window.from) / cycle, 1.0 * error_steps);
+        if (cycles >= fewest_error_steps) count_ = static_cast<std::size_t>(cycles);
+    }
+    std::size_t count() const { return count_; }
+    double duration() const {
+        return (window_.to - window_.from) / static_cast<double>(count_);
+    }
+    double end_of(std::size_t step) const {
+        return step + 1 == count_ ? window_.to
+                                  : window_.from + static_cast<double>(step + 1) * duration();
+    }
+
+private:
+    const Interval window_;
+    std::size_t count_ = 0;
+};
+
+/// Standard error of the sum of the steps; their mean is removed here. NaN for fewer than
+/// fewest_error_steps or non-finite steps.
+double error_of_sum(std::span<const double> steps);
+
+/// Difference of the means of both halves over its standard error, by four tapers in each half: six
+/// degrees of freedom.
+double difference_of_halves(std::span<const double> steps);
+/// True if the halves differ by more than stationary steps do with a probability of 0.001.
+inline bool halves_differ(double difference) { return std::abs(difference) > 5.958816179933981; }
+
+}  // namespace vines
