@@ -1,5 +1,7 @@
 #include "api/describe.hpp"
 
+#include <fmt/format.h>
+
 #include "api/answer_json.hpp"
 #include "api/properties.hpp"
 #include "core/motion/elementary.hpp"
@@ -69,7 +71,14 @@ Json describe_recommendation(const std::optional<Recommendation>& r) {
 
 namespace {
 
-const char* describe_type(const Regime& r) {
+std::string impacts_of(int count) {
+    return count == 1 ? "one impact" : count == 2 ? "two impacts" : fmt::format("{} impacts", count);
+}
+
+std::string describe_type(const Regime& r) {
+    if (r.quasi_periodic) return fmt::format("quasi-periodic, {:.4g} impacts per cycle", r.z);
+    if (!r.orbit && r.forced && r.contacts > 0 && r.in_every_cycle)
+        return fmt::format("not periodic, with {} in every cycle", impacts_of(*r.in_every_cycle));
     switch (r.type) {
         case RegimeType::none: return r.forced ? "no impacts" : "free decay, no forcing";
         case RegimeType::I: return "sparse irregular impacts, no stretch of two per cycle";
@@ -95,7 +104,7 @@ Json describe_capture(const Capture& c) {
     return object(
         {{"tau", or_null(c.tau)},
          {"status", c.tau ? "captured" : "on_its_way"},
-         {"chaotic_before", or_null(c.chaotic_before)},
+         {"chaotic_before", c.chaotic_before == true ? Json(true) : Json(nullptr)},
          {"exponents_before", describe_final(c.before)},
          {"exponents_after", describe_final(c.after)}});
 }
@@ -110,6 +119,9 @@ Json describe_regime(const Regime& r) {
     append(
         j, {{"multipliers", orbit ? describe_multipliers(*orbit) : Json(nullptr)},
             {"orbit", orbit ? describe(properties::orbit_state, *orbit) : Json(nullptr)},
+            {"quasi_periodic",
+             r.quasi_periodic ? describe(properties::quasi_periodic, *r.quasi_periodic)
+                              : Json(nullptr)},
             {"capture", r.capture ? describe_capture(*r.capture) : Json(nullptr)},
             {"cycles_with", column(r.cycles_with)},
             {"share_two_impacts", r.cycles_with.size() > 2 ? r.cycles_with[2] : 0},

@@ -32,6 +32,22 @@ std::string reason_of(const Judgement& judgement, const Growth& g, const Regime&
                    (r.capture ? ", but " + captured() : "");
         case VerdictReason::on_orbit: return "the motion is on " + orbit();
         case VerdictReason::settling: return "the motion ends on " + orbit();
+        case VerdictReason::quasi_periodic:
+            return fmt::format(
+                "the motion is quasi-periodic: its section is a smooth closed curve, on which it "
+                "makes {:.6g} turns per cycle",
+                r.quasi_periodic->rotation_number);
+        case VerdictReason::next_contact:
+            if (!r.untouched) return "there are no impacts in this window";
+            return "there are no impacts in this window, but " +
+                   (r.untouched->y_dot == 0
+                        ? std::string("the oscillator has not reached its steady motion")
+                        : fmt::format("the ball flies with y' = {:.3g} m", r.untouched->y_dot)) +
+                   (r.untouched->next_contact
+                        ? fmt::format(
+                              ": the next contact is due at tau = {:.6g}",
+                              *r.untouched->next_contact)
+                        : ": no contact within the next 10,000 cycles");
         case VerdictReason::free_decay:
             return "without forcing (G = 0) the motion dies out and has no long-term exponents";
         case VerdictReason::untouched:

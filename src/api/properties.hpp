@@ -165,6 +165,25 @@ inline constexpr Property<PeriodicOrbit> orbit[] = {
      at<&PeriodicOrbit::closure>},
 };
 
+inline constexpr Property<QuasiPeriodic> quasi_periodic[] = {
+    {{"rotation_number",
+      "turns on the closed curve per forcing cycle, 0 to 0.5, or to 0.5/curves"},
+     at<&QuasiPeriodic::rotation_number>},
+    {{"standard_error", "bound of its error, from the rotation numbers of both halves"},
+     at<&QuasiPeriodic::error>},
+    {{"curves", "closed curves of the stroboscopic section, which the motion visits in turn", whole},
+     at<&QuasiPeriodic::curves>},
+    {{"points", "examined points of one curve", whole}, at<&QuasiPeriodic::points>},
+    {{"largest_gap", "largest gap between the phases of neighbours on the curve, in turns"},
+     at<&QuasiPeriodic::largest_gap>},
+    {{"slope_ratio",
+      "median slope between neighbours over that between every fourth point: about 1 for a curve, 4 "
+      "for a set with a thickness"},
+     at<&QuasiPeriodic::slope_ratio>},
+    {{"curvature_ratio", "the same of the curvature: about 1 for a smooth curve, or else 16"},
+     at<&QuasiPeriodic::curvature_ratio>},
+};
+
 inline constexpr Property<PeriodicOrbit> orbit_state[] = {
     {quantity.tau.with("a time on the orbit, during a flight"), at<&PeriodicOrbit::tau>},
     {{"x_dot", "velocity of the oscillator at that time"},

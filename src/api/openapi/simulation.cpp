@@ -79,6 +79,8 @@ Keys orbit_keys() {
 
 Keys rhythm_keys() {
     return {
+        {"quasi_periodic", or_null(object_of(values_of(properties::quasi_periodic))),
+         "present if the motion is on a torus: its stroboscopic section is a smooth closed curve"},
         {"cycles_with", numbers(), "fractions of cycles with 0, 1, 2, ... contacts"},
         {"share_two_impacts", number(), "fraction of cycles with two contacts"},
         {"z_moving", table_of(moving_z_columns), "moving average of z"},

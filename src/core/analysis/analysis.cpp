@@ -228,6 +228,8 @@ struct AnalysisRun::Conclusion {
              .tau_start = a.reached.from,
              .tau_end = a.reached.to,
              .by_exponents = verdict_by_exponents(growth),
+             .neutral = can_be_quasi_periodic(growth),
+             .settle_cycles = w.settle_cycles,
              .stop = interrupt.run},
             w.parts.before_capture);
     }

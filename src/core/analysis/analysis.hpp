@@ -47,6 +47,8 @@ struct AnalysisRequest {
     ExponentOptions estimators = {};
     /// Initial difference of a second run that is compared with this one.
     std::optional<State> perturbation = {};
+    /// Cycles for which a chaotic run is continued, to find out whether an orbit captures it.
+    double settle_cycles = 0;
     double samples_per_cycle = 32;  ///< of the series, also of the perturbed one
     double section_phase = 0;       ///< stroboscopic section: rad after each whole cycle
     /// Maximum length of the series, which is thinned; other lists keep their last entries.

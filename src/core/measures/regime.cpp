@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 
+#include "core/measures/energy.hpp"
 #include "core/motion/elementary.hpp"
 
 namespace vines {
@@ -25,6 +26,12 @@ constexpr int follow_rounds[] = {150, 300, 600, 1200};
 constexpr double past_last_cycle = 1e-12;
 // A run counts as captured while it stays this close to the orbit.
 constexpr double captured_within = 0.1;
+// Length of the history in which a chaotic transient is searched.
+constexpr std::size_t transient_history = 4096;
+// A chaotic run is continued in rounds of this many cycles.
+constexpr long cycles_of_round = 1024;
+// Longest time, in cycles, in which the next contact of a flying ball is searched.
+constexpr double longest_flight = 10000;
 
 void count_contacts(Regime& r, const RegimeEvidence& e) {
     e.rhythm.finish({e.tau_start, e.tau_end});
@@ -39,6 +46,8 @@ void count_contacts(Regime& r, const RegimeEvidence& e) {
     r.stretches = e.rhythm.last_stretches();
     r.stretch_count = synchrony.stretches.seen;
     r.longest_synchronised = synchrony.longest;
+    if (const auto alone = std::ranges::find(r.cycles_with, 1.0); alone != r.cycles_with.end())
+        r.in_every_cycle = static_cast<int>(alone - r.cycles_with.begin());
     if (r.contacts > 0)
         r.synchronised =
             static_cast<double>(synchrony.in_stretches) / static_cast<double>(r.contacts);
@@ -49,6 +58,13 @@ std::span<const State> states_before(const StroboscopicRecord& record, double ta
     std::size_t end = record.states.size();
     while (end > 0 && record.tau(end - 1) > tau_end) --end;
     return std::span(record.states).first(end);
+}
+
+/// Those of the states that lie in the window.
+std::span<const State> in_window(const RegimeEvidence& e, std::span<const State> states) {
+    std::size_t first = 0;
+    while (first < states.size() && e.stroboscopic.tau(first) < e.tau_start) ++first;
+    return states.subspan(first);
 }
 
 /// A possible period: the power of ten of its miss, and its cycles.
@@ -204,24 +220,71 @@ std::optional<double> captured_from(
     return e.stroboscopic.tau_of(from);
 }
 
-Capture capture_by(
-    const Parameters& p, const State& start, std::span<const State> states, const State& scale,
-    const RegimeEvidence& e, const PeriodicOrbit& orbit, bool exponents_before) {
-    Capture capture{
-        captured_from(p, start, orbit, states, scale, e),
-        {nan, nan, nan, nan},
-        orbit.exponents(p),
-        std::nullopt};
-    if (!exponents_before) return capture;
-    const double until = capture.tau.value_or(e.tau_end);
-    Lyapunov before(p, 0, until, qr_alone);
+/// Adds the exponents before the capture, by a second run up to there.
+void examine_before(
+    const Parameters& p, const State& start, const RegimeEvidence& e, Capture& capture) {
+    const double until = std::min(capture.tau.value_or(e.tau_end), e.tau_end);
+    Lyapunov before(p, 0, until, {.qr = true, .history = transient_history});
     Observer* const observers[] = {&before};
     if (simulate(p, start, {until, std::numeric_limits<long>::max(), e.stop}, observers).reason !=
         End::tau_end)
-        return capture;
-    capture.before = before.product().qr();
-    capture.chaotic_before = verdict_by_exponents(growth_of(before.product())) == Verdict::chaotic;
-    return capture;
+        return;
+    const TransferProduct& product = before.product();
+    capture.before = product.qr();
+    capture.chaotic_before =
+        verdict_by_exponents(growth_of(product)) == Verdict::chaotic ||
+        shows_chaotic_transient(product.qr_history(), product.start_tau());
+}
+
+/// Continues a chaotic run until a periodic orbit captures it or settle_cycles have passed.
+void settle_later(
+    const Parameters& p, std::span<const State> states, const State& scale,
+    const RegimeEvidence& e, Regime& r) {
+    State s = states.back();
+    const long end = e.stroboscopic.first() + static_cast<long>(states.size()) - 1;
+    const long cycles = std::lround(e.settle_cycles);
+    for (long done = 0, round; done < cycles; done += round) {
+        round = std::min(cycles_of_round, cycles - done);
+        StroboscopicRecord on(p);
+        Observer* const observers[] = {&on};
+        const double duration = static_cast<double>(round) * p.cycle() * (1 + past_last_cycle);
+        if (!follow(p, s, 0, duration, e.stop, observers)) return;
+        s = on.states.back();
+        bool tried = false;
+        r.orbit = orbit_at_end(p, on.states, scale, near_return_if_chaotic, e.stop, tried);
+        if (!r.orbit) continue;
+        const OrbitComparison comparison(p, *r.orbit, scale, round, s);
+        long from = round;
+        while (from > 0 && comparison.is_near(from - 1, on.states[from - 1])) --from;
+        r.capture = {
+            e.stroboscopic.tau_of(end + done + from),
+            {nan, nan, nan, nan},
+            r.orbit->exponents(p),
+            std::nullopt};
+        return;
+    }
+}
+
+/// End of a run without contacts. The oscillator's deviation from its steady motion cannot grow:
+/// its energy x^2 + x'^2 falls, since all forces but the spring's are dissipative.
+Regime::Untouched untouched_end(
+    const Parameters& p, const State& at_whole_cycle, double tau,
+    const std::function<bool()>& stop) {
+    Regime::Untouched end{false, at_whole_cycle.y_dot, std::nullopt};
+    if (const auto amplitude = free_amplitude(p); amplitude && at_whole_cycle.y_dot == 0) {
+        const double delta =
+                         elementary::atan2(2 * p.zeta() * p.Omega, (1 - p.Omega) * (1 + p.Omega)),
+                     theta = p.phi() - delta;
+        const double deviation = elementary::hypot(
+            at_whole_cycle.x - *amplitude * elementary::sin(theta),
+            at_whole_cycle.x_dot - *amplitude * p.Omega * elementary::cos(theta));
+        end.for_ever = *amplitude + deviation + std::abs(at_whole_cycle.y) < p.b;
+    }
+    if (end.for_ever) return end;
+    const Limits limits{.tau_end = longest_flight * p.cycle(), .max_impacts = 1, .stop = stop};
+    const Outcome outcome = simulate(p, at_whole_cycle, limits, {});
+    if (outcome.impacts > 0) end.next_contact = tau + outcome.tau;
+    return end;
 }
 
 RegimeType type_of(const Regime& r) {
@@ -256,10 +319,19 @@ Regime regime_of(
         const State scale = scale_of(p, states.last(std::min(states.size(), longest_period)));
         r.orbit = orbit_of(p, states, scale, e);
         r.search_stopped = !r.orbit && e.stop && e.stop();
-        if (r.orbit) {
-            r.z = static_cast<double>(r.orbit->contacts) / r.orbit->cycles;
-            r.capture = capture_by(p, start, states, scale, e, *r.orbit, exponents_before);
-        }
+        if (r.orbit)
+            r.capture = {
+                captured_from(p, start, *r.orbit, states, scale, e),
+                {nan, nan, nan, nan},
+                r.orbit->exponents(p),
+                std::nullopt};
+        else if (e.by_exponents == Verdict::chaotic) settle_later(p, states, scale, e, r);
+        else if (e.neutral) r.quasi_periodic = quasi_periodic(in_window(e, states), scale);
+        if (r.orbit) r.z = static_cast<double>(r.orbit->contacts) / r.orbit->cycles;
+        if (r.capture && exponents_before) examine_before(p, start, e, *r.capture);
+        if (r.contacts == 0 && !r.orbit)
+            r.untouched = untouched_end(
+                p, states.back(), e.stroboscopic.tau(states.size() - 1), e.stop);
     }
     r.type = type_of(r);
     return r;
@@ -283,12 +355,16 @@ VerdictReason undecided_by(const Growth& g) {
 
 Judgement judge(const Growth& g, const Regime& r, double tau_start) {
     if (!r.forced) return {Verdict::none, VerdictReason::free_decay};
-    if (r.type == RegimeType::none && verdict_by_exponents(g) != Verdict::chaotic)
-        return {Verdict::none, VerdictReason::untouched};
+    if (r.type == RegimeType::none && verdict_by_exponents(g) != Verdict::chaotic) {
+        const bool for_ever = r.orbit || (r.untouched && r.untouched->for_ever);
+        return for_ever ? Judgement{Verdict::none, VerdictReason::untouched}
+                        : Judgement{Verdict::not_decided, VerdictReason::next_contact};
+    }
     if (r.capture && r.capture->tau && tau_start >= *r.capture->tau)
         return {Verdict::regular, VerdictReason::on_orbit};
     if (verdict_by_exponents(g) == Verdict::chaotic)
         return {Verdict::chaotic, VerdictReason::growth};
+    if (r.quasi_periodic) return {Verdict::regular, VerdictReason::quasi_periodic};
     if (r.capture && r.capture->chaotic_before == false)
         return {Verdict::regular, VerdictReason::settling};
     return {Verdict::not_decided, r.capture ? undecided_by(*r.capture) : undecided_by(g)};

@@ -4,7 +4,8 @@
 // A response is periodic if an attracting periodic orbit is found near the end of the run: close
 // returns of the state at whole cycles are refined by Newton's method. Then the type follows from
 // the orbit's contacts per cycle and its symmetry. Other responses are classified by contacts per
-// cycle and by the longest synchronised stretch (rhythm.hpp).
+// cycle and by the longest synchronised stretch (rhythm.hpp); one whose section is a smooth closed
+// curve (torus.hpp) is quasi-periodic.
 #pragma once
 
 #include <array>
@@ -12,28 +13,30 @@
 #include <vector>
 
 #include "core/measures/rhythm.hpp"
+#include "core/measures/torus.hpp"
 #include "core/motion/record.hpp"
 #include "core/stability/orbit.hpp"
 #include "core/stability/verdict.hpp"
 
 namespace vines {
 
-/// Response types. none: no impact at all, or no forcing. I: sparse, irregular. II: strongly
-/// modulated, stretches of two impacts per cycle between others. III: two symmetric impacts per
+/// Response types. none: no impact at all, or no forcing. I: sparse, not periodic. II: strongly
+/// modulated, not periodic, stretches of two impacts per cycle. III: two symmetric impacts per
 /// cycle, periodic. IV: two asymmetric ones, periodic. V: any other periodic response. VI: any
-/// other irregular response.
+/// other response that is not periodic.
 enum class RegimeType { none, I, II, III, IV, V, VI };
 
 /// Capture of a run by the periodic orbit that attracts it.
 struct Capture {
-    /// Time from which the run stays near the orbit (or later, if the search ran out of time).
-    /// Empty if the run ends before that; continuing it showed where it goes.
+    /// Time from which the run stays near the orbit (or later, if the search ran out of time);
+    /// after the run's end if the run was continued (RegimeEvidence::settle_cycles). Empty if the
+    /// run ends on its way to the orbit.
     std::optional<double> tau;
     /// Exponents by qr from the first impact to tau or to the end; NaN with too few impacts.
     Exponents before;
     Exponents after;  ///< from the Floquet multipliers
-    /// The run was chaotic before the capture, by verdict_by_exponents(), and not just settling.
-    /// Empty: not known.
+    /// True if chaos before the capture is shown: by verdict_by_exponents() or
+    /// shows_chaotic_transient(). False if it is not shown. Empty: not examined.
     std::optional<bool> chaotic_before;
 };
 
@@ -54,6 +57,15 @@ struct Regime {
     long longest_synchronised = 0;             ///< half cycles of the longest synchronised stretch
     std::optional<PeriodicOrbit> orbit;        ///< the stable orbit that the run approaches
     std::optional<Capture> capture;            ///< set together with orbit
+    std::optional<QuasiPeriodic> quasi_periodic;  ///< only without an orbit
+    /// Contacts in each cycle, if all cycles have the same number of them.
+    std::optional<int> in_every_cycle;
+    struct Untouched {
+        bool for_ever;  ///< proven: the ball rests, and the oscillator cannot reach it
+        double y_dot;   ///< velocity of the ball
+        std::optional<double> next_contact;  ///< tau; empty if it is later than 10,000 cycles
+    };
+    std::optional<Untouched> untouched;  ///< end of a run without contacts in its window
     bool search_stopped = false;  ///< RegimeEvidence::stop ended the search for an orbit
 };
 
@@ -71,6 +83,9 @@ struct RegimeEvidence {
     double tau_start, tau_end;  ///< the window; tau_end lies within the run
     /// If chaotic, a run that is not periodic yet is not continued.
     Verdict by_exponents = Verdict::not_decided;
+    /// By the exponents the motion can be quasi-periodic (can_be_quasi_periodic()).
+    bool neutral = false;
+    double settle_cycles = 0;  ///< longest continuation of a chaotic run, to find out where it settles
     std::function<bool()> stop = {};  ///< ends the search for an orbit, see Limits::stop
 };
 
@@ -86,8 +101,10 @@ enum class VerdictReason {
     on_orbit,  ///< regular: the window begins on the stable orbit
     /// Regular: the motion settles on a stable orbit and was not chaotic before.
     settling,
-    free_decay,  ///< none: no forcing, so the motion dies out
-    untouched,   ///< none: the motion ends without impacts
+    quasi_periodic,  ///< regular: the motion is on a torus
+    free_decay,      ///< none: no forcing, so the motion dies out
+    untouched,       ///< none: the motion ends without impacts
+    next_contact,    ///< not decided: no impacts in the window, but not for ever
     /// Not decided: the window holds both a chaotic transient and the orbit that captured it.
     transient,
     /// Not decided: an orbit captured the motion, but time ran out before the part before the

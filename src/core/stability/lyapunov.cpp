@@ -36,6 +36,10 @@ bool is_in_range(double product) { return product > least_product && product < m
 
 constexpr Exponents no_exponents = {nan, nan, nan, nan};
 
+/// Size of the entries of M that grow without bound near grazing; large above `steep`.
+double steepness_of(const Saltation& M) { return std::abs(M.r_x) + std::abs(M.r_y); }
+constexpr double steep = 1e6;
+
 /// A history that thins itself: when full it drops every second entry and from then on takes every
 /// second impact. With capacity 0 it stays empty.
 class ThinnedHistory {
@@ -133,8 +137,8 @@ struct TransferProduct::Qr {
     }
 
     void strike(const Saltation& M) {
-        const double steepness = std::abs(M.r_x) + std::abs(M.r_y);
-        if (M.R < 1e-3 || steepness > 1e6) return strike_magnified(M, steepness);
+        const double steepness = steepness_of(M);
+        if (M.R < 1e-3 || steepness > steep) return strike_magnified(M, steepness);
         // Within these limits an impact and a flight of one part let no size grow by more than 1e17
         // (for a flight of duration 1e10) or shrink by more than 1e10.
         flag.strike(M);
@@ -297,6 +301,14 @@ void TransferProduct::append(std::span<const Leg> legs, const Saltation& M, doub
     }
 }
 
+void TransferProduct::end_sticking() {
+    const Leg projection{{}, 0, 0, 1, true};
+    rank_ = 2;
+    if (qr_) qr_->pass(projection, epsilon_);
+    if (powers_) powers_->product.pass(projection);
+    if (raw_) raw_->product = transfer_of(projection, epsilon_) * raw_->product;
+}
+
 Exponents TransferProduct::qr() const {
     if (!qr_) return no_exponents;
     const double T = end_ - start_;
@@ -341,14 +353,33 @@ Lyapunov::Lyapunov(
       product_(parameters.epsilon, options) {}
 
 void Lyapunov::on_stretch(const Stretch& stretch) {
-    if (product_.impacts() > 0) since_impact_.extend(stretch);  // the window has started
+    if (product_.impacts() == 0) return;  // the window has not started
+    since_impact_.extend(stretch);
+    if (stretch.sticking_side != 0 && stretch.tau <= tau_end_ && since_impact_.legs().size() == 1)
+        sticks_ = true;
 }
 
 void Lyapunov::on_impact(const Impact& impact) {
     if (impact.tau < tau_start_ || impact.tau > tau_end_) return;
     if (product_.impacts() == 0) product_.start(impact.tau);
-    else product_.append(since_impact_.legs(), saltation(parameters_, impact), impact.tau);
+    else {
+        const Saltation M = saltation(parameters_, impact);
+        product_.append(since_impact_.legs(), M, impact.tau);
+        const bool is_steep = steepness_of(M) > steep;
+        chatters_ = is_steep && steep_ && impact.side == side_;
+        steep_ = is_steep;
+    }
+    side_ = impact.side;
+    sticks_ = false;
     since_impact_.reset();
+}
+
+const TransferProduct& Lyapunov::product() {
+    if (product_.impacts() > 1 &&
+        (sticks_ || (chatters_ && !(product_.sum_rule_residual() <= most_residual))))
+        product_.end_sticking();
+    sticks_ = chatters_ = false;
+    return product_;
 }
 
 void WindowedExponents::add(double tau_start, double tau_end) {

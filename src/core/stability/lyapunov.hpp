@@ -76,6 +76,9 @@ public:
     void start(double tau);
     /// Appends the legs from the previous impact to the one at tau, and its M.
     void append(std::span<const Leg> legs, const Saltation& M, double tau);
+    /// Ends the window with the start of a sticking phase at its last impact: projects the
+    /// deviations onto those of the centre of mass.
+    void end_sticking();
 
     const ExponentOptions& options() const { return options_; }
     double start_tau() const { return start_; }
@@ -126,15 +129,25 @@ public:
     void on_stretch(const Stretch&) override;
     void on_impact(const Impact&) override;
 
-    const TransferProduct& product() const { return product_; }
-    /// Call it after the run.
-    TransferProduct take() { return std::move(product_); }
+    /// Call these after the run.
+    const TransferProduct& product();
+    TransferProduct take() {
+        product();
+        return std::move(product_);
+    }
 
 private:
     const Parameters parameters_;
     const double tau_start_, tau_end_;
     LegSequence since_impact_;
     TransferProduct product_;
+    /// A sticking phase follows the last impact in the window, or the last impacts are the end of a
+    /// chatter. The deviations after such an impact are as large as the entries of its M, which the
+    /// sticking phase removes: a window that ends here would otherwise depend on which impact of the
+    /// chatter is its last.
+    bool sticks_ = false, chatters_ = false;
+    int side_ = 0;
+    bool steep_ = false;
 };
 
 /// Exponents of many windows of one run; each window receives events only while it is open.
@@ -150,8 +163,8 @@ public:
     void on_impact(const Impact&) override;
 
     std::size_t size() const { return windows_.size(); }
-    const TransferProduct& product(std::size_t i) const { return windows_[i].lyapunov.product(); }
-    /// Call it after the run.
+    /// Call these after the run.
+    const TransferProduct& product(std::size_t i) { return windows_[i].lyapunov.product(); }
     TransferProduct take(std::size_t i) { return windows_[i].lyapunov.take(); }
 
 private:

@@ -3,8 +3,11 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <numbers>
+#include <numeric>
+#include <optional>
 
-#include "core/stability/mean_error.hpp"
+#include "core/motion/elementary.hpp"
 
 namespace vines {
 
@@ -16,15 +19,17 @@ constexpr std::size_t least_entries = 32;
 constexpr std::size_t transient_part = 10;
 
 /// Increments of one exponent's sum of logarithms (lambda times its window) over even steps of tau,
-/// up to entry `last`.
+/// from entry `first`, or else from the window's start, up to entry `last`.
 std::array<double, error_steps> even_steps(
-    const ExponentHistory& h, double start, std::size_t last, std::size_t stride, int exponent) {
+    const ExponentHistory& h, double start, std::optional<std::size_t> first, std::size_t last,
+    std::size_t stride, int exponent) {
     std::array<double, error_steps> steps;
-    double tau_before = start, sum_before = 0, previous = 0;
-    std::size_t i = 0;
+    std::size_t i = first ? *first + stride : 0;
     auto sum_at = [&](std::size_t k) { return h.lambda[k][exponent] * (h.tau[k] - start); };
+    const double from = first ? h.tau[*first] : start;
+    double tau_before = from, sum_before = first ? sum_at(*first) : 0, previous = sum_before;
     for (int step = 1; step <= error_steps; ++step) {
-        const double tau = start + (h.tau[last] - start) * step / error_steps;
+        const double tau = from + (h.tau[last] - from) * step / error_steps;
         for (; i < last && h.tau[i] < tau; i += stride)
             tau_before = h.tau[i], sum_before = sum_at(i);
         const double width = h.tau[i] - tau_before;
@@ -68,7 +73,7 @@ Growth growth_of(const TransferProduct& product) {
     const ExponentHistory& h = product.qr_history();
     const double start = product.start_tau(), T = product.end_tau() - start,
                  lambda1 = product.qr()[0];
-    Growth g{lambda1, {nan, nan, nan, nan}, lambda1 * T, nan, nan};
+    Growth g{lambda1, product.qr()[1], {nan, nan, nan, nan}, lambda1 * T, nan, nan};
     const std::size_t stride = h.coarse_stride();
     for (std::size_t i = 0; i < h.tau.size(); i += stride)
         if (h.tau[i] >= start + 0.5 * T) {
@@ -78,7 +83,7 @@ Growth growth_of(const TransferProduct& product) {
     if (h.tau.size() < least_entries || !(T > 0)) return g;
     const std::size_t last = (h.tau.size() - 1) / stride * stride;
     for (int k = 0; k < 4; ++k) {
-        const auto steps = even_steps(h, start, last, stride, k);
+        const auto steps = even_steps(h, start, std::nullopt, last, stride, k);
         g.standard_error[k] = error_of_sum(steps) / (h.tau[last] - start);
         if (k == 0) g.difference_of_halves = difference_of_halves(steps);
     }
@@ -89,6 +94,46 @@ Verdict verdict_by_exponents(const Growth& g) {
     const bool chaotic = g.lambda1 > student_three_sigma * g.standard_error[0] &&
                          g.whole > least_growth && g.late > least_late_growth;
     return chaotic ? Verdict::chaotic : Verdict::not_decided;
+}
+
+bool can_be_quasi_periodic(const Growth& g) {
+    return verdict_by_exponents(g) != Verdict::chaotic && std::abs(g.late) < least_late_growth &&
+           g.lambda2 < -student_three_sigma * g.standard_error[1];
+}
+
+namespace {
+
+/// Probability that Student's distribution with seven degrees of freedom exceeds t > 0.
+double student_tail(double t) {
+    const double angle = elementary::atan2(t, std::sqrt(7.0)), c = elementary::cos(angle),
+                 s = elementary::sin(angle);
+    return 0.5 - (angle + s * c * (1 + c * c * (2.0 / 3 + c * c * 8.0 / 15))) / std::numbers::pi;
+}
+
+/// Probability of three standard deviations of the normal distribution, one-sided.
+constexpr double three_sigma_probability = 0.00135;
+
+}  // namespace
+
+bool shows_chaotic_transient(const ExponentHistory& h, double start) {
+    if (h.tau.size() < least_entries) return false;
+    const auto sum_at = [&](std::size_t k) { return h.lambda[k][0] * (h.tau[k] - start); };
+    std::size_t lowest = 0, first = 0, last = 0;
+    double growth = 0;
+    for (std::size_t k = 0; k < h.tau.size(); ++k) {
+        if (sum_at(k) < sum_at(lowest)) lowest = k;
+        if (sum_at(k) - sum_at(lowest) > growth)
+            growth = sum_at(k) - sum_at(lowest), first = lowest, last = k;
+    }
+    if (growth < least_transient_growth || last - first < least_entries) return false;
+    const auto steps = even_steps(h, start, first, last, 1, 0);
+    const double late = std::accumulate(steps.begin() + error_steps / 2, steps.end(), 0.0);
+    // A sum of steps with zero mean rises above its lowest value, somewhere in the history, as
+    // often as the modulus of one sum exceeds that level or its double: by the reflection principle
+    // at most four times as often as a single sum. Parts of the history's length are as many looks.
+    const double looks = (h.tau.back() - start) / (h.tau[last] - h.tau[first]);
+    return late > least_late_growth && growth - late > least_late_growth &&
+           4 * looks * student_tail(growth / error_of_sum(steps)) < three_sigma_probability;
 }
 
 }  // namespace vines

@@ -32,10 +32,10 @@ inline constexpr double least_growth = 36.04;
 inline constexpr double least_late_growth = 2.77;
 
 /// Growth of deviations over a window, by qr. The standard errors are those of the exponents as
-/// means over the window; NaN with fewer than 32 entries in the history. Dimensionless except lambda1 and its errors (per unit
-/// of tau); NaN if unavailable.
+/// means over the window; NaN with fewer than 32 entries in the history. Dimensionless except the
+/// exponents and their errors (per unit of tau); NaN if unavailable.
 struct Growth {
-    double lambda1;
+    double lambda1, lambda2;
     Exponents standard_error;  ///< of all four exponents
     /// Sum of the first exponent's logarithms over the window and over its second half.
     double whole, late;
@@ -47,6 +47,17 @@ Growth growth_of(const TransferProduct& product);
 
 /// Returns chaotic or not_decided.
 Verdict verdict_by_exponents(const Growth& growth);
+
+/// True if the exponents are those of a motion on a torus: the first one is zero within its error
+/// and without growth or decay in the second half of the window, the second one is negative.
+bool can_be_quasi_periodic(const Growth& growth);
+
+/// Least growth, as a logarithm, that shows a chaotic transient.
+inline constexpr double least_transient_growth = 20;
+/// True if deviations grow in some part of a history, by at least e^20, more than chance permits
+/// anywhere in it. For motions that settle afterwards, whose mean growth shows nothing. `start`:
+/// start of the history's window.
+bool shows_chaotic_transient(const ExponentHistory& history, double start);
 
 /// Increments of the first exponent's sum of logarithms, lambda1(tau) tau, between the entries of a
 /// history without its first tenth. Their slope contains less of the transient than lambda1, which

@@ -1,0 +1,210 @@
+#include "core/measures/torus.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <complex>
+#include <numbers>
+#include <vector>
+
+#include "core/motion/elementary.hpp"
+#include "core/stability/linear.hpp"
+#include "core/stability/orbit.hpp"
+
+namespace vines {
+
+namespace {
+
+constexpr std::size_t most_points_of_torus = 2048, fewest_points_of_torus = 128;
+constexpr int most_curves = 6, lines_tried = 4;
+// Largest ratios of slope and curvature: 1 for a smooth curve, 4 and 16 for a set with a thickness.
+constexpr double most_slope_ratio = 1.5, most_curvature_ratio = 2;
+constexpr std::size_t coarse_neighbours = 4;
+// Largest gap between phases, in turns.
+constexpr double most_phase_gap = 0.05;
+
+using Signal = std::vector<std::complex<double>>;
+
+std::complex<double> turned(double turns) {
+    const double angle = 2 * std::numbers::pi * turns;
+    return {elementary::cos(angle), elementary::sin(angle)};
+}
+
+/// (x, x') of the points as complex numbers, without their mean, weighted by a Hann window.
+Signal windowed(std::span<const State> points) {
+    Signal signal;
+    std::complex<double> mean = 0;
+    for (const State& s : points) mean += std::complex(s.x, s.x_dot);
+    mean /= static_cast<double>(points.size());
+    for (std::size_t k = 0; k < points.size(); ++k) {
+        const double place = static_cast<double>(k + 1) / static_cast<double>(points.size() + 1);
+        signal.push_back(
+            (std::complex(points[k].x, points[k].x_dot) - mean) * (1 - turned(place).real()));
+    }
+    return signal;
+}
+
+/// Modulus of the spectrum at a frequency, in turns per point.
+double line_at(const Signal& signal, double frequency) {
+    const std::complex<double> step = turned(-frequency);
+    std::complex<double> sum = 0;
+    for (std::size_t k = signal.size(); k > 0; --k) sum = sum * step + signal[k - 1];
+    return std::abs(sum);
+}
+
+/// Fast Fourier transform of a power of two of values: X_n = sum of x_k exp(-2 pi i n k/N).
+void transform(std::span<std::complex<double>> x) {
+    const std::size_t n = x.size();
+    if (n == 1) return;
+    Signal even, odd;
+    for (std::size_t k = 0; k < n; k += 2) even.push_back(x[k]), odd.push_back(x[k + 1]);
+    transform(even), transform(odd);
+    for (std::size_t k = 0; k < n / 2; ++k) {
+        const auto part = turned(-static_cast<double>(k) / static_cast<double>(n)) * odd[k];
+        x[k] = even[k] + part;
+        x[k + n / 2] = even[k] - part;
+    }
+}
+
+/// Frequency of the maximum of line_at() within `width` of a frequency, by golden sections.
+double refined(const Signal& signal, double frequency, double width) {
+    constexpr double golden = 0.6180339887498949;
+    const double tolerance = 1e-9 * width;
+    double low = frequency - width, high = frequency + width;
+    double left = high - golden * (high - low), right = low + golden * (high - low),
+           at_left = line_at(signal, left), at_right = line_at(signal, right);
+    while (high - low > tolerance) {
+        if (at_left > at_right) {
+            high = right, right = left, at_right = at_left;
+            left = high - golden * (high - low), at_left = line_at(signal, left);
+        } else {
+            low = left, left = right, at_left = at_right;
+            right = low + golden * (high - low), at_right = line_at(signal, right);
+        }
+    }
+    return 0.5 * (low + high);
+}
+
+/// Frequencies of the strongest lines, in turns per point, the strongest first.
+std::vector<double> strongest_lines(const Signal& signal) {
+    std::size_t n = 1;
+    while (n < 2 * signal.size()) n *= 2;
+    Signal spectrum = signal;
+    spectrum.resize(n);
+    transform(spectrum);
+    std::vector<std::pair<double, std::size_t>> maxima;
+    for (std::size_t k = 0; k < n; ++k) {
+        const double here = std::abs(spectrum[k]);
+        if (here > std::abs(spectrum[(k + 1) % n]) && here >= std::abs(spectrum[(k + n - 1) % n]))
+            maxima.emplace_back(-here, k);
+    }
+    std::ranges::sort(maxima);
+    maxima.resize(std::min<std::size_t>(maxima.size(), lines_tried));
+    std::vector<double> lines;
+    const double width = 1.0 / static_cast<double>(n);
+    for (const auto& maximum : maxima)
+        lines.push_back(refined(signal, static_cast<double>(maximum.second) * width, width));
+    return lines;
+}
+
+double median_of(std::vector<double> values) {
+    const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+    std::ranges::nth_element(values, middle);
+    return *middle;
+}
+
+/// The points in the order of their phases; slope and curvature of the curve through them, as
+/// medians.
+class SortedPoints {
+public:
+    SortedPoints(std::span<const State> points, const State& scale, double frequency)
+        : points_(points),
+          scale_(scale) {
+        for (std::size_t k = 0; k < points.size(); ++k) {
+            const double turns = frequency * static_cast<double>(k);
+            phases_.emplace_back(turns - std::floor(turns), k);
+        }
+        std::ranges::sort(phases_);
+    }
+
+    double largest_gap() const {
+        double largest = 0;
+        for (std::size_t i = 0; i < phases_.size(); ++i) largest = std::max(largest, apart(i, 1));
+        return largest;
+    }
+
+    struct Shape {
+        double slope, curvature;
+    };
+    /// From neighbours that are `step` places apart.
+    Shape shape(std::size_t step) const {
+        std::vector<double> slopes, curvatures;
+        const std::size_t n = phases_.size();
+        for (std::size_t i = 0; i < n; ++i) {
+            const std::size_t middle = (i + step) % n;
+            const double before = apart(i, step), after = apart(middle, step);
+            const State &left = at(i), &here = at(middle), &right = at(middle + step);
+            const Eigen::Vector4d line = (after * vector_of(left) + before * vector_of(right)) /
+                                         (before + after);
+            slopes.push_back(distance(left, here, scale_) / before);
+            curvatures.push_back(distance(here, state_of(line), scale_) / (before * after));
+        }
+        return {median_of(std::move(slopes)), median_of(std::move(curvatures))};
+    }
+
+private:
+    const State& at(std::size_t i) const { return points_[phases_[i % phases_.size()].second]; }
+    double apart(std::size_t i, std::size_t step) const {
+        const double turns = phases_[(i + step) % phases_.size()].first - phases_[i].first;
+        return turns < 0 ? turns + 1 : turns;
+    }
+
+    const std::span<const State> points_;
+    const State scale_;
+    std::vector<std::pair<double, std::size_t>> phases_;
+};
+
+/// Evidence that points at equal intervals, of which one lies on each curve, rotate on it.
+std::optional<QuasiPeriodic> on_one_curve(std::span<const State> points, const State& scale) {
+    const Signal signal = windowed(points);
+    const auto first = points.first(points.size() / 2), last = points.last(points.size() / 2);
+    for (const double line : strongest_lines(signal)) {
+        const SortedPoints sorted(points, scale, line);
+        const double largest_gap = sorted.largest_gap();
+        if (largest_gap > most_phase_gap) continue;
+        const auto fine = sorted.shape(1), coarse = sorted.shape(coarse_neighbours);
+        const double slope_ratio = fine.slope / coarse.slope,
+                     curvature_ratio = fine.curvature / coarse.curvature;
+        if (!(slope_ratio < most_slope_ratio && curvature_ratio < most_curvature_ratio)) continue;
+        const double width = 1.0 / static_cast<double>(points.size());
+        double error = 0;
+        for (const auto& part : {first, last})
+            error = std::max(error, std::abs(refined(windowed(part), line, width) - line));
+        const double turns = line - std::round(line);
+        return QuasiPeriodic{
+            std::abs(turns), error, 1, points.size(), largest_gap, slope_ratio, curvature_ratio};
+    }
+    return std::nullopt;
+}
+
+}  // namespace
+
+std::optional<QuasiPeriodic> quasi_periodic(std::span<const State> states, const State& scale) {
+    // The first half can be a transient.
+    states = states.last(std::min(states.size() / 2, most_points_of_torus));
+    for (int curves = 1; curves <= most_curves; ++curves) {
+        const auto apart = static_cast<std::size_t>(curves);
+        if (states.size() / apart < fewest_points_of_torus) break;
+        std::vector<State> points;
+        for (std::size_t k = states.size() % apart; k < states.size(); k += apart)
+            points.push_back(states[k]);
+        auto found = on_one_curve(points, scale);
+        if (!found) continue;
+        found->curves = curves;
+        found->rotation_number /= curves;
+        found->error /= curves;
+        return found;
+    }
+    return std::nullopt;
+}
+
+}  // namespace vines
