@@ -96,12 +96,12 @@ inline constexpr Property<EnergyBalance> balance[] = {
     {energies.at_start, at<&EnergyBalance::at_start>},
     {energies.at_end, at<&EnergyBalance::at_end>},
     {{"rms", "rms of x, m"}, at<&EnergyBalance::rms>},
-    {{"peak", "maximum of |x|, m"}, at<&EnergyBalance::peak>},
+    {{"peak", "maximum of |x| in the window, m"}, at<&EnergyBalance::peak>},
 };
 
 inline constexpr Property<Unattached> unattached[] = {
     {{"rms", "rms of x, m"}, at<&Unattached::rms>},
-    {{"peak", "maximum of |x|, m"}, at<&Unattached::peak>},
+    {{"peak", "maximum of |x| in the window, m"}, at<&Unattached::peak>},
     {{"amplitude", "steady amplitude, m; null if undamped at resonance", number_or_null},
      at<&Unattached::amplitude>},
 };
@@ -134,6 +134,20 @@ inline constexpr Property<Recommendation> recommendation[] = {
     {{"regime", "regime, for the worst start", regime}, at<&Recommendation::regime>},
     {{"start", "the worst start of the default set", word},
      [](const Recommendation& r) { return Json(r.start.name); }},
+    {{"tolerance_ratio",
+      "largest rms of x with F up to 20 % higher or 17 % lower and f up to 1 % off, over the "
+      "largest without the absorber there"},
+     at<&Recommendation::tolerance_ratio>},
+    {{"margin_F",
+      "factors on F (or G) between which at least half of the reduction, 1 - x_rms_ratio, remains, "
+      "as far as tried",
+      interval},
+     at<&Recommendation::margin_F>},
+    {{"margin_f",
+      "factors on f (or Omega) between which at least half of the reduction remains, as far as "
+      "tried",
+      interval},
+     at<&Recommendation::margin_f>},
 };
 
 // Regime.
@@ -259,7 +273,10 @@ inline constexpr Property<MeasuredPoint> point[] = {
      orbit_at<[](const PeriodicOrbit& o) { return elementary::modulus(o.multipliers[0]); }>},
     {{"synchronised", "fraction of the contacts that lie in synchronised stretches"},
      regime_at<&Regime::synchronised>},
-    {{"x_max", "maximum of |x|, m"}, result_at<&PointResult::x_max>},
+    {{"x_max",
+      "maximum of |x| over the measured cycles, m; that of an irregular motion grows with their "
+      "number"},
+     result_at<&PointResult::x_max>},
     {{"x_rms", "rms of x, m"}, result_at<&PointResult::x_rms>},
     {{"x_rms_ratio", "x_rms over that of the steady motion without the absorber"},
      result_at<&PointResult::x_rms_ratio>},
@@ -272,7 +289,7 @@ inline constexpr Property<MeasuredPoint> point[] = {
 
 /// Quantities that distinguish the motions of a point.
 inline constexpr Property<PointResult> motion[] = {
-    {{"x_max", "maximum of |x|, m"}, at<&PointResult::x_max>},
+    {{"x_max", "maximum of |x| over the measured cycles, m"}, at<&PointResult::x_max>},
     {{"x_rms", "rms of x, m"}, at<&PointResult::x_rms>},
     {{"regime", "as for a point", regime},
      [](const PointResult& p) { return json_of(p.regime.type); }},
