@@ -58,7 +58,7 @@ Json describe_peak(const Axis& axis, const Peak& peak) {
 /// The reason why a point's fields form no valid system.
 std::string fault_of(const SweepRequest& r, const Place& place) {
     try {
-        read_started_system(fields_of(r, place));
+        refuse(read_started_system(fields_of(r, place)).errors);
     } catch (const Problem& problem) {
         return problem.what();
     }
