@@ -39,13 +39,8 @@ constexpr int halvings = 3;
 // The robust b differs from the best one if its tolerance_ratio is smaller by this factor.
 constexpr double robust_gain = 0.9;
 
-struct Try {
-    double b;
-    double x_rms_ratio = 0;  // of the worst motion, as all that follows
-    NamedStart start{};
-    double x_max = 0;
-    RegimeType regime{};
-};
+/// A try of one b, up to its regime.
+using Try = Recommendation;
 
 class StoppedFromOutside : public RunControl {
 public:
@@ -170,21 +165,16 @@ double f_margin(const Search& s, double b, double limit, bool upwards) {
     return within;
 }
 
-Recommendation described(const Search& s, const Try& t, const std::vector<AtFrequency>& rows) {
+Recommendation completed(const Search& s, Try t, const std::vector<AtFrequency>& rows) {
     const Parameters& p = s.parameters;
     const double limit = (1 + t.x_rms_ratio) / 2;
     std::vector<Try> by_b = s.tries;
     std::ranges::sort(by_b, {}, &Try::b);
-    return {
-        .b = t.b,
-        .fold_share = manifold_fold(p.R_plus, p.Omega, t.b).C / s.C,
-        .start = t.start,
-        .x_rms_ratio = t.x_rms_ratio,
-        .x_max = t.x_max,
-        .regime = t.regime,
-        .tolerance_ratio = tolerance_ratio(t.b, rows),
-        .margin_F = margin_of_F(by_b, t.b, limit),
-        .margin_f = {1 - f_margin(s, t.b, limit, false), 1 + f_margin(s, t.b, limit, true)}};
+    t.fold_share = manifold_fold(p.R_plus, p.Omega, t.b).C / s.C;
+    t.tolerance_ratio = tolerance_ratio(t.b, rows);
+    t.margin_F = margin_of_F(by_b, t.b, limit);
+    t.margin_f = {1 - f_margin(s, t.b, limit, false), 1 + f_margin(s, t.b, limit, true)};
+    return t;
 }
 
 Recommendations recommendations(Search& s, const std::vector<double>& row) {
@@ -199,9 +189,9 @@ Recommendations recommendations(Search& s, const std::vector<double>& row) {
     const std::span<const Try> candidates(
         s.tries.data() + steps_above, row.size() - steps_above - 2);
     const Try& robust = *std::ranges::min_element(candidates, {}, tolerance_of);
-    Recommendations r{described(s, s.best(), rows), {}};
+    Recommendations r{completed(s, s.best(), rows), {}};
     if (tolerance_of(robust) < robust_gain * r.best->tolerance_ratio && robust.x_rms_ratio < 1)
-        r.robust = described(s, robust, rows);
+        r.robust = completed(s, robust, rows);
     return r;
 }
 

@@ -19,17 +19,17 @@ namespace vines {
 inline constexpr double F_tolerance = 1.2, f_tolerance = 0.01;
 
 struct Recommendation {
-    double b;            ///< m
-    double fold_share;   ///< amplitude at the fold over that without absorber
-    NamedStart start;    ///< start of the worst motion, which the following values describe
-    double x_rms_ratio;  ///< rms of x over that without absorber, below 1
-    double x_max;        ///< m
-    RegimeType regime;
+    double b;                ///< m
+    double x_rms_ratio = 0;  ///< rms of x over that without absorber, below 1, for the worst start
+    NamedStart start = {};   ///< the worst start, which the following two values describe as well
+    double x_max = 0;        ///< m
+    RegimeType regime = RegimeType::none;
+    double fold_share = 0;  ///< amplitude at the fold over that without absorber
     /// Largest rms of x over the tolerances of F and f, over the largest without absorber there.
-    double tolerance_ratio;
+    double tolerance_ratio = 0;
     /// Factors on F and on f with which at least half of the reduction 1 - x_rms_ratio remains, as
     /// far as tried.
-    Interval margin_F, margin_f;
+    Interval margin_F = {}, margin_f = {};
 };
 
 struct Recommendations {

@@ -67,7 +67,8 @@ TEST_CASE("no b of a fine grid is better than the recommended one by more than a
     }
 }
 
-TEST_CASE("half of the reduction remains within the margins of a recommended b and not far beyond") {
+TEST_CASE(
+    "half of the reduction remains within the margins of a recommended b and not far beyond") {
     const Parameters p = system_of(0.05, 0.4, 0.7, 1.02);
     const Recommendations r = recommended_b(p, {});
     REQUIRE(r.best);
