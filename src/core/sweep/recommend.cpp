@@ -75,7 +75,9 @@ struct Search {
             at.b = bs[i];
             std::vector<NamedStart> starts = default_starts(at);
             return std::optional(PointTask{
-                {at, {}, length_of_try.max_impacts}, starts, [&result, i, starts](auto motions) {
+                {at, {}, length_of_try.max_impacts},
+                starts,
+                [&result, i, starts](const std::vector<Motion>& motions) {
                     take_worst(result[i], starts, motions);
                 }});
         });
