@@ -24,7 +24,7 @@ Json describe_sections(const Sections& sections);
 Json describe_energy(const EnergyResult& energy);
 Json describe_manifold(const Manifold& manifold);
 Json describe_manifold(const ManifoldResult& manifold);
-/// Null if no b is recommended.
+/// Null if there is none.
 Json describe_recommendation(const std::optional<Recommendation>& recommendation);
 
 /// {final, status} of the four exponents, per unit of tau.

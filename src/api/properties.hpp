@@ -103,13 +103,13 @@ inline constexpr Property<EnergyBalance> balance[] = {
       "than 32 cycles",
       number_or_null},
      at<&EnergyBalance::rms_error>},
-    {{"peak", "maximum of |x| over this window, m; of an irregular motion it grows with the window"},
+    {{"peak", "maximum of |x| in the window, m; that of an irregular motion grows with the window"},
      at<&EnergyBalance::peak>},
 };
 
 inline constexpr Property<Unattached> unattached[] = {
     {{"rms", "rms of x, m"}, at<&Unattached::rms>},
-    {{"peak", "maximum of |x|, m"}, at<&Unattached::peak>},
+    {{"peak", "maximum of |x| in the window, m"}, at<&Unattached::peak>},
     {{"amplitude", "steady amplitude, m; null if undamped at resonance", number_or_null},
      at<&Unattached::amplitude>},
 };
@@ -145,6 +145,20 @@ inline constexpr Property<Recommendation> recommendation[] = {
     {{"regime", "regime, for the worst start", regime}, at<&Recommendation::regime>},
     {{"start", "the worst start of the default set", word},
      [](const Recommendation& r) { return Json(r.start.name); }},
+    {{"tolerance_ratio",
+      "largest rms of x with F up to 20 % higher or 17 % lower and f up to 1 % off, over the "
+      "largest without the absorber there"},
+     at<&Recommendation::tolerance_ratio>},
+    {{"margin_F",
+      "factors on F (or G) between which at least half of the reduction, 1 - x_rms_ratio, remains, "
+      "as far as tried",
+      interval},
+     at<&Recommendation::margin_F>},
+    {{"margin_f",
+      "factors on f (or Omega) between which at least half of the reduction remains, as far as "
+      "tried",
+      interval},
+     at<&Recommendation::margin_f>},
 };
 
 // Regime.
@@ -299,7 +313,7 @@ inline constexpr Property<MeasuredPoint> point[] = {
     {{"synchronised", "fraction of the contacts that lie in synchronised stretches"},
      regime_at<&Regime::synchronised>},
     {{"x_max",
-      "maximum of |x| over the measured cycles, m; of an irregular motion it grows with their "
+      "maximum of |x| over the measured cycles, m; that of an irregular motion grows with their "
       "number"},
      result_at<&PointResult::x_max>},
     {{"x_rms", "rms of x, m"}, result_at<&PointResult::x_rms>},
@@ -320,7 +334,7 @@ inline constexpr Property<MeasuredPoint> point[] = {
 
 /// Quantities that distinguish the motions of a point.
 inline constexpr Property<PointResult> motion[] = {
-    {{"x_max", "maximum of |x|, m"}, at<&PointResult::x_max>},
+    {{"x_max", "maximum of |x| over the measured cycles, m"}, at<&PointResult::x_max>},
     {{"x_rms", "rms of x, m"}, at<&PointResult::x_rms>},
     {{"regime", "as for a point", regime},
      [](const PointResult& p) { return json_of(p.regime.type); }},

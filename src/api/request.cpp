@@ -113,8 +113,7 @@ StartedSystem read_started_system(const Json& given) {
     s.system = read_system(l);
     s.start = read_start(l, s.system);
     s.max_impacts = static_cast<long>(l.number("max_impacts"));
-    const std::vector<FieldError> errors = field_errors(validate(s.system.parameters, s.start), l);
-    if (!errors.empty()) refuse(errors);
+    s.errors = field_errors(validate(s.system.parameters, s.start), l);
     return s;
 }
 

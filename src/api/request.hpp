@@ -25,8 +25,10 @@ struct StartedSystem {
     System system;
     State start;
     long max_impacts;
+    std::vector<FieldError> errors;  ///< values that form no valid system; empty: valid
 };
-/// Reads sweep_base_fields(). Problem 422 naming every invalid field.
+/// Reads sweep_base_fields(). Problem 422 for fields that are invalid by themselves, that exclude
+/// each other or that are missing.
 StartedSystem read_started_system(const Json& object);
 
 struct ManifoldRequest {

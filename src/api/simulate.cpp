@@ -116,12 +116,14 @@ Json describe_status(const Outcome& outcome, long max_impacts, const Stop& stop)
 }
 
 Json describe_windows(
-    const std::vector<WindowExponents>& windows, const ExponentOptions& shown,
-    const Regime& regime) {
+    const std::vector<WindowExponents>& windows, const ExponentOptions& shown, const Regime& regime,
+    double run_end) {
     Json list = Json::array();
     for (const WindowExponents& w : windows) {
         Json entry = {{"asked", {w.asked.from, w.asked.to}}};
         entry.update(describe_exponents(w, shown, regime, false));
+        if (shown.qr && w.asked.from >= run_end)
+            entry["verdict_reason"] = "the run had ended before this window began";
         list.push_back(std::move(entry));
     }
     return list;
@@ -163,7 +165,8 @@ public:
         add("sticking", api::describe(sticking_columns, a.sticks));
         if (!a.touches.empty()) add("touches", api::describe(touch_columns, a.touches));
         part("exponents", [&] { return describe_exponents(*a.exponents, shown, *a.regime, true); });
-        if (!a.windows.empty()) add("windows", describe_windows(a.windows, shown, *a.regime));
+        if (!a.windows.empty())
+            add("windows", describe_windows(a.windows, shown, *a.regime, a.outcome.tau));
         part("eigenvalues", [&] { return api::describe(moduli_columns, *taken(a.moduli)); });
         part("matrices", [&] { return api::describe(matrix_columns, *taken(a.matrices)); });
         part("section", [&] { return describe_sections(*taken(a.sections)); });
@@ -254,23 +257,31 @@ Json simulate_answer(SimulateRequest r, const Stop& stop, std::size_t most_bytes
 
 namespace {
 
+/// A recommended b above this fraction of the amplitude without absorber causes a warning.
+constexpr double near_free_amplitude = 0.9;
+
 /// Warnings about a manifold and the recommended b; `late`: the search for b was cut short.
 void add_manifold_warnings(
-    const Manifold& m, double V_max, const std::optional<Recommendation>& recommended, bool late,
-    Warnings& warnings) {
+    const Manifold& m, double V_max, const Recommendations& r, bool late, Warnings& warnings) {
     const auto free = m.free_amplitude;
     if (!free)
         warnings.push_back(
             "an undamped oscillator at resonance has no finite amplitude without the absorber: "
             "there is none to reduce");
-    if (late && !recommended)
+    if (late && !r.best)
         warnings.push_back(
             "no b is recommended: the server's time limit for one request ended before all were "
             "tried");
-    else if (free && *free > 0 && !recommended)
+    else if (free && *free > 0 && !r.best)
         warnings.push_back(
             "no b is recommended: no tried value reduces the motion at this frequency from every "
             "start");
+    if (r.best && r.robust && r.best->b > near_free_amplitude * *free)
+        warnings.push_back(fmt::format(
+            "the recommended b lies {:.2g} % below the amplitude without the absorber: with an F "
+            "smaller by that, or another f, a ball at rest is never met; robust is the b for an F "
+            "and f that are not exact",
+            100 * (1 - r.best->b / *free)));
     if (free && *free < m.fold.C)
         warnings.push_back(fmt::format(
             "without the absorber the oscillator reaches {:.4g} m, less than the activation "
@@ -292,12 +303,13 @@ Json manifold_answer(const ManifoldRequest& r, const Stop& stop) {
     parameters["derived"] = describe_derived(r.system);
     const Manifold manifold = manifold_of(p, r.V_max, r.points);
     bool late = false;  // stop.requested() has returned true
-    const auto recommended =
+    const Recommendations recommended =
         recommended_b(p, [&] { return late = late || (stop.requested && stop.requested()); });
     Warnings warnings = r.system.notes;
     add_manifold_warnings(manifold, r.V_max, recommended, late, warnings);
     Json described = describe_manifold(manifold);
-    described["recommended"] = describe_recommendation(recommended);
+    described["recommended"] = describe_recommendation(recommended.best);
+    described["robust"] = describe_recommendation(recommended.robust);
     if (r.system.si) add_si(described, *r.system.si);
     return {
         {"version", version()},

@@ -9,6 +9,7 @@
 #include "api/answer_json.hpp"
 #include "api/describe.hpp"
 #include "api/json_text.hpp"
+#include "api/schema/tables.hpp"
 #include "api/version.hpp"
 #include "core/motion/elementary.hpp"
 
@@ -33,6 +34,24 @@ std::string transient_warning(const Parameters& p, double cycles) {
                                   : ": it is undamped");
 }
 
+/// A warning if one axis would do, since all lengths scale together; otherwise empty.
+std::string scale_warning(const SweepRequest& r) {
+    const auto has_axis = [&](const std::string& name) {
+        return std::ranges::find(r.axes, name, &Axis::parameter) != r.axes.end();
+    };
+    const std::string amplitude = has_axis("G") ? "G" : "F";
+    if (!has_axis("b") || !has_axis(amplitude)) return "";
+    for (const Field& f : start_fields())
+        for (std::size_t s = 0; s < r.starts.size(); ++s) {
+            // A length or a velocity that does not scale with them.
+            const Json fields = fields_of(r, {s, std::vector<std::size_t>(r.axes.size(), 0)});
+            if (has_axis(f.name) || (fields.contains(f.name) && fields[f.name] != 0)) return "";
+        }
+    return "the motion depends on b and " + amplitude + " only by b/" + amplitude +
+           ", apart from its scale: the map repeats itself along rays; an axis of b shows all of "
+           "it";
+}
+
 std::string json_line(Json json) { return json_text(std::move(json)) + "\n"; }
 
 }  // namespace
@@ -47,8 +66,9 @@ Json sweep_start(const SweepRequest& r) {
     parameters["derived"] = describe_derived(system);
     const PointOptions& options = r.plan.options;
     std::vector<std::string> warnings = system.notes;
-    const std::string warning = transient_warning(system.parameters, options.transient_cycles);
-    if (!warning.empty()) warnings.push_back(warning);
+    for (const std::string& warning :
+         {transient_warning(system.parameters, options.transient_cycles), scale_warning(r)})
+        if (!warning.empty()) warnings.push_back(warning);
     return {
         {"type", "start"},
         {"version", version()},

@@ -94,12 +94,20 @@ Axis read_axis(
         add_errors(where, std::move(faults), errors);
         return {};
     }
-    if (j.contains("values")) return {j["parameter"], j["values"].get<std::vector<double>>()};
-    return {
-        j["parameter"], spaced(
-                            j["from"].get<double>(), j["to"].get<double>(),
-                            static_cast<std::size_t>(j["count"].get<double>()),
-                            j.value("scale", "linear") == "log")};
+    Axis axis{
+        j["parameter"], j.contains("values")
+                            ? j["values"].get<std::vector<double>>()
+                            : spaced(
+                                  j["from"].get<double>(), j["to"].get<double>(),
+                                  static_cast<std::size_t>(j["count"].get<double>()),
+                                  j.value("scale", "linear") == "log")};
+    const auto [least, largest] = std::ranges::minmax(axis.values);
+    for (const double value : {least, largest})
+        for (FieldError& e : check(sweep_base_fields(), {{axis.parameter, value}})) {
+            e.pointer = where;
+            errors.push_back(std::move(e));
+        }
+    return axis;
 }
 
 }  // namespace vines::api

@@ -58,11 +58,13 @@ Json describe_peak(const Axis& axis, const Peak& peak) {
 /// The reason why a point's fields form no valid system.
 std::string fault_of(const SweepRequest& r, const Place& place) {
     try {
-        read_started_system(fields_of(r, place));
+        std::vector<std::string> details;
+        for (const FieldError& e : read_started_system(fields_of(r, place)).errors)
+            details.push_back(e.detail);
+        return joined(details);
     } catch (const Problem& problem) {
         return problem.what();
     }
-    return "";
 }
 
 }  // namespace

@@ -13,11 +13,8 @@ SweepSystems::SweepSystems(
     std::vector<SystemFields> bases, std::vector<Axis> axes, long max_impacts)
     : bases_(std::move(bases)),
       max_impacts_(max_impacts) {
-    for (Axis& axis : axes) {
-        const Range range = *find(sweep_base_fields(), axis.parameter)->range;
-        columns_.push_back(
-            {system_number(axis.parameter), std::move(axis.values), range.minimum, range.maximum});
-    }
+    for (Axis& axis : axes)
+        columns_.push_back({system_number(axis.parameter), std::move(axis.values)});
 }
 
 SystemFields SweepSystems::fields_at(const Place& place) const {
@@ -28,10 +25,6 @@ SystemFields SweepSystems::fields_at(const Place& place) const {
 }
 
 std::optional<PointSystem> SweepSystems::at(const Place& place) const {
-    for (std::size_t a = 0; a < columns_.size(); ++a) {
-        const double value = columns_[a].values[place.at[a]];
-        if (!(value >= columns_[a].minimum && value <= columns_[a].maximum)) return std::nullopt;
-    }
     const SystemFields fields = fields_at(place);
     // f can be omitted only if F = 0.
     if (fields.is_in_si() && !fields.is_reduced() && !fields.f && fields.F != 0.0)
@@ -56,32 +49,46 @@ Json field(const Json& object, const char* name) {
     return find(sweep_fields(), name)->fallback;
 }
 
-/// Checks that the corners of the sweep are valid systems. Each point is checked again when it is
-/// computed.
-void check_corners(const SweepRequest& r, std::vector<FieldError>& errors) {
+/// The same errors, with pointers into the request.
+void add_point_errors(
+    const SweepRequest& r, std::size_t start, const std::vector<FieldError>& of_point,
+    std::vector<FieldError>& errors) {
+    for (FieldError e : of_point) {
+        const std::string name = e.pointer.substr(1);
+        const auto axis = std::ranges::find(r.axes, name, &Axis::parameter);
+        e.pointer = r.starts[start].contains(name) ? "/starts/" + std::to_string(start) + e.pointer
+                    : axis != r.axes.end() ? "/axes/" + std::to_string(axis - r.axes.begin())
+                                           : "/base" + e.pointer;
+        errors.push_back(std::move(e));
+    }
+}
+
+/// Checks that the fields can be combined, with the first and with the last values of the axes.
+void check_fields(const SweepRequest& r, std::vector<FieldError>& errors) {
     for (std::size_t start = 0; start < r.starts.size(); ++start)
-        for (std::size_t corner = 0; corner < (std::size_t{1} << r.axes.size()); ++corner) {
+        for (const bool last : {false, true}) {
             Place place{start, {}};
-            for (std::size_t a = 0; a < r.axes.size(); ++a)
-                place.at.push_back(corner >> a & 1 ? r.axes[a].values.size() - 1 : 0);
+            for (const Axis& a : r.axes) place.at.push_back(last ? a.values.size() - 1 : 0);
             try {
                 read_started_system(fields_of(r, place));
             } catch (const Problem& problem) {
-                for (const FieldError& e : problem.errors) {
-                    std::string at = "/base" + e.pointer;
-                    for (std::size_t a = 0; a < r.axes.size(); ++a)
-                        if (e.pointer == "/" + r.axes[a].parameter)
-                            at = "/axes/" + std::to_string(a);
-                    if (r.starts[start].contains(e.pointer.substr(1)))
-                        at = "/starts/" + std::to_string(start) + e.pointer;
-                    const bool known =
-                        std::any_of(errors.begin(), errors.end(), [&](const FieldError& other) {
-                            return other.pointer == at && other.value == e.value;
-                        });
-                    if (!known) errors.push_back({at, e.value, e.range, e.detail});
-                }
+                add_point_errors(r, start, problem.errors, errors);
+                return;
             }
         }
+}
+
+/// Refuses starts with which no point is a valid system. Other points without one have an error in
+/// their line.
+void check_systems(const SweepRequest& r, std::vector<FieldError>& errors) {
+    Grid points{.steps = r.plan.grid.steps};
+    for (std::size_t start = 0; start < r.starts.size(); ++start) {
+        const auto place = [&](std::size_t i) { return Place{start, points.place_of(i).at}; };
+        std::size_t i = 0;
+        while (i < points.points() && !r.systems->at(place(i))) ++i;
+        if (i == points.points())
+            add_point_errors(r, start, read_started_system(fields_of(r, place(0))).errors, errors);
+    }
 }
 
 /// Reads "max over f": the axis, and whether its largest or smallest peak is wanted.
@@ -195,7 +202,7 @@ void refuse_any(std::vector<FieldError>& errors) {
     if (!errors.empty()) refuse(std::move(errors));
 }
 
-/// Expects valid corners: then only the values of an axis can make a point invalid.
+/// Expects fields that can be combined: then only their values can make a point invalid.
 std::shared_ptr<const SweepSystems> systems_of(const SweepRequest& r) {
     std::vector<SystemFields> bases;
     long max_impacts = 0;
@@ -247,11 +254,13 @@ SweepRequest read_sweep_request(const Json& given, std::size_t most_points) {
             {{"/axes", computed, Json::array({1, most_points}),
               "the sweep has " + std::to_string(computed) + " points; at most " +
                   std::to_string(most_points) + " are computed at once"}});
-    check_corners(r, errors);
+    check_fields(r, errors);
     read_options(r, given, errors);
     read_indices(r, given, errors);
     refuse_any(errors);
     r.systems = systems_of(r);
+    check_systems(r, errors);
+    refuse_any(errors);
     r.plan.system_at = [systems = r.systems](const Place& place) { return systems->at(place); };
     return r;
 }

@@ -31,7 +31,7 @@ public:
     /// axes replace theirs.
     SweepSystems(std::vector<SystemFields> bases, std::vector<Axis> axes, long max_impacts);
 
-    /// nullopt if the point's values are out of range or form no valid system.
+    /// nullopt if the point's values form no valid system.
     std::optional<PointSystem> at(const Place& place) const;
     /// The system in SI if its fields are.
     std::optional<SiParameters> si_at(const Place& place) const;
@@ -40,7 +40,6 @@ private:
     struct Column {
         SystemNumber number;
         std::vector<double> values;
-        double minimum, maximum;
     };
     SystemFields fields_at(const Place& place) const;
 

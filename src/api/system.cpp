@@ -145,6 +145,7 @@ System read_system(const MergedFields& l, bool forcing_fitted) {
 
 State read_start(const MergedFields& l, System& system) {
     for (const char* name : {"x0", "x_dot0", "y0", "y_dot0"}) system.origin[name] = l.origin(name);
+    if (l.has("x0") && !l.has("y0")) system.origin["y0"] = "follows from x0";
     std::vector<FieldError> errors;
     auto velocity = [&](const std::string& in_tau, const std::string& in_SI) {
         if (l.has(in_SI) && !system.si)

@@ -93,11 +93,12 @@ State start_of(const SystemFields& s, const ResolvedSystem& system) {
     auto velocity = [&](std::optional<double> in_tau, std::optional<double> in_si) {
         return in_si && system.si ? *in_si / system.si->omega0() : in_tau.value_or(0);
     };
+    const double x = s.x0.value_or(0);
     return {
         .x_dot = velocity(s.x_dot0, s.x_velocity0),
-        .x = s.x0.value_or(0),
+        .x = x,
         .y_dot = velocity(s.y_dot0, s.y_velocity0),
-        .y = s.y0.value_or(default_state(system.parameters).y)};
+        .y = s.y0.value_or(x + default_state(system.parameters).y)};
 }
 
 }  // namespace vines::api

@@ -14,7 +14,11 @@ struct Sentence {
     std::size_t most_bytes;
 
     std::string operator()(const WindowNotReached& w) const {
-        return fmt::format("the run ended before its window began at tau = {:.6g}", w.tau_start);
+        return fmt::format("the run had ended at tau = {:.6g}, before ", w.tau) +
+               (w.count == 1 ? fmt::format("its window began at tau = {:.6g}", w.tau_start)
+                             : fmt::format(
+                                   "{} of its windows began, the first at tau = {:.6g}", w.count,
+                                   w.tau_start));
     }
     std::string operator()(const SeriesThinned& w) const {
         return fmt::format(

@@ -138,7 +138,7 @@ Command add_manifold(CLI::App& app) {
     add_flags(*command, *options);
     return with_exit_codes(
         command, [options] { return run(*options, "/v1/manifold", api::manifold_fields()); },
-        "vines manifold -p b=0.02 | jq .recommendation");
+        "vines manifold -p b=0.02 | jq .manifold.recommended");
 }
 
 Command add_identify(CLI::App& app) {

@@ -359,3 +359,13 @@ TEST_CASE("each estimator of a window has the slope of its first exponent") {
     }
     CHECK(a["exponents"]["raw_product"]["slope"].is_number());
 }
+
+TEST_CASE("a window after the end of a run by max_impacts reports that the run had ended") {
+    const Json a = answer(
+        R"({"max_impacts":20,"windows":[[20,60],[1200,1600]],"include":[],"exponents":["qr"]})");
+    CHECK(a["status"]["reason"] == "max_impacts");
+    CHECK(warns(a, "the run had ended at tau = "));
+    CHECK(warns(a, "before its window began at tau = 1200"));
+    CHECK(a["windows"][1]["verdict_reason"] == "the run had ended before this window began");
+    CHECK(a["windows"][0]["verdict_reason"] != a["windows"][1]["verdict_reason"]);
+}

@@ -143,9 +143,14 @@ TEST_CASE(
     "a separate run confirms the reduction at the recommended b, far below the activation limit") {
     for (const std::string& system :
          {platform + R"(,"f":14)", std::string(R"("damping":"closed_form")")}) {
-        const Json m =
-            slow_manifold(read_manifold_request(parse_object("{" + system + "}")))["manifold"];
-        const Json& best = m["recommended"];
+        const Json whole = slow_manifold(read_manifold_request(parse_object("{" + system + "}")));
+        CHECK(warns(whole, "a ball at rest is never met"));
+        const Json& m = whole["manifold"];
+        const Json &best = m["recommended"], &robust = m["robust"];
+        // Nearly the amplitude without absorber: a little less F, and the ball is not met.
+        CHECK(best["margin_F"][0] > 0.95);
+        CHECK(robust["margin_F"][0] < 0.85);
+        CHECK(robust["tolerance_ratio"] < 0.9 * best["tolerance_ratio"].get<double>());
         CHECK(best["fold_share"] <= 0.3);
         CHECK(best["b"] < 0.4 * m["b_at_free_amplitude"].get<double>());
         CHECK(best["x_rms_ratio"] < 0.8);

@@ -302,3 +302,77 @@ TEST_CASE("a stopped sweep passes on only complete points") {
     for (const auto& [index, line] : some.lines) CHECK(line == all.at(index));
     CHECK(some.lines.size() < 50);
 }
+
+TEST_CASE("an impossible point is an error in its line, at an end of an axis as in its middle") {
+    // The ball's default start follows the oscillator; a given one can lie outside the cavity.
+    const std::string given = R"({"base":{"y0":0,"b":0.01},"cycles":5,"transient_cycles":0,)";
+    for (const char* rest :
+         {"}", R"(,"carry_state":"up"})", R"(,"carry_state":"down"})",
+          R"(,"reduce":"max over x0"})"}) {
+        CAPTURE(rest);
+        const Swept s =
+            swept(given + R"("axes":[{"parameter":"x0","values":[-0.02,0,0.02,0.005]}])" + rest);
+        if (s.lines.size() == 1) {
+            CHECK(s.lines.at(0)["points_missing"] == 2);
+            continue;
+        }
+        for (const std::size_t index : {0, 2})
+            CHECK(
+                s.lines.at(index)["error"].get<std::string>().find("starts inside its cavity") !=
+                std::string::npos);
+        for (const std::size_t index : {1, 3}) CHECK(s.lines.at(index)["reason"] == "complete");
+    }
+    // In SI, mass ratios outside the range of epsilon.
+    const auto lines = run(sweep_request(
+        R"({"base":{"preset":"fig20"},"axes":[{"parameter":"m1","values":[1e-9,4]}],"cycles":5,
+            "transient_cycles":0})"));
+    CHECK(lines.at(0)["error"].get<std::string>().find("epsilon must lie in") != std::string::npos);
+    CHECK(lines.at(1)["reason"] == "complete");
+    // Values outside the range of their field are refused anywhere, starts that fit nowhere, too.
+    CHECK(
+        faults_of_sweep(R"({"axes":[{"parameter":"b","values":[0.01,-1,0.02]}]})") ==
+        std::set<std::string>{"/axes/0"});
+    CHECK(
+        faults_of_sweep(
+            given + R"("axes":[{"parameter":"R","values":[0.5,0.6]}],"starts":[{},{"x0":0.5}]})") ==
+        std::set<std::string>{"/base/y0"});
+}
+
+TEST_CASE("a sweep over x0 starts with the ball at x0 + 0.95 b") {
+    const SweepRequest r = sweep_request(
+        R"({"axes":[{"parameter":"x0","values":[-0.05,0.05]}],"cycles":5,"transient_cycles":0})");
+    for (const std::size_t at : {0, 1}) {
+        const auto point = r.plan.system_at({0, {at}});
+        REQUIRE(point);
+        CHECK(point->start.y == (at == 0 ? -0.05 : 0.05) + 0.95 * 0.022);
+    }
+    CHECK(start_of_sweep(r)["parameters"]["origin"]["x0"] == "swept: the first of its axis");
+    const Json parameters = answer(R"({"x0":0.05,"tau_end":1})")["parameters"];
+    CHECK(parameters["y0"] == 0.05 + 0.95 * 0.022);
+    CHECK(parameters["origin"]["y0"] == "follows from x0");
+}
+
+TEST_CASE("lengths scale together, and a map over b and G says that it repeats itself") {
+    const std::string map =
+        R"({"axes":[{"parameter":"b","values":[0.011,0.022]},{"parameter":"G","values":[0.01,0.02]}],
+            "cycles":300)";
+    const Swept s = swept(map + "}");
+    const Json &one = s.lines.at(0), &twice = s.lines.at(3);
+    for (const char* name : {"lambda", "z", "regime", "impacts", "x_rms_ratio", "share_impacts"}) {
+        CAPTURE(name);
+        CHECK(one[name] == twice[name]);
+    }
+    for (const char* name : {"x_max", "x_rms", "x_free"})
+        CHECK(2 * one[name].get<double>() == twice[name].get<double>());
+    const auto warned = [](const std::string& text) {
+        return warns(start_of_sweep(sweep_request(text)), "the map repeats itself along rays");
+    };
+    CHECK(warned(map + "}"));
+    CHECK(warned(map + R"(,"starts":"default set"})"));
+    CHECK(warned(map + R"(,"starts":[{},{"y0":0}]})"));
+    CHECK_FALSE(warned(map + R"(,"starts":[{},{"x_dot0":0.01}]})"));
+    CHECK_FALSE(warned(R"({"axes":[{"parameter":"b","values":[0.011,0.022]}]})"));
+    CHECK(warned(
+        R"({"base":{"m1":12,"f0":14,"damping_ratio":0.006,"mass_ratio":0.01,"f":14,"R":0.4},
+            "axes":[{"parameter":"F","values":[0.0002,0.0004]},{"parameter":"b","values":[0.01]}]})"));
+}

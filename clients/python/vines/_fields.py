@@ -9,10 +9,10 @@ NUMBER_LISTS = frozenset({
     "C", "J", "M", "M_condition", "R", "T", "V", "V_velocity", "asked", "asked_s",
     "contacts", "cycles_with", "distance", "final", "im", "impact_speed", "impacts",
     "impulse", "impulse_N_s", "lambda", "lambda1", "lambda2", "lambda3", "lambda4",
-    "modulus", "momentum_error", "phase", "pulse_spoils_s", "re", "relative_speed",
-    "relative_speed_ratio", "rounding_floor", "side", "standard_error", "tau", "tau_end",
-    "tau_start", "time_difference", "time_difference_s", "time_end_s", "time_s",
-    "time_start_s", "values", "window", "window_s", "x", "x_acceleration",
+    "margin_F", "margin_f", "modulus", "momentum_error", "phase", "pulse_spoils_s", "re",
+    "relative_speed", "relative_speed_ratio", "rounding_floor", "side", "standard_error",
+    "tau", "tau_end", "tau_start", "time_difference", "time_difference_s", "time_end_s",
+    "time_s", "time_start_s", "values", "window", "window_s", "x", "x_acceleration",
     "x_acceleration_before", "x_ddot", "x_ddot_before", "x_dot", "x_dot_after",
     "x_dot_before", "x_velocity", "x_velocity_after", "x_velocity_before", "y", "y_dot",
     "y_dot_after", "y_dot_before", "y_velocity", "y_velocity_after", "y_velocity_before",
@@ -120,8 +120,8 @@ x_dot0: velocity of the linear oscillator at tau = 0 (m per unit of tau, x'(0));
     1000; default: 0
 x_velocity0: x_dot0 in m/s, for a system in SI (m/s, dx/dt(0)); default: from x_dot0; -1e+09
     to 1e+09
-y0: displacement of the ball at tau = 0; |x0 - y0| <= b (m, y(0)); default: 0.95 b; -2000 to
-    2000
+y0: displacement of the ball at tau = 0; |x0 - y0| <= b (m, y(0)); default: x0 + 0.95 b;
+    -2000 to 2000
 y_dot0: velocity of the ball at tau = 0 (m per unit of tau, y'(0)); -1000 to 1000; default:
     0
 y_velocity0: y_dot0 in m/s, for a system in SI (m/s, dy/dt(0)); default: from y_dot0; -1e+09
@@ -171,8 +171,8 @@ x_dot0: velocity of the linear oscillator at tau = 0 (m per unit of tau, x'(0));
     1000; default: 0
 x_velocity0: x_dot0 in m/s, for a system in SI (m/s, dx/dt(0)); default: from x_dot0; -1e+09
     to 1e+09
-y0: displacement of the ball at tau = 0; |x0 - y0| <= b (m, y(0)); default: 0.95 b; -2000 to
-    2000
+y0: displacement of the ball at tau = 0; |x0 - y0| <= b (m, y(0)); default: x0 + 0.95 b;
+    -2000 to 2000
 y_dot0: velocity of the ball at tau = 0 (m per unit of tau, y'(0)); -1000 to 1000; default:
     0
 y_velocity0: y_dot0 in m/s, for a system in SI (m/s, dy/dt(0)); default: from y_dot0; -1e+09
@@ -226,8 +226,8 @@ class SimulateFields(TypedDict, total=False):
         1000; default: 0
     x_velocity0: x_dot0 in m/s, for a system in SI (m/s, dx/dt(0)); default: from x_dot0; -1e+09
         to 1e+09
-    y0: displacement of the ball at tau = 0; |x0 - y0| <= b (m, y(0)); default: 0.95 b; -2000 to
-        2000
+    y0: displacement of the ball at tau = 0; |x0 - y0| <= b (m, y(0)); default: x0 + 0.95 b;
+        -2000 to 2000
     y_dot0: velocity of the ball at tau = 0 (m per unit of tau, y'(0)); -1000 to 1000; default:
         0
     y_velocity0: y_dot0 in m/s, for a system in SI (m/s, dy/dt(0)); default: from y_dot0; -1e+09

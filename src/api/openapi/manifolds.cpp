@@ -46,10 +46,14 @@ Keys run_keys() {
 }  // namespace
 
 void add_manifolds(Json& schemas) {
+    const Json recommendation = object_of(values_of(properties::recommendation));
     const Keys recommended = {
-        {"recommended", or_null(object_of(values_of(properties::recommendation))),
-         "the b whose worst motion has the smallest rms of x; null if no b reduces the motion, or "
-         "if the time limit ended the search"}};
+        {"recommended", or_null(recommendation),
+         "the b whose worst motion at this F and f has the smallest rms of x; null if no b "
+         "reduces the motion, or if the time limit ended the search"},
+        {"robust", or_null(recommendation),
+         "the b with the smallest tolerance_ratio; null if it is the recommended one or hardly "
+         "better"}};
     const Key manifold = {
         "manifold", reference("SlowManifold"), "fold, branches, end points, and a recommended b"};
     schemas["SlowManifold"] = with_si(object_of(manifold_keys() + recommended));

@@ -129,7 +129,7 @@ FieldTable start_rows() {
             "from x_dot0", any_velocity),
         number(
             "y0", "m", "y(0)", "displacement of the ball at tau = 0; |x0 - y0| <= b", nullptr,
-            "0.95 b"),
+            "x0 + 0.95 b"),
         number("y_dot0", speed, "y'(0)", "velocity of the ball at tau = 0", 0),
         number(
             "y_velocity0", "m/s", "dy/dt(0)", "y_dot0 in m/s, for a system in SI", nullptr,

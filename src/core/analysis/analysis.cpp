@@ -152,7 +152,7 @@ struct AnalysisRun::Conclusion {
     Analysis& a;
 
     void conclude() {
-        if (a.outcome.tau <= w.window.from) warn(warning::WindowNotReached{w.window.from});
+        windows_not_reached();
         if (w.parts.series) series();
         if (w.parts.series || w.perturbation) thinning();
         lists();
@@ -232,6 +232,18 @@ struct AnalysisRun::Conclusion {
              .settle_cycles = w.settle_cycles,
              .stop = interrupt.run},
             w.parts.before_capture);
+    }
+
+    void windows_not_reached() {
+        warning::WindowNotReached missed{a.outcome.tau, infinity, 0};
+        auto count = [&](const Interval& window) {
+            if (a.outcome.tau > window.from) return;
+            missed.tau_start = std::min(missed.tau_start, window.from);
+            ++missed.count;
+        };
+        count(w.window);
+        for (const Interval& window : w.windows) count(window);
+        if (missed.count > 0) warn(missed);
     }
 
     void further_windows() {

@@ -134,9 +134,10 @@ struct ManifoldResult {
 // and `most` are the number of its last entries that remain.
 namespace warning {
 
-/// The run ended before its window began.
+/// The run ended, at `tau`, before `count` of its windows began, the first at tau_start.
 struct WindowNotReached {
-    double tau_start;
+    double tau, tau_start;
+    std::size_t count;
 };
 /// The series was thinned to most_points (`most`): it has samples_per_cycle, `asked` is the
 /// requested density.

@@ -1,46 +1,216 @@
-// For each candidate fold amplitude (a fraction of the amplitude without absorber), b follows from
-// the slow invariant manifold, and each b is run from all default starts. The result is the b whose
-// worst start has the smallest x_rms_ratio: a minimax.
+// Steps of the search, each over the worst motion of all default starts:
+// 1. a row of b from above the amplitude C without absorber down to part of it, or to about G: with
+//    weak damping C is many times G, and strongly modulated responses begin at one to a few G;
+// 2. more b around the best one, ever closer;
+// 3. the row of step 1 at the frequencies f_tolerance below and above;
+// 4. tolerance_ratio of each b of step 1: the largest value at the three frequencies among the b
+//    within the factor F_tolerance. The b with the smallest one is the robust b;
+// 5. for the best and the robust b the margin of f, by doubling and halving the change of f. The
+//    margin of F follows from steps 1 and 2.
 #include "core/sweep/recommend.hpp"
+
+#include <algorithm>
+#include <cmath>
 
 #include "core/measures/energy.hpp"
 #include "core/measures/manifold.hpp"
+#include "core/motion/elementary.hpp"
 
 namespace vines {
 
 namespace {
 
-// Candidates: amplitude at the fold over that without absorber. For seven systems with R from .3 to
-// .9 and mass ratios from .5 to 5 %, the optimum lay inside this range.
-constexpr double fold_fractions[] = {0.01,  0.02, 0.03, 0.05, 0.075, 0.1,
-                                     0.125, 0.15, 0.2,  0.25, 0.3};
 // Long enough to determine the rms of a strongly modulated response to within 5 %.
-constexpr double transient_cycles = 200, cycles = 400;
-constexpr long max_impacts_per_run = 50000;
+constexpr PointOptions length_of_try{.transient_cycles = 200, .cycles = 400, .max_impacts = 50000};
+
+// The row of b: the ratio of neighbours (F_tolerance is two steps), the largest b below C, over C,
+// the number of b above it and of most b below it, and the last b, over C and over G.
+const double step = std::sqrt(F_tolerance);
+constexpr double below_C = 0.99;
+constexpr int steps_above = 2, most_steps_below = 45;
+constexpr double last_b_over_C = 0.3, last_b_over_G = 0.9;
+// Tries around the best one: their number on each side, and the first and last distance, over b.
+constexpr int reach = 4;
+constexpr double most_width = 0.02, least_width = 0.003;
+constexpr std::size_t most_tries = 100;
+// First and largest change of f in the search for its margin, and the halvings after it.
+constexpr double first_change = 0.0025, most_change = 0.32;
+constexpr int halvings = 3;
+// The robust b differs from the best one if its tolerance_ratio is smaller by this factor.
+constexpr double robust_gain = 0.9;
+
+/// A try of one b, up to its regime.
+using Try = Recommendation;
+
+class StoppedFromOutside : public RunControl {
+public:
+    explicit StoppedFromOutside(const std::function<bool()>& stop) : stop_(stop) {}
+    bool stop_or_yield() override { return stop_ && stop_(); }
+
+private:
+    const std::function<bool()>& stop_;
+};
+
+void take_worst(Try& t, const std::vector<NamedStart>& starts, const std::vector<Motion>& motions) {
+    for (std::size_t i = 0; i < motions.size(); ++i) {
+        const PointResult& r = motions[i].result;
+        // A motion that is not measured, for too many impacts, excludes its b.
+        const double ratio = r.measured ? r.x_rms_ratio : infinity;
+        if (ratio > t.x_rms_ratio) t = {t.b, ratio, starts[i], r.x_max, r.regime.type};
+    }
+}
+
+/// The search in one system, apart from b.
+struct Search {
+    const Parameters parameters;
+    const double C;  // amplitude without absorber
+    RunControl& control;
+    std::vector<Try> tries = {};  // at the given frequency
+
+    std::vector<Try> tried(const Parameters& p, const std::vector<double>& bs) const {
+        std::vector<Try> result;
+        for (const double b : bs) result.push_back({b});
+        run_points(bs.size(), 1, length_of_try, control, [&](std::size_t i) {
+            Parameters at = p;
+            at.b = bs[i];
+            std::vector<NamedStart> starts = default_starts(at);
+            return std::optional(PointTask{
+                {at, {}, length_of_try.max_impacts},
+                starts,
+                [&result, i, starts](const std::vector<Motion>& motions) {
+                    take_worst(result[i], starts, motions);
+                }});
+        });
+        return result;
+    }
+
+    double top() const { return below_C * C; }
+
+    const Try& best() const {
+        return *std::ranges::min_element(
+            tries, {}, [&](const Try& t) { return t.b <= top() ? t.x_rms_ratio : infinity; });
+    }
+
+    void try_b(const std::vector<double>& bs) {
+        const std::vector<Try> more = tried(parameters, bs);
+        tries.insert(tries.end(), more.begin(), more.end());
+    }
+
+    /// Steps 1 and 2; returns the b of the row.
+    std::vector<double> run() {
+        const double last = std::min(last_b_over_C * C, last_b_over_G * parameters.G),
+                     steps = elementary::log(top() / last) / elementary::log(step);
+        std::vector<double> row;
+        for (int k = -steps_above; k <= most_steps_below && k < steps + 1; ++k)
+            row.push_back(top() * elementary::pow(step, -k));
+        try_b(row);
+        for (double width = most_width; width > least_width;) {
+            const double middle = best().b;
+            std::vector<double> around;
+            for (int k = -reach; k <= reach; ++k)
+                if (const double b = middle * elementary::pow(1 + width, k); k != 0 && b <= top())
+                    around.push_back(b);
+            try_b(around);
+            // The best one can lie beyond the last of them.
+            const bool at_end = best().b == around.front() || best().b == around.back();
+            if (!at_end || tries.size() > most_tries) width /= reach;
+        }
+        return row;
+    }
+};
+
+/// Tries at one frequency.
+struct AtFrequency {
+    double C;  // amplitude without absorber there
+    std::vector<Try> tries;
+};
+
+Parameters at_frequency(Parameters p, double factor) {
+    p.Omega *= factor;
+    return p;
+}
+
+/// Step 4; `rows` are those at all frequencies. Half a step of slack covers the gaps between tries.
+double tolerance_ratio(double b, const std::vector<AtFrequency>& rows) {
+    const double factor = F_tolerance * std::sqrt(step);
+    double C_most = 0, worst = 0;
+    for (const AtFrequency& row : rows) {
+        C_most = std::max(C_most, row.C);
+        for (const Try& t : row.tries)
+            if (t.b < b * factor && t.b > b / factor)
+                worst = std::max(worst, t.x_rms_ratio * row.C);
+    }
+    return worst / C_most;
+}
+
+/// Factors on F: with F/s, b does what s b does with F. `by_b`: the tries in the order of b.
+Interval margin_of_F(const std::vector<Try>& by_b, double b, double limit) {
+    auto low = std::ranges::find(by_b, b, &Try::b), high = low;
+    while (low != by_b.begin() && low[-1].x_rms_ratio <= limit) --low;
+    while (high + 1 != by_b.end() && high[1].x_rms_ratio <= limit) ++high;
+    return {b / high->b, b / low->b};
+}
+
+/// The largest change of f, upwards or downwards, that keeps the ratio within the limit.
+double f_margin(const Search& s, double b, double limit, bool upwards) {
+    auto holds = [&](double change) {
+        const Parameters p = at_frequency(s.parameters, 1 + (upwards ? change : -change));
+        return s.tried(p, {b})[0].x_rms_ratio <= limit;
+    };
+    double within = 0, beyond = first_change;
+    for (; holds(beyond); beyond *= 2)
+        if ((within = beyond) >= most_change) return within;
+    for (int i = 0; i < halvings; ++i) {
+        const double middle = (within + beyond) / 2;
+        (holds(middle) ? within : beyond) = middle;
+    }
+    return within;
+}
+
+Recommendation completed(const Search& s, Try t, const std::vector<AtFrequency>& rows) {
+    const Parameters& p = s.parameters;
+    const double limit = (1 + t.x_rms_ratio) / 2;
+    std::vector<Try> by_b = s.tries;
+    std::ranges::sort(by_b, {}, &Try::b);
+    t.fold_share = manifold_fold(p.R_plus, p.Omega, t.b).C / s.C;
+    t.tolerance_ratio = tolerance_ratio(t.b, rows);
+    t.margin_F = margin_of_F(by_b, t.b, limit);
+    t.margin_f = {1 - f_margin(s, t.b, limit, false), 1 + f_margin(s, t.b, limit, true)};
+    return t;
+}
+
+Recommendations recommendations(Search& s, const std::vector<double>& row) {
+    std::vector<AtFrequency> rows = {{s.C, s.tries}};
+    for (const double factor : {1 - f_tolerance, 1 + f_tolerance}) {
+        const Parameters p = at_frequency(s.parameters, factor);
+        // Undamped resonance has no amplitude to refer to.
+        if (const auto C = free_amplitude(p)) rows.push_back({*C, s.tried(p, row)});
+    }
+    auto tolerance_of = [&](const Try& t) { return tolerance_ratio(t.b, rows); };
+    // Of the row, those from which F_tolerance does not lead out of it.
+    const std::span<const Try> candidates(
+        s.tries.data() + steps_above, row.size() - steps_above - 2);
+    const Try& robust = *std::ranges::min_element(candidates, {}, tolerance_of);
+    Recommendations r{completed(s, s.best(), rows), {}};
+    if (tolerance_of(robust) < robust_gain * r.best->tolerance_ratio && robust.x_rms_ratio < 1)
+        r.robust = completed(s, robust, rows);
+    return r;
+}
 
 }  // namespace
 
-std::optional<Recommendation> recommended_b(Parameters p, const std::function<bool()>& stop) {
-    const auto amplitude = free_amplitude(p);
-    if (p.R_plus != p.R_minus || p.R_plus == 1 || !amplitude || *amplitude == 0)
-        return std::nullopt;
-    PointOptions options;
-    options.transient_cycles = transient_cycles;
-    options.cycles = cycles;
-    options.max_impacts = max_impacts_per_run;
-    std::optional<Recommendation> best;  // over the candidates
-    for (const double fraction : fold_fractions) {
-        p.b = manifold_b(p.R_plus, fraction * *amplitude);
-        std::optional<Recommendation> worst;  // over the starts, for this b
-        for (const NamedStart& start : default_starts(p)) {
-            const PointResult r = measure(p, start.state, options, stop);
-            if (!r.measured || r.outcome.reason == End::stopped) return std::nullopt;
-            if (!worst || r.x_rms_ratio > worst->x_rms_ratio)
-                worst = Recommendation{p.b, fraction, start, r.x_rms_ratio, r.x_max, r.regime.type};
-        }
-        if (!best || worst->x_rms_ratio < best->x_rms_ratio) best = worst;
+Recommendations recommended_b(const Parameters& p, const std::function<bool()>& stop) {
+    const auto C = free_amplitude(p);
+    if (p.R_plus != p.R_minus || p.R_plus == 1 || !C || *C == 0) return {};
+    StoppedFromOutside control(stop);
+    try {
+        Search search{p, *C, control};
+        const std::vector<double> row = search.run();
+        if (!(search.best().x_rms_ratio < 1)) return {};
+        return recommendations(search, row);
+    } catch (const Stopped&) {
+        return {};
     }
-    return best && best->x_rms_ratio < 1 ? best : std::nullopt;
 }
 
 }  // namespace vines

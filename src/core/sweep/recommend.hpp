@@ -1,10 +1,12 @@
-// Recommended clearance b for a given oscillator, and the response there.
+// Recommended clearance b for a given oscillator and one forcing frequency, and the response there.
 //
-// The two-impact motion can begin where the amplitude reaches the fold of its manifold
-// (manifold.hpp). With the fold at the amplitude without absorber, b is the largest possible, but
-// the motion lingers at the fold and is hardly reduced. The absorber works if the fold lies well
-// below that amplitude. The best ratio depends on the masses, the damping and R, so several b are
-// tried, each from all of default_starts().
+// Where b exceeds the amplitude C without absorber, a ball at rest at y = 0 is never met. Below C
+// the worst motion shrinks as b approaches C, until strongly modulated responses replace the two
+// impacts per cycle: the best b is there or just below C. Several b are tried, each from all of
+// default_starts().
+//
+// The motion depends on F and b only by b/F (a scale of all lengths): a try with s b shows what b
+// does with F/s. One row of tries is therefore also the dependence on F.
 #pragma once
 
 #include <optional>
@@ -13,20 +15,32 @@
 
 namespace vines {
 
+/// Tolerances of Recommendation::tolerance_ratio: F by this factor up and down, f by this fraction.
+inline constexpr double F_tolerance = 1.2, f_tolerance = 0.01;
+
 struct Recommendation {
-    double b;            ///< m
-    double fold_share;   ///< amplitude at the fold over that without absorber
-    NamedStart start;    ///< start of the worst motion, which the following values describe
-    double x_rms_ratio;  ///< rms of x over that without absorber, below 1
-    double x_max;        ///< m
-    RegimeType regime;
+    double b;                ///< m
+    double x_rms_ratio = 0;  ///< rms of x over that without absorber, below 1, for the worst start
+    NamedStart start = {};   ///< the worst start, which the following two values describe as well
+    double x_max = 0;        ///< m
+    RegimeType regime = RegimeType::none;
+    double fold_share = 0;  ///< amplitude at the fold over that without absorber
+    /// Largest rms of x over the tolerances of F and f, over the largest without absorber there.
+    double tolerance_ratio = 0;
+    /// Factors on F and on f with which at least half of the reduction 1 - x_rms_ratio remains, as
+    /// far as tried.
+    Interval margin_F = {}, margin_f = {};
 };
 
-/// The b with the smallest worst-case rms of x over all starts. Empty if none reduces the rms, if
-/// there is no amplitude without absorber (undamped resonance, no forcing) or no manifold with a
-/// fold (R = 1, or different R of the walls), if a run has no measured part, or if `stop` returned
-/// true.
-std::optional<Recommendation> recommended_b(
-    Parameters parameters, const std::function<bool()>& stop);
+struct Recommendations {
+    std::optional<Recommendation> best;  ///< smallest worst-case x_rms_ratio
+    std::optional<Recommendation>
+        robust;  ///< smallest tolerance_ratio, if clearly below that of best
+};
+
+/// The worst case is over all starts. Empty if no b reduces the rms, if there is no amplitude
+/// without absorber (undamped resonance, no forcing) or no manifold with a fold (R = 1, or
+/// different R of the walls), or if `stop` returned true.
+Recommendations recommended_b(const Parameters& parameters, const std::function<bool()>& stop);
 
 }  // namespace vines

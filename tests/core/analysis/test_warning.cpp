@@ -57,6 +57,19 @@ TEST_CASE("a run that ends before its window begins gives a warning") {
     const auto* warning = only<warning::WindowNotReached>(a.warnings);
     REQUIRE(warning);
     CHECK(warning->tau_start == 500);
+    CHECK(warning->tau == a.outcome.tau);
+    CHECK(warning->count == 1);
+}
+
+TEST_CASE("a run that ends before some of its further windows begin gives one warning") {
+    AnalysisRequest w = request(0.022, 1000, {});
+    w.windows = {{0, 1000}, {900, 950}, {500, 600}};
+    w.max_impacts = 2;
+    const Analysis a = analyse(w);
+    const auto* warning = only<warning::WindowNotReached>(a.warnings);
+    REQUIRE(warning);
+    CHECK(warning->tau_start == 500);
+    CHECK(warning->count == 2);
 }
 
 TEST_CASE("a series that would be too long is thinned, and a warning gives the resulting density") {
