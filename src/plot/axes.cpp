@@ -45,12 +45,21 @@ Range x_range(const std::vector<Plot>& plots) {
     bool dots = false;
     for (const Plot& p : plots) {
         for (const Curve& c : p.curves) {
-            dots = dots || (c.dots && !c.error.empty());
+            dots = dots || c.dots;
             for (double v : c.x) x = extended(x, v, v);
         }
     }
     if (x.first > x.second) return {0, 1};
-    return widened(x, dots ? 0.03 : 0);
+    return widened(x, dots ? 0.02 : 0);  // points on the frame would be cut
+}
+
+Range late_range(const std::vector<Curve>& curves) {
+    Range range{0, 0};
+    for (const Curve& c : curves)
+        for (std::size_t i = c.y.size() / 4; i < c.y.size(); ++i)
+            if (std::isfinite(c.y[i])) range = extended(range, c.y[i], c.y[i]);
+    const double margin = 0.2 * std::max(range.second - range.first, 1e-3);
+    return {range.first - margin, range.second + margin};
 }
 
 Range y_range(const Plot& plot) {

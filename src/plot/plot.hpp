@@ -33,6 +33,10 @@ struct Plot {
     std::string title{};                                 ///< above the plot, if not empty
 };
 
+/// Ordinate range of the last three quarters of all curves, and zero, for curves whose first values
+/// vary widely.
+std::pair<double, double> late_range(const std::vector<Curve>& curves);
+
 /// Colour of each exponent or eigenvalue.
 inline const char* const colours[] = {"#1f6fb2", "#2e8b57", "#b8780b", "#8e44ad"};
 inline const char* const grey = "#8a939b";

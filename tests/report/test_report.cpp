@@ -222,6 +222,38 @@ vines::plot::Plot logarithmic(const std::vector<double>& y, double last_error) {
 
 }  // namespace
 
+TEST_CASE("a curve that leaves the ordinate's range is clipped, and an arrow shows on which side") {
+    const auto drawn = [](const std::vector<double>& y) {
+        std::vector<double> x;
+        for (std::size_t i = 0; i < y.size(); ++i) x.push_back(static_cast<double>(i));
+        return vines::plot::svg({{.curves = {{.x = x, .y = y}}, .y_range = {{0, 1}}}}, 400, 200);
+    };
+    const auto up = [](const std::string& svg) { return occurrences(svg, "h8l-4,-8z"); };
+    const auto down = [](const std::string& svg) { return occurrences(svg, "h8l-4,8z"); };
+    const std::string within = drawn({0, 1, 0.5}), above = drawn({0.5, 2, 3, 0.5}),
+                      both = drawn({0.5, 2, -3, 0.5, -1});
+    CHECK(up(within) + down(within) == 0);
+    CHECK(up(above) == 1);
+    CHECK(down(above) == 0);
+    CHECK(up(both) == 1);
+    CHECK(down(both) == 2);
+    // The line goes on to the value itself, outside of the nested <svg>, which has the frame's
+    // size.
+    const std::vector<double> tops = attributes(above, "y"), heights = attributes(above, "height");
+    const auto point = above.find(' ', above.find("points=\""));
+    const double y_of_2 = std::stod(above.substr(above.find(',', point) + 1)),
+                 frame_top = tops.at(tops.size() - 1);
+    CHECK(y_of_2 < frame_top - heights.back() / 2);
+}
+
+TEST_CASE("the legend is above the frame, where it hides no curve") {
+    vines::plot::Plot plot{.curves = {{.x = {0, 1}, .y = {0, 1}, .label = "lambda1"}}};
+    const std::string svg = vines::plot::svg({plot}, 400, 200);
+    const std::string frame = svg.substr(svg.find("fill=\"none\" stroke=\"#b9c0c6\"") - 60, 60);
+    const std::string label = svg.substr(0, svg.find(">lambda1<"));
+    CHECK(attributes(label, "y").back() < attributes(frame, "y").back());
+}
+
 TEST_CASE(
     "an error bar on a logarithmic ordinate goes from the value less its error to their sum") {
     const std::string svg = vines::plot::svg({logarithmic({1, 19, 10}, 9)}, 400, 200);
