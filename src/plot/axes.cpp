@@ -45,12 +45,12 @@ Range x_range(const std::vector<Plot>& plots) {
     bool dots = false;
     for (const Plot& p : plots) {
         for (const Curve& c : p.curves) {
-            dots = dots || c.dots;
+            dots = dots || (c.dots && !c.error.empty());
             for (double v : c.x) x = extended(x, v, v);
         }
     }
     if (x.first > x.second) return {0, 1};
-    return widened(x, dots ? 0.02 : 0);  // points on the frame would be cut
+    return widened(x, dots ? 0.03 : 0);
 }
 
 Range late_range(const std::vector<Curve>& curves) {

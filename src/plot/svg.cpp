@@ -58,7 +58,10 @@ public:
 private:
     double value(double y) const { return on_ordinate(plot_, y); }
     double px(double x) const {
-        return left_ + (x - x_.first) / (x_.second - x_.first) * (right_ - left_);
+        // Points at the ends of the range keep this distance from the frame.
+        constexpr double inset = 6;
+        return left_ + inset +
+               (x - x_.first) / (x_.second - x_.first) * (right_ - left_ - 2 * inset);
     }
     double py(double v) const {
         return bottom_ - (v - y_.first) / (y_.second - y_.first) * (bottom_ - top_);
