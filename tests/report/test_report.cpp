@@ -113,6 +113,37 @@ TEST_CASE("a verdict on a computed record mentions that record") {
     CHECK(table.find("reproduced") == std::string::npos);
 }
 
+TEST_CASE("a number that is a median is named so, also where it decides with eq. (1)") {
+    Finding f = finding(1.5, {1, 2});
+    f.result.statistic = "median";
+    CHECK(occurrences(markdown_table({f}), "| 1.5 (median) |") == 1);
+    f.result.by_equation = 1.6;
+    CHECK(occurrences(markdown_table({f}), "| 1.5; eq. (1): 1.6 (median) |") == 1);
+}
+
+TEST_CASE("the end of a band is shown as chosen, or with two digits if it was computed") {
+    CHECK(occurrences(markdown_table({finding(1, {0, 1.0 / 3})}), "| 0 to 0.33 |") == 1);
+    CHECK(
+        occurrences(
+            markdown_table({finding(1, {18.12995, 18.13005})}), "| 18.12995 to 18.13005 |") == 1);
+}
+
+TEST_CASE("the bottom line counts statements that fail for one cause once") {
+    Report report;
+    report.bottom_line = " The end.";
+    for (const double number : {1., 3., 3., 3., 3.})
+        report.findings.push_back(finding(number, {1, 2}));
+    CHECK(
+        bottom_line(report) ==
+        "Of 5 statements of the paper 1 hold, 0 hold in part and 4 do not hold. The end.\n");
+    // A cause counts only where the statement fails.
+    for (const std::size_t k : {0U, 2U, 4U}) report.findings[k].statement.shared_cause = "rain";
+    CHECK(
+        occurrences(
+            bottom_line(report), "; 2 of these have one cause, rain, so that 3 are independent.") ==
+        1);
+}
+
 TEST_CASE("verdicts on computed records are counted separately") {
     const auto folder = std::filesystem::temp_directory_path() / "vines-test-report-counts";
     std::filesystem::create_directories(folder);
