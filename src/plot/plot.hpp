@@ -43,7 +43,7 @@ inline const char* const grey = "#8a939b";
 inline const char* const red = "#b3261e";
 
 /// Draws the plots as one <svg> document, stacked vertically with a common x axis; each is `width`
-/// x `height` pixels.
+/// x `height` pixels. Curves are clipped to the frame; an arrow marks where one leaves y_range.
 std::string svg(const std::vector<Plot>& plots, int width, int height);
 
 struct Terminal {

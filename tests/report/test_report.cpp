@@ -210,6 +210,9 @@ TEST_CASE("the report is one text in the order of its parts, with pictures in se
     CHECK(
         text.ends_with("| 1 | 1 to 2 | two digits |\n\n## Fig. 5\n\nIn "
                        "words.\n\n![Exponents](fig5.svg)\n*Exponents*\n\n"));
+    CHECK(
+        text.starts_with("# Li, Lamarque, Seguy, Berlioz (2018), recomputed\n\nOf 1 statements of "
+                         "the paper 1 hold, 0 hold in part and 0 do not hold.\n\n"));
     CHECK(picture.starts_with("<svg "));
     CHECK(picture.find("a &lt; b") != std::string::npos);
     std::filesystem::remove_all(folder);
@@ -275,6 +278,16 @@ TEST_CASE("a curve that leaves the ordinate's range is clipped, and an arrow sho
     const double y_of_2 = std::stod(above.substr(above.find(',', point) + 1)),
                  frame_top = tops.at(tops.size() - 1);
     CHECK(y_of_2 < frame_top - heights.back() / 2);
+}
+
+TEST_CASE("points at the ends of the abscissa do not touch the frame") {
+    const std::string svg =
+        vines::plot::svg({{.curves = {{.x = {0, 1}, .y = {0, 1}, .dots = true}}}}, 400, 200);
+    const auto frame = svg.find("fill=\"none\" stroke=\"#b9c0c6\"");
+    const double left = attributes(svg.substr(0, frame), "x").back(),
+                 width = attributes(svg.substr(0, frame), "width").back(), radius = 3;
+    CHECK(attributes(svg, "cx").front() > left + radius);
+    CHECK(attributes(svg, "cx").back() < left + width - radius);
 }
 
 TEST_CASE("the legend is above the frame, where it hides no curve") {

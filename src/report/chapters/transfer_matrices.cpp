@@ -201,20 +201,18 @@ void areas_1_and_2(Report& report, RunCache& runs) {
         {{4, infinity}, "several times as much"});
 }
 
-/// Growth of ln of the largest deviation (qr), and the sum of the logarithms of the largest moduli
-/// of T, which would be equal if moduli of single T composed into those of their product.
+/// Growth of ln of the largest deviation (qr) in a part of a window, and the sum of the logarithms
+/// of T's largest modulus, which it would be if moduli of single T composed.
 struct Growth {
-    double ln = 0, by_moduli = 0, tau = 0;
+    double ln = 0, tau = 0, by_moduli = 0;
 
     double rate() const { return ln / tau; }  ///< per unit of tau
-    double rate_by_moduli() const { return by_moduli / tau; }
 };
 struct GrowthByStretches {
     Growth synchronised, desynchronised;
 
-    Growth& at(bool is_synchronised) { return is_synchronised ? synchronised : desynchronised; }
     double ratio() const { return synchronised.rate() / desynchronised.rate(); }
-    double over_growth() const {
+    double by_moduli_over_growth() const {
         return (synchronised.by_moduli + desynchronised.by_moduli) /
                (synchronised.ln + desynchronised.ln);
     }
@@ -222,18 +220,17 @@ struct GrowthByStretches {
 GrowthByStretches growth(const PaperRun& r) {
     const Intervals stretches = synchronised_stretches(r);
     const ExponentHistory& qr = r.product().qr_history();
-    const TransferModuli& moduli = *r.run.moduli;
     const double start = r.product().start_tau();
     GrowthByStretches found;
     for (std::size_t i = 1; i < qr.tau.size(); ++i) {
         const double from = qr.tau[i - 1], to = qr.tau[i];
-        Growth& g = found.at(is_inside(stretches, to));
+        Growth& g = is_inside(stretches, to) ? found.synchronised : found.desynchronised;
         g.ln += qr.lambda[i][0] * (to - start) - qr.lambda[i - 1][0] * (from - start);
         g.tau += to - from;
     }
-    for (std::size_t i = 0; i < moduli.tau.size(); ++i)
-        if (const double T = moduli.T[i][0]; !std::isnan(T))
-            found.at(is_inside(stretches, moduli.tau[i])).by_moduli += elementary::log(T);
+    const LargestOfT T = largest_of_T(r);
+    for (const double t : T.synchronised) found.synchronised.by_moduli += elementary::log(t);
+    for (const double t : T.desynchronised) found.desynchronised.by_moduli += elementary::log(t);
     return found;
 }
 
@@ -265,7 +262,9 @@ void where_chaos_comes_from(Report& report, RunCache& runs) {
         table.rows.push_back(
             {fmt::format("{:g}", 1000 * row.b),
              cell(here.synchronised.rate(), here.desynchronised.rate()), "periodic",
-             cell(here.synchronised.rate_by_moduli(), here.desynchronised.rate_by_moduli())});
+             cell(
+                 here.synchronised.by_moduli / here.synchronised.tau,
+                 here.desynchronised.by_moduli / here.desynchronised.tau)});
         if (runs.paper_run(row.b, Damping::equation_of_motion).regime().orbit) continue;
         const GrowthByStretches other = long_growth(Damping::equation_of_motion);
         largest_other = std::max(largest_other, other.ratio());
@@ -306,7 +305,8 @@ double departure_from_normal(const PaperRun& r) {
 
 /// "The results here demonstrate more details": those of single T.
 void single_matrices(Report& report, RunCache& runs) {
-    Result found = at_22_mm(runs, 2, [](const PaperRun& r) { return growth(r).over_growth(); });
+    Result found =
+        at_22_mm(runs, 2, [](const PaperRun& r) { return growth(r).by_moduli_over_growth(); });
     found.words += fmt::format(
         ". Half the Frobenius norm of T_i over its largest modulus: {:.1f} (median), at most 1 for "
         "a normal matrix",
