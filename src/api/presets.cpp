@@ -56,8 +56,7 @@ std::vector<Preset> figures() {
         {"fig5", "Fig. 5", smr + ", b = 22 mm: transient Lyapunov exponents",
          "The paper's four positive values are presumably those of raw_product: except for lambda1 "
          "they are its rounding floor. qr has one positive exponent. The deepest spikes of lambda1 "
-         "by (33) occur at impacts that are faster than most, where the product's leading "
-         "eigenvalue is nearly zero.",
+         "by (33) occur where the product's leading eigenvalue is nearly zero, not at grazing.",
          closed_form(0.022)},
         {"fig6", "Fig. 6", smr + ", b = 22 mm: transfer matrices J_i of the flights", "",
          closed_form(0.022)},
@@ -72,7 +71,7 @@ std::vector<Preset> figures() {
          "sticking phase lambda3 and lambda4 are minus infinity.",
          closed_form(0.040)},
         {"fig11", "Fig. 11", "Type III, two symmetric impacts per cycle, b = 15 mm",
-         "A sticking phase at tau = 11.8 makes lambda3 and lambda4 of a window from the start "
+         "A sticking phase at tau = 76.2 makes lambda3 and lambda4 of a window from the start "
          "minus infinity; the orbit's own are in its Floquet multipliers.",
          closed_form(0.015)},
         {"fig12", "Fig. 12", "Type IV, two asymmetric impacts per cycle, b = 6.5 mm",

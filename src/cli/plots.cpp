@@ -108,17 +108,6 @@ Plot relative_displacement(const Json& answer) {
     return p;
 }
 
-/// Range of the last three quarters of all curves: the first values vary widely.
-std::pair<double, double> late_range(const std::vector<Curve>& curves) {
-    std::pair<double, double> range{0, 0};
-    for (const Curve& c : curves)
-        for (std::size_t i = c.y.size() / 4; i < c.y.size(); ++i)
-            if (std::isfinite(c.y[i]))
-                range = {std::min(range.first, c.y[i]), std::max(range.second, c.y[i])};
-    const double margin = 0.2 * std::max(range.second - range.first, 1e-3);
-    return {range.first - margin, range.second + margin};
-}
-
 Plot exponents(const Json& history) {
     Plot p{.x_label = "tau", .y_label = "exponents (qr)", .levels = {0}};
     for (int k = 0; k < 4; ++k) {
@@ -130,7 +119,7 @@ Plot exponents(const Json& history) {
              .colour = plot::colours[k],
              .label = name});
     }
-    p.y_range = late_range(p.curves);
+    p.y_range = plot::late_range(p.curves);
     return p;
 }
 

@@ -53,6 +53,15 @@ Range x_range(const std::vector<Plot>& plots) {
     return widened(x, dots ? 0.03 : 0);
 }
 
+Range late_range(const std::vector<Curve>& curves) {
+    Range range{0, 0};
+    for (const Curve& c : curves)
+        for (std::size_t i = c.y.size() / 4; i < c.y.size(); ++i)
+            if (std::isfinite(c.y[i])) range = extended(range, c.y[i], c.y[i]);
+    const double margin = 0.2 * std::max(range.second - range.first, 1e-3);
+    return {range.first - margin, range.second + margin};
+}
+
 Range y_range(const Plot& plot) {
     if (plot.y_range)
         return {on_ordinate(plot, plot.y_range->first), on_ordinate(plot, plot.y_range->second)};

@@ -33,13 +33,17 @@ struct Plot {
     std::string title{};                                 ///< above the plot, if not empty
 };
 
+/// Ordinate range of the last three quarters of all curves, and zero, for curves whose first values
+/// vary widely.
+std::pair<double, double> late_range(const std::vector<Curve>& curves);
+
 /// Colour of each exponent or eigenvalue.
 inline const char* const colours[] = {"#1f6fb2", "#2e8b57", "#b8780b", "#8e44ad"};
 inline const char* const grey = "#8a939b";
 inline const char* const red = "#b3261e";
 
 /// Draws the plots as one <svg> document, stacked vertically with a common x axis; each is `width`
-/// x `height` pixels.
+/// x `height` pixels. Curves are clipped to the frame; an arrow marks where one leaves y_range.
 std::string svg(const std::vector<Plot>& plots, int width, int height);
 
 struct Terminal {

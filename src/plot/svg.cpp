@@ -14,6 +14,7 @@ namespace {
 
 constexpr const char* grid = R"(stroke="#e4e7ea")";
 constexpr const char* level_line = R"(stroke="#8a939b")";
+constexpr double far = 1e5;  // px, beyond any frame
 constexpr const char* time_line = R"(stroke="#b3261e" stroke-dasharray="6 4")";
 
 std::string escaped(const std::string& text) {
@@ -34,7 +35,8 @@ public:
         : plot_(plot),
           left_(62),
           right_(width - 12),
-          top_(top + (plot.title.empty() ? 10 : 28)),
+          legend_(top + (plot.title.empty() ? 4 : 22)),
+          top_(legend_ + (is_labelled(plot) ? 20 : 6)),
           bottom_(top + height - 38),
           x_(x),
           y_(y_range(plot)) {}
@@ -44,16 +46,22 @@ public:
         draw_grid();
         mark_levels_and_times();
         frame();
-        for (const Curve& c : plot_.curves) c.dots ? dots(c) : line(c);
+        for (const Curve& c : plot_.curves) {
+            c.dots ? dots(c) : line(c);
+            arrows(c);
+        }
         legend();
-        if (!plot_.title.empty()) text(left_, top_ - 8, "start", plot_.title);
+        if (!plot_.title.empty()) text(left_, legend_ - 2, "start", plot_.title);
         return std::move(out_);
     }
 
 private:
     double value(double y) const { return on_ordinate(plot_, y); }
     double px(double x) const {
-        return left_ + (x - x_.first) / (x_.second - x_.first) * (right_ - left_);
+        // Points at the ends of the range keep this distance from the frame.
+        constexpr double inset = 6;
+        return left_ + inset +
+               (x - x_.first) / (x_.second - x_.first) * (right_ - left_ - 2 * inset);
     }
     double py(double v) const {
         return bottom_ - (v - y_.first) / (y_.second - y_.first) * (bottom_ - top_);
@@ -128,6 +136,10 @@ private:
     }
 
     void line(const Curve& c) {
+        // A nested <svg> clips its content, here to the frame.
+        add(R"(<svg x="{0:.1f}" y="{1:.1f}" width="{2:.1f}" height="{3:.1f}" )"
+            R"(viewBox="{0:.1f} {1:.1f} {2:.1f} {3:.1f}">)",
+            left_, top_, right_ - left_, bottom_ - top_);
         std::string points;
         // Decimation: in each column of half a pixel the first, lowest, highest and last point give
         // the same picture.
@@ -151,10 +163,30 @@ private:
             for (auto k = std::begin(wanted); k != end; ++k)
                 fmt::format_to(
                     std::back_inserter(points), "{:.1f},{:.1f} ", px(c.x[*k]),
-                    std::clamp(py(value(c.y[*k])), top_ - 1.0, bottom_ + 1.0));
+                    std::clamp(py(value(c.y[*k])), -far, far));
             i = last + 1;
         }
         polyline(c, points);
+        out_ += "</svg>\n";
+    }
+
+    /// Triangles on the frame where a curve leaves the range of the ordinate.
+    void arrows(const Curve& c) {
+        constexpr double width = 8;
+        double free_from[2] = {left_, left_};  // of the lower and the upper edge
+        int before = 0;
+        for (std::size_t i = 0; i < c.x.size(); ++i) {
+            const double v = value(c.y[i]), x = px(c.x[i]);
+            const int side = !std::isfinite(v) ? 0 : (v > y_.second) - (v < y_.first);
+            double& free = free_from[side > 0];
+            if (side != 0 && side != before && x >= free) {
+                add(R"(<path d="M{:.1f},{:.1f}h{}l{},{}z" fill="{}"/>)", x - width / 2,
+                    side > 0 ? top_ + width : bottom_ - width, width, -width / 2, -side * width,
+                    c.colour);
+                free = x + width;
+            }
+            before = side;
+        }
     }
 
     void dots(const Curve& c) {
@@ -171,26 +203,27 @@ private:
         }
     }
 
+    static bool is_labelled(const Plot& plot) {
+        return std::ranges::any_of(plot.curves, [](const Curve& c) { return !c.label.empty(); });
+    }
+
+    /// Above the frame, where no curve is.
     void legend() {
-        double x = left_ + 8;
+        double x = left_;
         for (const Curve& c : plot_.curves) {
             if (c.label.empty()) continue;
-            // Background that keeps the label legible over curves.
-            const double width = 26 + 6.3 * static_cast<double>(c.label.size());
-            add(R"(<rect x="{:.1f}" y="{:.1f}" width="{:.1f}" height="16" {}/>)", x - 3, top_ + 3,
-                width, R"(fill="#fff" fill-opacity=".8")");
-            if (c.dots) dot(x + 7, top_ + 11, "3", c.colour);
+            if (c.dots) dot(x + 7, legend_ + 8, "3", c.colour);
             else
                 rule(
-                    x, top_ + 11, x + 14, top_ + 11,
+                    x, legend_ + 8, x + 14, legend_ + 8,
                     fmt::format(R"(stroke="{}" stroke-width="2"{})", c.colour, dashed(c)));
-            text(x + 18, top_ + 15, "start", c.label);
-            x += width + 4;
+            text(x + 18, legend_ + 12, "start", c.label);
+            x += 30 + 6.3 * static_cast<double>(c.label.size());
         }
     }
 
     const Plot& plot_;
-    const double left_, right_, top_, bottom_;
+    const double left_, right_, legend_, top_, bottom_;
     const Range x_, y_;
     std::string out_;
 };

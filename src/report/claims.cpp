@@ -77,10 +77,22 @@ void positive_exponents(Report& report, const PositiveExponents& paper, const Bo
         {{0.9, 1}, "nine in ten; spikes, which the paper mentions too, are left out"});
     const Exponents lambda = here.product.qr();
     report.add(
-        {paper.where, "positive exponents (qr)", paper.positive},
+        {paper.where, "positive exponents (qr)", paper.positive, rounding_cause},
         {positive(lambda), positive(other.product.qr()),
-         fmt::format("{}: {}", positive(lambda), in_words(lambda))},
+         fmt::format("{}: {}", positive(lambda), in_words(lambda)) + paper.other_start},
         {exactly(4), "all four"}, ClaimVerdict::not_reproduced);
+}
+
+Result result_of(const Typical& here, int decimals) {
+    Result r(here.median, here.in_words(decimals));
+    r.statistic = "median";
+    return r;
+}
+Result result_of(const Typical& here, const Typical& other, int decimals) {
+    Result r = result_of(here, decimals);
+    r.by_equation = other.median;
+    r.words += "; by eq. (1) " + other.in_words(decimals);
+    return r;
 }
 
 void same_regime(

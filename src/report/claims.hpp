@@ -16,9 +16,17 @@ void same_regime(
     Report& report, const std::string& where, RegimeType type, const BothRuns& runs,
     const std::string& words, ClaimVerdict expected = ClaimVerdict::reproduced);
 
+/// The result that a median decides; `decimals` of the words.
+Result result_of(const Typical& here, int decimals);
+Result result_of(const Typical& here, const Typical& by_equation, int decimals);
+
+/// Why the paper's second to fourth exponents are not what it prints.
+inline const char* const rounding_cause = "rounding that stands for the second to fourth exponents";
+
 /// Quotations: the place, that the motion is chaotic, and that its four exponents are positive.
+/// `other_start`: the exponents (qr) from another start, in words.
 struct PositiveExponents {
-    std::string where, chaotic, positive;
+    std::string where, chaotic, positive, other_start{};
 };
 /// Adds the findings on chaos and positive exponents.
 void positive_exponents(Report& report, const PositiveExponents& paper, const BothRuns& runs);
@@ -52,5 +60,6 @@ inline constexpr Table3Row printed_table_3[] = {
     {0.028, 0.1452, 0.1309},   {0.025, 0.1138, 0.09727},  {0.022, 0.1093, 0.08427},
     {0.020, 0.1014, 0.0783},   {0.018, 0.06368, 0.03913}, {0.017, 0.04703, 0.02043},
     {0.0165, 0.03686, 0.01084}};
+inline constexpr double highest_of_type_II = 0.031;  // m; lower rows are of Type II too
 
 }  // namespace vines::report

@@ -22,14 +22,6 @@ Curve floor_of(const ExponentHistory& raw, double tau_start) {
     return c;
 }
 
-/// Largest lambda1 after its first, wide swings.
-double highest_late(const ExponentHistory& h) {
-    double highest = 0;
-    for (std::size_t i = h.tau.size() / 8; i < h.tau.size(); ++i)
-        if (std::isfinite(h.lambda[i][0])) highest = std::max(highest, h.lambda[i][0]);
-    return highest;
-}
-
 }  // namespace
 
 Plot displacement(const Series& series, double to) {
@@ -68,7 +60,7 @@ std::vector<Plot> exponent_histories(const TransferProduct& product) {
     }
     as_paper.curves.push_back(floor_of(raw, product.start_tau()));
     for (Plot* p : {&as_paper, &reference}) {
-        p->y_range = {-0.4, std::max(0.1, 1.7 * highest_late(raw))};
+        p->y_range = plot::late_range(p->curves);
         p->levels = {0};
     }
     return {as_paper, reference};

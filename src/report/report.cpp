@@ -24,9 +24,10 @@ namespace {
 
 constexpr int picture_width = 860;  // px
 
+const char* const title = "# Li, Lamarque, Seguy, Berlioz (2018), recomputed\n\n";
 const char* const introduction =
-    "# Li, Lamarque, Seguy, Berlioz (2018), recomputed\n\n"
-    "The figures, tables and statements of *Nonlinear Dynamics* 91, 2319-2330, each compared with "
+    "\nThe figures, tables and statements of *Nonlinear Dynamics* 91, 2319-2330, each compared "
+    "with "
     "the result computed here. Each statement is reduced to one number and an acceptance band: it "
     "is reproduced if the number lies in the band. The last column gives the reason for the band. "
     "Where the paper uses only a word (almost, a little, close to, typical, a lot), the limit is "
@@ -35,10 +36,10 @@ const char* const introduction =
 const char* const glossary =
     "Numbers are computed with the damping of the closed form (8) to (11), zeta = epsilon lambda; "
     "rows that mention eq. (1) also use its damping, zeta = epsilon lambda/2. Section 5 uses "
-    "eq. (1) only. The rows that are not reproduced because lambda2, lambda3, lambda4 or the sum "
-    "is not positive share one cause: the sum of the exponents is negative, and only one is "
-    "positive in a chaotic regime. Of the reproduced rows, Figs. 2, 6 and 7 are identities, Table "
-    "1 and Table 4's lambda are divisions, and Fig. 11's negative exponents follow from its type. "
+    "eq. (1) only. Where *number* is a median of several runs, *here* begins with the run from the "
+    "paper's start. Of the reproduced rows, Eqs. (1) to (4) and Figs. 2, 6 and 7 are identities, "
+    "Table 1 and Table 4's lambda are divisions, and the negative exponents of Figs. 11 to 13 "
+    "follow from the motion's type. "
     "*Alone*: the statement holds with this damping, but not, or only in part, with the other. "
     "*CHANGED*: the verdict differs from the recorded one. *Computed record*: a simulated record "
     "in place of one of the paper's, which are not published.\n\n"
@@ -67,11 +68,17 @@ void write(const std::filesystem::path& path, const std::string& content) {
     if (!file.flush()) throw std::runtime_error("cannot write " + path.string());
 }
 
+/// An end of a band: as it was chosen; two digits if it was computed.
+std::string limit(double end) {
+    const std::string chosen = fmt::format("{:.7g}", end);
+    return std::stod(chosen) == end ? chosen : fmt::format("{:.2g}", end);
+}
+
 std::string text_of(const Band& b) {
-    if (b.low == b.high) return fmt::format("{:.8g}", b.low);
-    if (b.high == infinity) return fmt::format("{:.8g} or more", b.low);
-    if (b.low == -infinity) return fmt::format("{:.8g} or less", b.high);
-    return fmt::format("{:.8g} to {:.8g}", b.low, b.high);
+    if (b.low == b.high) return limit(b.low);
+    if (b.high == infinity) return limit(b.low) + " or more";
+    if (b.low == -infinity) return limit(b.high) + " or less";
+    return limit(b.low) + " to " + limit(b.high);
 }
 
 std::string text_of(const Criterion& c) {
@@ -83,7 +90,8 @@ std::string text_of(double number) {
 }
 
 std::string text_of(const Result& r) {
-    return text_of(r.number) + (r.by_equation ? "; eq. (1): " + text_of(*r.by_equation) : "");
+    return text_of(r.number) + (r.by_equation ? "; eq. (1): " + text_of(*r.by_equation) : "") +
+           (r.statistic.empty() ? "" : " (" + r.statistic + ")");
 }
 
 std::string text_of(ClaimVerdict verdict, bool computed_record) {
@@ -115,23 +123,6 @@ std::string places_of(const std::vector<Finding>& findings, ClaimVerdict a, Clai
     return fmt::format("{}", fmt::join(places, "; "));
 }
 
-/// Number of findings per verdict, and the places that hold with one damping only.
-std::string summary(const std::vector<Finding>& findings) {
-    std::map<std::pair<bool, ClaimVerdict>, int> counts;
-    for (const Finding& f : findings) ++counts[{f.computed_record, f.verdict()}];
-    std::string text;
-    for (const auto& [kind, n] : counts)
-        text += fmt::format("- {}: {}\n", text_of(kind.second, kind.first), n);
-    return fmt::format(
-        "{}\nThe paper's two dampings contradict each other. Statements that hold, at least in "
-        "part, with the closed form alone: {}. With eq. (1) alone: {}.\n\n",
-        text,
-        places_of(findings, ClaimVerdict::by_closed_form, ClaimVerdict::partly_by_closed_form),
-        places_of(
-            findings, ClaimVerdict::by_equation_of_motion,
-            ClaimVerdict::partly_by_equation_of_motion));
-}
-
 }  // namespace
 
 ClaimVerdict Finding::verdict() const {
@@ -147,6 +138,47 @@ ClaimVerdict Finding::verdict() const {
         within(criterion.band, reproduced, by_closed_form, by_equation_of_motion);
     if (whole != not_reproduced || !criterion.partly) return whole;
     return within(*criterion.partly, partly, partly_by_closed_form, partly_by_equation_of_motion);
+}
+
+std::string bottom_line(const Report& report) {
+    const auto number_of = [&](auto... verdicts) {
+        return std::ranges::count_if(
+            report.findings, [=](const Finding& f) { return ((f.verdict() == verdicts) || ...); });
+    };
+    using enum ClaimVerdict;
+    std::map<std::string, int> causes;
+    for (const Finding& f : report.findings)
+        if (f.verdict() == not_reproduced && !f.statement.shared_cause.empty())
+            ++causes[f.statement.shared_cause];
+    const auto failures = number_of(not_reproduced);
+    auto independent = failures;
+    std::string shared;
+    for (const auto& [cause, n] : causes) {
+        shared += fmt::format("; {} of these have one cause, {}", n, cause);
+        independent -= n - 1;
+    }
+    if (!causes.empty()) shared += fmt::format(", so that {} are independent", independent);
+    return fmt::format(
+        "Of {} statements of the paper {} hold, {} hold in part and {} do not hold{}.{}\n",
+        report.findings.size(), number_of(reproduced, by_closed_form, by_equation_of_motion),
+        number_of(partly, partly_by_closed_form, partly_by_equation_of_motion), failures, shared,
+        report.bottom_line);
+}
+
+std::string summary(const std::vector<Finding>& findings) {
+    std::map<std::pair<bool, ClaimVerdict>, int> counts;
+    for (const Finding& f : findings) ++counts[{f.computed_record, f.verdict()}];
+    std::string text;
+    for (const auto& [kind, n] : counts)
+        text += fmt::format("- {}: {}\n", text_of(kind.second, kind.first), n);
+    return fmt::format(
+        "{}\nThe paper's two dampings contradict each other. Statements that hold, at least in "
+        "part, with the closed form alone: {}. With eq. (1) alone: {}.\n\n",
+        text,
+        places_of(findings, ClaimVerdict::by_closed_form, ClaimVerdict::partly_by_closed_form),
+        places_of(
+            findings, ClaimVerdict::by_equation_of_motion,
+            ClaimVerdict::partly_by_equation_of_motion));
 }
 
 std::string markdown_table(const std::vector<Finding>& findings) {
@@ -186,15 +218,15 @@ void write_markdown(const Report& report, const std::string& folder) {
     for (const Picture& p : report.pictures)
         write(to / (p.name + ".svg"), plot::svg(p.plots, picture_width, p.height));
     write(
-        to / "report.md", introduction + summary(report.findings) + glossary +
-                              markdown_table(report.findings) + report.body);
+        to / "report.md", title + bottom_line(report) + introduction + summary(report.findings) +
+                              glossary + markdown_table(report.findings) + report.body);
 }
 
 namespace {
 
-/// Computes the report and prints its table. Writes report.md and its SVG plots into `folder`,
-/// which is created; "" writes nothing. Returns the exit code: 1 if a verdict differs from the
-/// expected one.
+/// Computes the report and prints its bottom line, summary and table. Writes report.md and its SVG
+/// plots into `folder`, which is created; "" writes nothing. Returns the exit code: 1 if a verdict
+/// differs from the expected one.
 int reproduce(const std::string& folder) {
     // Created first, so that an invalid folder is reported before the long computation.
     if (!folder.empty()) std::filesystem::create_directories(folder);
@@ -205,7 +237,7 @@ int reproduce(const std::string& folder) {
           table_3, experiment, open_questions})
         chapter(report, runs);
     if (!folder.empty()) write_markdown(report, folder);
-    print(markdown_table(report.findings));
+    print(bottom_line(report) + "\n" + summary(report.findings) + markdown_table(report.findings));
     if (!folder.empty()) print_message(fmt::format("wrote {}/report.md and its plots", folder));
     if (!report.as_expected()) print_message("a verdict differs from the expected one");
     return report.as_expected() ? 0 : 1;

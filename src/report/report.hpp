@@ -37,6 +37,8 @@ struct Statement {
     std::string where;  ///< place in the paper, "Fig. 5"
     std::string what;   ///< the quantity, or the statement
     std::string paper;  ///< what the paper says
+    /// Cause of its failure, if other statements fail for the same one.
+    std::string shared_cause{};
 };
 
 /// The computed result.
@@ -45,6 +47,7 @@ struct Result {
     /// The number with the damping of eq. (1), if the two differ.
     std::optional<double> by_equation;
     std::string words;
+    std::string statistic{};  ///< "median", if the number is one of several runs
 
     Result(double here, std::string in_words) : number(here), words(std::move(in_words)) {}
     Result(double here, double other, std::string in_words)
@@ -95,7 +98,8 @@ struct Picture {
 
 struct Report {
     std::vector<Finding> findings;
-    std::string body;  ///< Markdown
+    std::string bottom_line;  ///< sentences that follow the count of the verdicts
+    std::string body;         ///< Markdown
     std::vector<Picture> pictures;
 
     void add(Statement, Result, Criterion, ClaimVerdict expected = ClaimVerdict::reproduced);
@@ -113,6 +117,10 @@ struct Report {
     bool as_expected() const { return std::ranges::all_of(findings, &Finding::as_expected); }
 };
 
+/// One paragraph: the count of the verdicts, then the chapters' bottom line.
+std::string bottom_line(const Report& report);
+/// Number of findings per verdict, and the places that hold with one damping only.
+std::string summary(const std::vector<Finding>& findings);
 /// Table of the findings, with the numbers and bands that their verdicts rest on.
 std::string markdown_table(const std::vector<Finding>& findings);
 

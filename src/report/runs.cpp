@@ -140,9 +140,12 @@ double positive(const Exponents& lambda) {
     return static_cast<double>(std::ranges::count_if(lambda, [](double v) { return v > 0; }));
 }
 
-PaperRun run_until(double b, double tau_end, const Parts& parts) {
-    const Parameters p = table1(b, Damping::closed_form);
-    return {p, analyse(run_to(p, default_state(p), tau_end, parts))};
+PaperRun run_until(
+    const Parameters& p, double tau_end, const Parts& parts, std::optional<double> y,
+    const ExponentOptions& estimators) {
+    State start = default_state(p);
+    start.y = y.value_or(start.y);
+    return {p, analyse(run_to(p, start, tau_end, parts, estimators))};
 }
 
 Moments Ensemble::lambda(int k) const {
@@ -178,8 +181,9 @@ std::vector<Regime> regimes_of_random_starts(const Parameters& p, int starts) {
 
 std::string Typical::in_words(int decimals) const {
     return fmt::format(
-        "{:.{}f}; {} neighbouring starts: median {:.{}f}, quartiles {:.{}f} and {:.{}f}", first,
-        decimals, neighbour_runs, median, decimals, lower_quartile, decimals, upper_quartile,
+        "{:.{}f} from the paper's start; {} neighbouring starts: median {:.{}f}, quartiles {:.{}f} "
+        "and {:.{}f}",
+        first, decimals, neighbour_runs, median, decimals, lower_quartile, decimals, upper_quartile,
         decimals);
 }
 

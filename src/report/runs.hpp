@@ -36,9 +36,10 @@ struct Both {
 };
 using BothRuns = Both<PaperRun>;
 
-/// A run with the damping of the closed form, for parts that need more data than one window; `b` in
-/// m.
-PaperRun run_until(double b, double tau_end, const Parts& parts);
+/// A run for parts that need more data than one window, or from another y(0), m.
+PaperRun run_until(
+    const Parameters& parameters, double tau_end, const Parts& parts, std::optional<double> y = {},
+    const ExponentOptions& estimators = qr_alone);
 
 /// Common property of an ensemble's windows.
 enum class WindowsOf {

@@ -42,6 +42,15 @@ TEST_CASE("every preset runs, names its figure or table, and the request overrid
     CHECK(over["parameters"]["tau_end"] == 50);
 }
 
+TEST_CASE("the preset of Fig. 11 states when its sticking phase begins") {
+    const Json a = answer(R"({"preset":"fig11","include":[]})");
+    const auto preset = std::ranges::find(presets(), "fig11", &Preset::name);
+    const auto at = preset->note.find("tau = ") + 6;
+    CHECK(
+        std::stod(preset->note.substr(at)) ==
+        doctest::Approx(a["sticking"]["tau_start"][0].get<double>()).epsilon(1e-3));
+}
+
 namespace {
 
 /// The parameters of a preset with other fields over it.

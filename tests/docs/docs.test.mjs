@@ -279,9 +279,13 @@ test("the commands that the documents show print what they show", async () => {
   assert.ok(count >= 8, `${count} commands`);
 });
 
-test("the table of the findings is what vines reproduce prints", async () => {
-  const shown = between(documents["docs/paper.md"], "reproduce");
-  assert.equal(shown, await run(program, ["reproduce"]));
+test("the bottom line and the table of the findings are what vines reproduce prints", async () => {
+  const shown = ["bottom line", "reproduce"].map((name) =>
+    between(documents["docs/paper.md"], name),
+  );
+  assert.equal(shown.join("\n"), await run(program, ["reproduce"]));
+  const rows = shown[1].split("\n").filter((line) => line.startsWith("|"));
+  for (const row of rows) assert.equal(row.split("|").length, 10, row);
 });
 
 // The documents themselves.

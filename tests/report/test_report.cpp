@@ -113,6 +113,37 @@ TEST_CASE("a verdict on a computed record mentions that record") {
     CHECK(table.find("reproduced") == std::string::npos);
 }
 
+TEST_CASE("a number that is a median is named so, also where it decides with eq. (1)") {
+    Finding f = finding(1.5, {1, 2});
+    f.result.statistic = "median";
+    CHECK(occurrences(markdown_table({f}), "| 1.5 (median) |") == 1);
+    f.result.by_equation = 1.6;
+    CHECK(occurrences(markdown_table({f}), "| 1.5; eq. (1): 1.6 (median) |") == 1);
+}
+
+TEST_CASE("the end of a band is shown as chosen, or with two digits if it was computed") {
+    CHECK(occurrences(markdown_table({finding(1, {0, 1.0 / 3})}), "| 0 to 0.33 |") == 1);
+    CHECK(
+        occurrences(
+            markdown_table({finding(1, {18.12995, 18.13005})}), "| 18.12995 to 18.13005 |") == 1);
+}
+
+TEST_CASE("the bottom line counts statements that fail for one cause once") {
+    Report report;
+    report.bottom_line = " The end.";
+    for (const double number : {1., 3., 3., 3., 3.})
+        report.findings.push_back(finding(number, {1, 2}));
+    CHECK(
+        bottom_line(report) ==
+        "Of 5 statements of the paper 1 hold, 0 hold in part and 4 do not hold. The end.\n");
+    // A cause counts only where the statement fails.
+    for (const std::size_t k : {0U, 2U, 4U}) report.findings[k].statement.shared_cause = "rain";
+    CHECK(
+        occurrences(
+            bottom_line(report), "; 2 of these have one cause, rain, so that 3 are independent.") ==
+        1);
+}
+
 TEST_CASE("verdicts on computed records are counted separately") {
     const auto folder = std::filesystem::temp_directory_path() / "vines-test-report-counts";
     std::filesystem::create_directories(folder);
@@ -179,6 +210,9 @@ TEST_CASE("the report is one text in the order of its parts, with pictures in se
     CHECK(
         text.ends_with("| 1 | 1 to 2 | two digits |\n\n## Fig. 5\n\nIn "
                        "words.\n\n![Exponents](fig5.svg)\n*Exponents*\n\n"));
+    CHECK(
+        text.starts_with("# Li, Lamarque, Seguy, Berlioz (2018), recomputed\n\nOf 1 statements of "
+                         "the paper 1 hold, 0 hold in part and 0 do not hold.\n\n"));
     CHECK(picture.starts_with("<svg "));
     CHECK(picture.find("a &lt; b") != std::string::npos);
     std::filesystem::remove_all(folder);
@@ -221,6 +255,48 @@ vines::plot::Plot logarithmic(const std::vector<double>& y, double last_error) {
 }
 
 }  // namespace
+
+TEST_CASE("a curve that leaves the ordinate's range is clipped, and an arrow shows on which side") {
+    const auto drawn = [](const std::vector<double>& y) {
+        std::vector<double> x;
+        for (std::size_t i = 0; i < y.size(); ++i) x.push_back(static_cast<double>(i));
+        return vines::plot::svg({{.curves = {{.x = x, .y = y}}, .y_range = {{0, 1}}}}, 400, 200);
+    };
+    const auto up = [](const std::string& svg) { return occurrences(svg, "h8l-4,-8z"); };
+    const auto down = [](const std::string& svg) { return occurrences(svg, "h8l-4,8z"); };
+    const std::string within = drawn({0, 1, 0.5}), above = drawn({0.5, 2, 3, 0.5}),
+                      both = drawn({0.5, 2, -3, 0.5, -1});
+    CHECK(up(within) + down(within) == 0);
+    CHECK(up(above) == 1);
+    CHECK(down(above) == 0);
+    CHECK(up(both) == 1);
+    CHECK(down(both) == 2);
+    // The line goes on to the value itself, outside of the nested <svg>, which has the frame's
+    // size.
+    const std::vector<double> tops = attributes(above, "y"), heights = attributes(above, "height");
+    const auto point = above.find(' ', above.find("points=\""));
+    const double y_of_2 = std::stod(above.substr(above.find(',', point) + 1)),
+                 frame_top = tops.at(tops.size() - 1);
+    CHECK(y_of_2 < frame_top - heights.back() / 2);
+}
+
+TEST_CASE("points at the ends of the abscissa do not touch the frame") {
+    const std::string svg =
+        vines::plot::svg({{.curves = {{.x = {0, 1}, .y = {0, 1}, .dots = true}}}}, 400, 200);
+    const auto frame = svg.find("fill=\"none\" stroke=\"#b9c0c6\"");
+    const double left = attributes(svg.substr(0, frame), "x").back(),
+                 width = attributes(svg.substr(0, frame), "width").back(), radius = 3;
+    CHECK(attributes(svg, "cx").front() > left + radius);
+    CHECK(attributes(svg, "cx").back() < left + width - radius);
+}
+
+TEST_CASE("the legend is above the frame, where it hides no curve") {
+    vines::plot::Plot plot{.curves = {{.x = {0, 1}, .y = {0, 1}, .label = "lambda1"}}};
+    const std::string svg = vines::plot::svg({plot}, 400, 200);
+    const std::string frame = svg.substr(svg.find("fill=\"none\" stroke=\"#b9c0c6\"") - 60, 60);
+    const std::string label = svg.substr(0, svg.find(">lambda1<"));
+    CHECK(attributes(label, "y").back() < attributes(frame, "y").back());
+}
 
 TEST_CASE(
     "an error bar on a logarithmic ordinate goes from the value less its error to their sum") {

@@ -8,6 +8,7 @@
 
 #include "report/plots.hpp"
 #include "report/report.hpp"
+#include "report/runs.hpp"
 
 namespace vines::report {
 
@@ -20,6 +21,38 @@ void parameters_of_table_1(Report& report, const Parameters& p) {
     report.add(
         {"Table 1", "lambda = c1/(m2 omega0)", "1.43"}, result("{:.4f}", p.lambda),
         {{1.425, 1.435}, "rounds to 1.43"});
+}
+
+/// Eqs. (2), (3) and (25) as printed, at the impacts of a run.
+void forms_of_the_equations(Report& report, const PaperRun& r) {
+    const Parameters& p = r.parameters;
+    const double e = p.epsilon, R = p.R_plus;  // of both walls
+    double forcing = 0, impact = 0;
+    for (const Impact& i : r.run.impacts) {
+        const double theta = p.Omega * i.tau,
+                     of_1 = p.G * (elementary::sin(theta) +
+                                   e * p.lambda * p.Omega * elementary::cos(theta)),
+                     of_2 = p.A() * elementary::sin(theta + p.phi());
+        forcing = std::max(forcing, std::abs(of_1 - of_2) / p.A());
+        const double x = i.x_dot_before, y = i.y_dot_before,
+                     x_after = ((1 - R * e) * x + (e + R * e) * y) / (e + 1),
+                     y_after = ((1 + R) * x + (-R + e) * y) / (e + 1),
+                     off = std::max(
+                         std::abs(i.x_dot_after - x_after), std::abs(i.y_dot_after - y_after));
+        impact = std::max(impact, off / (std::abs(x) + std::abs(y)));
+    }
+    const Criterion identity = {{0, 1e-10}, "an identity: only rounding is left"};
+    report.add(
+        {"Eqs. (1) to (3)",
+         "forcing by (2) and (3), and by (1): largest difference over its amplitude",
+         "(1) \"can also be written as\" (2)"},
+        result("{:.0e}", forcing), identity);
+    report.add(
+        {"Eqs. (4), (25)",
+         "x' and y' after the impacts at b = 22 mm by S of (25), and by (4): largest difference, "
+         "relative to the velocities before",
+         "S is (4)"},
+        result("{:.0e}", impact), identity);
 }
 
 /// x(tau) by (8) to (11) exactly as printed, with tau_0 = 0. x20 = x(0) and x10 = x'(0), in the
@@ -83,6 +116,7 @@ void trajectory_difference(Report& report) {
     AnalysisRequest wanted{.parameters = p, .start = default_state(p), .tau_end = 60};
     constexpr double size = 1e-10;  // m: small against nonlinearity, large against rounding
     wanted.perturbation = random_difference(1, size);
+    wanted.parts = {.impacts = true};
     const Analysis run = analyse(wanted);
     const Perturbation& second = *run.perturbation;
     double largest = 0;
@@ -107,19 +141,23 @@ void trajectory_difference(Report& report) {
              "predicted by M J",
              size, wanted.tau_end),
          "the transfer matrix"},
-        {largest, fmt::format(
-                      "{:.0e} through {} impacts, while the distance grows {:.0f}-fold", largest,
-                      run.outcome.impacts, second.distance.back() / size)},
+        {largest,
+         fmt::format(
+             "{:.0e} through {} impacts, {} of them at x - y = -b, while the distance grows "
+             "{:.0f}-fold",
+             largest, run.impacts.size(), std::ranges::count(run.impacts, -1, &Impact::side),
+             second.distance.back() / size)},
         {{0, 1e-3},
          "exact to first order: the error is of the size of the distance, plus rounding"});
 }
 
 }  // namespace
 
-void model(Report& report, RunCache&) {
+void model(Report& report, RunCache& runs) {
     report.heading("Table 1 and the equations of motion");
     const Parameters p;
     parameters_of_table_1(report, p);
+    forms_of_the_equations(report, runs.paper_run(p.b, Damping::closed_form));
     closed_form(report, p);
     trajectory_difference(report);
 }

@@ -143,7 +143,10 @@ void open_questions(Report& report, RunCache& runs) {
     sparse_and_modulated(report);
     three_impacts(report);
     report.paragraph(
-        "Without a row in the table: Fig. 1, a drawing; that Fig. 24 and Fig. 5 are "
+        "Without a row in the table: Fig. 1, a drawing; (12) to (24), which the row on Fig. 2 "
+        "uses, "
+        "as it does (27) at both walls; that velocity differences fall by R at an impact (Fig. 7), "
+        "an eigenvalue of M; that Fig. 24 and Fig. 5 are "
         "\"consistent\", for which the paper gives no measure (each has its own rows); that "
         "irregular impacts are the \"common base\" of all chaotic regimes (section 6), of which "
         "one is tested (section 4.1); friction and the walls' materials (section 6), which are in "

@@ -56,34 +56,56 @@ void figure_10(Report& report, const BothRuns& runs) {
         runs);
 }
 
-/// "Four negative values are obtained (two of them almost zero)."
-void negative_exponents(Report& report, const BothRuns& runs) {
+/// Words on the exponents of the motion that a run reaches.
+std::string exponents_in_words(const PaperRun& r) {
+    return in_words(exponents_of(r)) + (r.regime().orbit ? " (Floquet multipliers)" : " (qr)");
+}
+
+/// "Four negative values are obtained."
+void negative_exponents(
+    Report& report, int figure, const BothRuns& runs,
+    ClaimVerdict expected = ClaimVerdict::reproduced) {
+    report.add(
+        {fmt::format("Fig. {}", figure),
+         fmt::format("b = {:g} mm: largest exponent", 1000 * runs.here.parameters.b),
+         "all four negative"},
+        {exponents_of(runs.here)[0], exponents_of(runs.by_equation)[0],
+         fmt::format(
+             "{}; by eq. (1) {}", exponents_in_words(runs.here),
+             exponents_in_words(runs.by_equation))},
+        {{-infinity, 0}, "negative"}, expected);
+}
+
+/// "(two of them almost zero)": Figs. 11 and 12.
+void two_almost_zero(
+    Report& report, int figure, const BothRuns& runs,
+    ClaimVerdict expected = ClaimVerdict::reproduced) {
+    const auto ratio = [](const PaperRun& r) { return exponents_of(r)[1] / exponents_of(r)[2]; };
     const TransferProduct& product = runs.here.product();
-    const Exponents orbit = exponents_of(runs.here), raw = product.raw_product(),
-                    other = exponents_of(runs.by_equation);
+    const Exponents raw = product.raw_product();
     report.add(
-        {"Fig. 11", "largest exponent at b = 15 mm", "all four negative"},
-        {orbit[0], other[0],
+        {fmt::format("Fig. {}", figure),
          fmt::format(
-             "{} (Floquet multipliers); by raw_product {}; by eq. (1) {:.4f}", in_words(orbit),
-             in_words(raw), other[0])},
-        {{-infinity, 0}, "negative"});
-    report.add(
-        {"Fig. 11", "lambda2 over lambda3 at b = 15 mm, by Floquet multipliers", "two almost zero"},
-        {orbit[1] / orbit[2],
+             "b = {:g} mm: lambda2 over lambda3, by Floquet multipliers",
+             1000 * runs.here.parameters.b),
+         "two almost zero"},
+        {ratio(runs.here), ratio(runs.by_equation),
          fmt::format(
-             "{:.2f}; by raw_product {:.2f}, where lambda3 is {:.4f}, the rounding floor {:.4f}",
-             orbit[1] / orbit[2], raw[1] / raw[2], raw[2],
-             rounding_floor(raw[0], product.end_tau() - product.start_tau()))},
-        {{0, 0.2},
-         "\"almost zero\" is read as small compared with the other two: a fifth or less"});
+             "{:.2f}; by raw_product {:.2f}, where lambda3 is {:.4f}, the rounding floor {:.4f}; "
+             "by eq. (1) {:.2f}",
+             ratio(runs.here), raw[1] / raw[2], raw[2],
+             rounding_floor(raw[0], product.end_tau() - product.start_tau()),
+             ratio(runs.by_equation))},
+        {{0, 0.2}, "\"almost zero\" is read as small compared with the other two: a fifth or less"},
+        expected);
 }
 
 void figure_11(Report& report, const BothRuns& runs) {
     report.heading("Fig. 11: two symmetric impacts per cycle, b = 15 mm (Type III)");
     show(report, runs.here, 11, late_tau);
     same_regime(report, "Fig. 11", RegimeType::III, runs, type_and_z(runs));
-    negative_exponents(report, runs);
+    negative_exponents(report, 11, runs);
+    two_almost_zero(report, 11, runs);
     report.paragraph(fmt::format(
         "A sticking phase near the start of the run (tau = {:.1f}) makes lambda3 and lambda4 of "
         "the window from the first impact minus infinity; the orbit has no sticking phase.",
@@ -94,8 +116,9 @@ void figure_11(Report& report, const BothRuns& runs) {
 struct ShiftedRegime {
     int figure;
     RegimeType type;
-    long impacts;
-    double b_paper, b_other;  ///< m
+    double impacts;                        ///< per cycle
+    double b_paper, b_other;               ///< m
+    ClaimVerdict of_type, of_z, of_signs;  ///< at the paper's b
 };
 
 std::string described(const Regime& r) {
@@ -118,58 +141,71 @@ std::string counted(const std::vector<Regime>& regimes) {
 
 constexpr int random_starts = 200;
 
-/// Returns how many of the motions found have the paper's type and impacts per cycle.
-double count_matching(const ShiftedRegime& e, const std::vector<Regime>& found) {
-    return static_cast<double>(std::ranges::count_if(found, [&](const Regime& f) {
-        return f.type == e.type && f.orbit && f.orbit->contacts == e.impacts * f.orbit->cycles;
-    }));
-}
-
-/// Adds the claim on the regime at the paper's b, from random initial states.
+/// Adds the findings on the motion at the paper's b: its type, from random initial states too, its
+/// impacts per cycle and the signs of its exponents.
 void report_paper_b(Report& report, const ShiftedRegime& e, const BothRuns& runs) {
     const auto from_random_starts = [](const PaperRun& r) {
         return regimes_of_random_starts(r.parameters, random_starts);
     };
+    const auto of_type = [&](const std::vector<Regime>& found) {
+        return static_cast<double>(std::ranges::count(found, e.type, &Regime::type));
+    };
     const std::vector<Regime> found = from_random_starts(runs.here),
                               other = from_random_starts(runs.by_equation);
-    const double by_closed_form = count_matching(e, found), by_eq_1 = count_matching(e, other),
-                 mm = 1000 * e.b_paper;
+    const double mm = 1000 * e.b_paper;
+    const std::string where = fmt::format("Fig. {}", e.figure);
     report.add(
-        {fmt::format("Fig. {}", e.figure),
+        {where,
          fmt::format(
-             "b = {:g} mm: random starts, of {}, that reach Type {} with {} impacts per cycle, and "
-             "hence four negative exponents",
-             mm, random_starts, name_of(e.type), e.impacts),
-         fmt::format("Type {}, all four negative", name_of(e.type))},
-        {by_closed_form, by_eq_1,
+             "b = {:g} mm: random starts, of {}, that reach Type {}", mm, random_starts,
+             name_of(e.type)),
+         fmt::format("Type {}", name_of(e.type))},
+        {of_type(found), of_type(other),
          fmt::format(
-             "{}; from the paper's start {}. By eq. (1) {}; {}", by_closed_form,
-             described(runs.here.regime()), by_eq_1, described(runs.by_equation.regime()))},
-        {{1, random_starts}, "one is enough"}, ClaimVerdict::not_reproduced);
+             "{}; from the paper's start {}. By eq. (1) {}; {}", of_type(found),
+             described(runs.here.regime()), of_type(other), described(runs.by_equation.regime()))},
+        {{1, random_starts}, "one is enough"}, e.of_type);
+    report.add(
+        {where, fmt::format("b = {:g} mm: impacts per cycle, z", mm), fmt::format("{}", e.impacts)},
+        result("{:.2f}", runs.here.regime().z, runs.by_equation.regime().z),
+        {exactly(e.impacts), "a periodic motion has exactly this number"}, e.of_z);
+    negative_exponents(report, e.figure, runs, e.of_signs);
     report.paragraph(fmt::format(
         "Final motions of {} random starts at b = {:g} mm: {}. By eq. (1): {}.", random_starts, mm,
         counted(found), counted(other)));
 }
 
 void figures_12_and_13(Report& report, RunCache& runs) {
+    using enum ClaimVerdict;
     constexpr ShiftedRegime both[] = {
-        {.figure = 12, .type = RegimeType::IV, .impacts = 2, .b_paper = 0.008, .b_other = 0.0065},
-        {.figure = 13, .type = RegimeType::V, .impacts = 3, .b_paper = 0.004, .b_other = 0.0046}};
+        {.figure = 12,
+         .type = RegimeType::IV,
+         .impacts = 2,
+         .b_paper = 0.008,
+         .b_other = 0.0065,
+         .of_type = not_reproduced,
+         .of_z = by_closed_form,
+         .of_signs = reproduced},
+        {.figure = 13,
+         .type = RegimeType::V,
+         .impacts = 3,
+         .b_paper = 0.004,
+         .b_other = 0.0046,
+         .of_type = by_equation_of_motion,
+         .of_z = not_reproduced,
+         .of_signs = by_equation_of_motion}};
     for (const ShiftedRegime& e : both) {
         report.heading(fmt::format(
             "Fig. {}: Type {}, b = {:g} mm in the paper", e.figure, name_of(e.type),
             1000 * e.b_paper));
         const BothRuns at_paper_b = runs.both(e.b_paper);
         report_paper_b(report, e, at_paper_b);
+        if (e.figure == 12) two_almost_zero(report, e.figure, at_paper_b);
         const PaperRun& at_other_b = runs.paper_run(e.b_other);
-        const Exponents lambda = exponents_of(at_other_b);
         report.paragraph(fmt::format(
-            "At b = {:g} mm the response is {}; its exponents are {} (Floquet multipliers), "
-            "lambda2 over lambda3 {:.2f}. At the paper's own b the largest exponent of the motion "
-            "found there is {:.4f}, by eq. (1) {:.4f}.",
-            1000 * e.b_other, described(at_other_b.regime()), in_words(lambda),
-            lambda[1] / lambda[2], exponents_of(at_paper_b.here)[0],
-            exponents_of(at_paper_b.by_equation)[0]));
+            "At b = {:g} mm the response is {}; its exponents are {}, lambda2 over lambda3 {:.2f}.",
+            1000 * e.b_other, described(at_other_b.regime()), exponents_in_words(at_other_b),
+            exponents_of(at_other_b)[1] / exponents_of(at_other_b)[2]));
         show(report, at_other_b, e.figure, late_tau);
     }
 }
