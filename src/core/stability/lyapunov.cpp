@@ -353,10 +353,7 @@ Lyapunov::Lyapunov(
       product_(parameters.epsilon, options) {}
 
 void Lyapunov::on_stretch(const Stretch& stretch) {
-    if (product_.impacts() == 0) return;  // the window has not started
-    since_impact_.extend(stretch);
-    if (stretch.sticking_side != 0 && stretch.tau <= tau_end_ && since_impact_.legs().size() == 1)
-        sticks_ = true;
+    if (product_.impacts() > 0) since_impact_.extend(stretch);  // the window has started
 }
 
 void Lyapunov::on_impact(const Impact& impact) {
@@ -370,15 +367,13 @@ void Lyapunov::on_impact(const Impact& impact) {
         steep_ = is_steep;
     }
     side_ = impact.side;
-    sticks_ = false;
     since_impact_.reset();
 }
 
 const TransferProduct& Lyapunov::product() {
-    if (product_.impacts() > 1 &&
-        (sticks_ || (chatters_ && !(product_.sum_rule_residual() <= most_residual))))
+    if (chatters_ && !(product_.sum_rule_residual() <= most_residual))
         product_.end_sticking();
-    sticks_ = chatters_ = false;
+    chatters_ = false;
     return product_;
 }
 

@@ -141,13 +141,12 @@ private:
     const double tau_start_, tau_end_;
     LegSequence since_impact_;
     TransferProduct product_;
-    /// A sticking phase follows the last impact in the window, or the last impacts are the end of a
-    /// chatter. The deviations after such an impact are as large as the entries of its M, which the
-    /// sticking phase removes: a window that ends here would otherwise depend on which impact of the
-    /// chatter is its last.
-    bool sticks_ = false, chatters_ = false;
+    /// The last impacts are the end of a chatter: their large entries of M let rounding separate
+    /// the deviations, until the sticking phase that follows projects them. A window that ends
+    /// before that gets its exponents by the same projection.
+    bool chatters_ = false;
+    bool steep_ = false;  ///< the last M has such entries
     int side_ = 0;
-    bool steep_ = false;
 };
 
 /// Exponents of many windows of one run; each window receives events only while it is open.

@@ -149,7 +149,7 @@ std::vector<double> late_changes_after(const Experiment& e) {
         p, default_state(p), {.tau_end = tau + T, .max_impacts = std::numeric_limits<long>::max()},
         observers);
     std::vector<double> changes;
-    for (const Lyapunov& stretch : stretches)
+    for (Lyapunov& stretch : stretches)
         changes.push_back(late_change(stretch.product().eigenvalues_history(), 0));
     return changes;
 }

@@ -93,7 +93,7 @@ TEST_CASE("each window of a run has its own verdict") {
     REQUIRE(r.capture);
     CHECK(r.capture->tau.value() == doctest::Approx(captured).epsilon(0.01));
     CHECK(r.capture->chaotic_before == true);
-    for (const Lyapunov* window : {&first, &second}) {
+    for (Lyapunov* window : {&first, &second}) {
         const Judgement j = judge(growth_of(window->product()), r, window->product().start_tau());
         CHECK(j.verdict == Verdict::chaotic);
         CHECK(j.reason == VerdictReason::growth);

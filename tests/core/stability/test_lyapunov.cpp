@@ -413,3 +413,20 @@ TEST_CASE(
         }
     }
 }
+
+TEST_CASE("the exponents of a sticking motion exist wherever in its chatter the window ends") {
+    Parameters p;
+    p.epsilon = 0.08577200056792593, p.Omega = 1.0140062, p.lambda = 0.35414361799157534;
+    p.R_plus = p.R_minus = 0.6472643271251156, p.b = 0.00010228962122445021;
+    // One chatter has about 75 impacts.
+    for (long impacts = 2000; impacts < 2080; ++impacts) {
+        CAPTURE(impacts);
+        Lyapunov lyapunov(p, 0, infinity, all_estimators);
+        record(p, default_state(p), 1e9, impacts, {&lyapunov});
+        const TransferProduct& product = lyapunov.product();
+        CHECK(product.sum_rule_residual() < most_residual);
+        CHECK(product.qr()[0] == doctest::Approx(-0.0114).epsilon(0.03));
+        CHECK(product.qr()[1] == doctest::Approx(-0.0125).epsilon(0.04));
+        CHECK(product.rank() == 2);
+    }
+}
