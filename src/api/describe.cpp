@@ -72,7 +72,9 @@ Json describe_recommendation(const std::optional<Recommendation>& r) {
 namespace {
 
 std::string impacts_of(int count) {
-    return count == 1 ? "one impact" : count == 2 ? "two impacts" : fmt::format("{} impacts", count);
+    return count == 1   ? "one impact"
+           : count == 2 ? "two impacts"
+                        : fmt::format("{} impacts", count);
 }
 
 std::string describe_type(const Regime& r) {
@@ -119,9 +121,9 @@ Json describe_regime(const Regime& r) {
     append(
         j, {{"multipliers", orbit ? describe_multipliers(*orbit) : Json(nullptr)},
             {"orbit", orbit ? describe(properties::orbit_state, *orbit) : Json(nullptr)},
-            {"quasi_periodic",
-             r.quasi_periodic ? describe(properties::quasi_periodic, *r.quasi_periodic)
-                              : Json(nullptr)},
+            {"quasi_periodic", r.quasi_periodic
+                                   ? describe(properties::quasi_periodic, *r.quasi_periodic)
+                                   : Json(nullptr)},
             {"capture", r.capture ? describe_capture(*r.capture) : Json(nullptr)},
             {"cycles_with", column(r.cycles_with)},
             {"share_two_impacts", r.cycles_with.size() > 2 ? r.cycles_with[2] : 0},

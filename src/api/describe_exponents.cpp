@@ -43,11 +43,10 @@ std::string reason_of(const Judgement& judgement, const Growth& g, const Regime&
                    (r.untouched->y_dot == 0
                         ? std::string("the oscillator has not reached its steady motion")
                         : fmt::format("the ball flies with y' = {:.3g} m", r.untouched->y_dot)) +
-                   (r.untouched->next_contact
-                        ? fmt::format(
-                              ": the next contact is due at tau = {:.6g}",
-                              *r.untouched->next_contact)
-                        : ": no contact within the next 10,000 cycles");
+                   (r.untouched->next_contact ? fmt::format(
+                                                    ": the next contact is due at tau = {:.6g}",
+                                                    *r.untouched->next_contact)
+                                              : ": no contact within the next 10,000 cycles");
         case VerdictReason::free_decay:
             return "without forcing (G = 0) the motion dies out and has no long-term exponents";
         case VerdictReason::untouched:

@@ -180,21 +180,21 @@ inline constexpr Property<PeriodicOrbit> orbit[] = {
 };
 
 inline constexpr Property<QuasiPeriodic> quasi_periodic[] = {
-    {{"rotation_number",
-      "turns on the closed curve per forcing cycle, 0 to 0.5, or to 0.5/curves"},
+    {{"rotation_number", "turns on the closed curve per forcing cycle, 0 to 0.5, or to 0.5/curves"},
      at<&QuasiPeriodic::rotation_number>},
     {{"standard_error", "bound of its error, from the rotation numbers of both halves"},
      at<&QuasiPeriodic::error>},
-    {{"curves", "closed curves of the stroboscopic section, which the motion visits in turn", whole},
+    {{"curves", "closed curves of the stroboscopic section, which the motion visits in turn",
+      whole},
      at<&QuasiPeriodic::curves>},
     {{"points", "examined points of one curve", whole}, at<&QuasiPeriodic::points>},
     {{"largest_gap", "largest gap between the phases of neighbours on the curve, in turns"},
      at<&QuasiPeriodic::largest_gap>},
-    {{"slope_ratio",
-      "median slope between neighbours over that between every fourth point: about 1 for a curve, 4 "
-      "for a set with a thickness"},
-     at<&QuasiPeriodic::slope_ratio>},
-    {{"curvature_ratio", "the same of the curvature: about 1 for a smooth curve, or else 16"},
+    {{"length_ratio",
+      "length of the curve through all points over that through every fourth point: about 1 for a "
+      "curve, 4 for a set with a thickness"},
+     at<&QuasiPeriodic::length_ratio>},
+    {{"curvature_ratio", "the same of the median curvature: about 1 for a smooth curve, else 16"},
      at<&QuasiPeriodic::curvature_ratio>},
 };
 
@@ -286,7 +286,9 @@ inline constexpr Property<MeasuredPoint> point[] = {
     {{"standard_error", "standard error of each exponent", exponents},
      result_at<&PointResult::standard_error>},
     {{"verdict",
-      "verdict on the final motion; null without forcing, or if the ball meets no wall in the end",
+      "regular if a periodic orbit captures the motion, otherwise the verdict on the measured "
+      "cycles: chaos found there can be a transient; null without forcing, or if the ball meets no "
+      "wall in the end",
       verdict},
      result_at<&PointResult::verdict>},
     {{"z", "contacts per cycle"}, regime_at<&Regime::z>},
@@ -302,12 +304,17 @@ inline constexpr Property<MeasuredPoint> point[] = {
     {{"symmetric", "true if a shift by half a period gives the mirror image", flag},
      orbit_at<&PeriodicOrbit::symmetric>},
     {{"capture_cycle",
-      "cycle in which the orbit captured the motion; if it is late, lambda is a mean over a "
-      "transient; null if not periodic or not yet captured"},
+      "measured cycle in which the orbit captured the motion, later than the last one if "
+      "settle_cycles was needed; if it is late, lambda is a mean over a transient; null if not "
+      "periodic or not yet captured"},
      [](const MeasuredPoint& p) {
          const auto& capture = p.result.regime.capture;
          return capture && capture->tau ? Json(std::round(*capture->tau / p.cycle)) : Json(nullptr);
      }},
+    {{"lambda1_before", "lambda1 up to the capture; null if not periodic", number_or_null},
+     result_at<&PointResult::lambda1_before>},
+    {{"lambda1_after", "lambda1 of the orbit, from its multipliers", number_or_null},
+     result_at<&PointResult::lambda1_after>},
     {{"multiplier", "largest modulus of the Floquet multipliers"},
      orbit_at<[](const PeriodicOrbit& o) { return elementary::modulus(o.multipliers[0]); }>},
     {{"synchronised", "fraction of the contacts that lie in synchronised stretches"},
@@ -352,6 +359,16 @@ inline constexpr Property<PointResult> peak[] = {
     {{"z", "contacts per cycle at x_peak"},
      [](const PointResult& p) { return json_of(p.regime.z); }},
     {{"x_rms", "rms of x at x_peak, m"}, at<&PointResult::x_rms>},
+};
+
+inline constexpr Property<Lifetime> lifetime[] = {
+    {{"mean", "cycles of chaos per capture; null without a capture", number_or_null},
+     at<&Lifetime::mean>},
+    {{"low", "lower end of its 95 % interval; null without chaos", number_or_null},
+     at<&Lifetime::low>},
+    {{"high", "upper end of its 95 % interval", number_or_null}, at<&Lifetime::high>},
+    {{"captured", "captured motions", whole}, at<&Lifetime::captured>},
+    {{"runs", "motions with shown chaos", whole}, at<&Lifetime::runs>},
 };
 
 /// The initial state, as fields of /v1/simulate that reproduce the motion.

@@ -97,6 +97,7 @@ SimulateRequest read_simulate_request(const Json& given) {
 
     r.include = l.words("include");
     w.parts = parts_of(r.include);
+    w.settle_cycles = l.number("settle_cycles");
     w.samples_per_cycle = l.number("samples_per_cycle");
     w.section_phase = l.number("section_phase");
     w.most_points = static_cast<std::size_t>(l.number("max_points"));

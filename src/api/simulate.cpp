@@ -86,6 +86,7 @@ Json describe_parameters(const SimulateRequest& r) {
             {"tau_end", w.tau_end},
             {"cycles", w.tau_end / w.parameters.cycle()},
             {"window", {w.window.from, w.window.to}},
+            {"settle_cycles", w.settle_cycles},
             {"samples_per_cycle", w.samples_per_cycle},
             {"section_phase", w.section_phase},
             {"max_points", w.most_points},

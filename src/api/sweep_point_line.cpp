@@ -97,6 +97,7 @@ Json describe_point(const SweepRequest& r, std::size_t index, const SweepPoint& 
         line["best"] = describe_motion(motions.empty() ? worst : *motions.front());
         line["starts"] = Json::array();
         for (const Motion& m : point.motions) line["starts"].push_back(describe_motion(m));
+        line["lifetime"] = describe(properties::lifetime, lifetime_of(point.motions));
     } else if (point.second) {
         line["second_start"] = describe_motion(*point.second);
     }

@@ -166,6 +166,7 @@ void read_options(SweepRequest& r, const Json& given, std::vector<FieldError>& e
     plan.options = {
         .transient_cycles = field(given, "transient_cycles").get<double>(),
         .cycles = field(given, "cycles").get<double>(),
+        .settle_cycles = field(given, "settle_cycles").get<double>(),
         .section = enum_value<SectionKind>(section),
         .section_points = static_cast<std::size_t>(field(given, "section_points").get<double>()),
         .section_phase = field(given, "section_phase").get<double>(),

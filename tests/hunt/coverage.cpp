@@ -39,8 +39,9 @@ std::vector<Examined> systems() {
     std::vector<Examined> list;
     const auto table = [&](double b, Damping damping) {
         list.push_back(
-            {std::string(damping == Damping::closed_form ? "Table 1, closed form, b = "
-                                                         : "Table 1, eq. (1), b = ") +
+            {std::string(
+                 damping == Damping::closed_form ? "Table 1, closed form, b = "
+                                                 : "Table 1, eq. (1), b = ") +
                  std::to_string(static_cast<int>(std::lround(1000 * b))) + " mm",
              test::table1(b, damping)});
     };
@@ -94,10 +95,10 @@ std::vector<Estimates> windows_of(const Parameters& p, int count, int cycles) {
         const EnergyBalance& energy = a.energy->balance;
         found.push_back(
             {{{{lambda[0], error[0]},
-              {lambda[1], error[1]},
-              {energy.rms, energy.rms_error},
-              {a.regime->z_overall, a.regime->z_error},
-              {*energy.share_impacts, energy.share_impacts_error}}},
+               {lambda[1], error[1]},
+               {energy.rms, energy.rms_error},
+               {a.regime->z_overall, a.regime->z_error},
+               {*energy.share_impacts, energy.share_impacts_error}}},
              !halves_differ(e.growth.difference_of_halves) &&
                  !halves_differ(energy.difference_of_halves)});
     }
@@ -149,10 +150,10 @@ void print_coverage(int windows, int cycles, int threads) {
             for (std::size_t k = 0; k < 3; ++k)
                 mean[q][k] += share[k] / static_cast<double>(list.size());
         }
-        const double drifting = 100.0 *
-                                static_cast<double>(std::ranges::count(
-                                    found[i], false, &Estimates::stationary)) /
-                                static_cast<double>(found[i].size());
+        const double drifting =
+            100.0 *
+            static_cast<double>(std::ranges::count(found[i], false, &Estimates::stationary)) /
+            static_cast<double>(found[i].size());
         std::printf(" | %.1f |\n", drifting);
         mean_drifting += drifting / static_cast<double>(list.size());
     }

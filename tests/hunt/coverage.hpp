@@ -5,8 +5,8 @@
 namespace vines::hunt {
 
 /// Prints a table: for each of twelve chaotic systems the percentage of `windows` windows of
-/// `cycles` cycles whose exponents, x_rms, z and share_impacts lie outside the intervals that should
-/// miss 31.7, 4.55 and 0.27 %.
+/// `cycles` cycles whose exponents, x_rms, z and share_impacts lie outside the intervals that
+/// should miss 31.7, 4.55 and 0.27 %.
 void print_coverage(int windows, int cycles, int threads);
 
 }  // namespace vines::hunt

@@ -81,6 +81,10 @@ Json measured_point() {
                  "with the default set: the motion with the smallest x_max"}),
             optional(
                 {"starts", list_of(reference("SweepMotion")), "with the default set: all motions"}),
+            optional(
+                {"lifetime", object_of(values_of(properties::lifetime)),
+                 "with the default set: lifetime of chaos in forcing cycles, from all motions, if "
+                 "captures occur at a constant rate"}),
             depends()});
 }
 

@@ -218,6 +218,13 @@ FieldTable output_rows() {
                         "raw_product ((33) unscaled in double precision, as in the paper)",
          .fallback = estimators,
          .choices = estimators},
+        {.name = "settle_cycles",
+         .type = FieldType::integer,
+         .unit = dimensionless,
+         .description = "with regime: further cycles, at most, for which a chaotic run is "
+                        "continued to find out whether a periodic orbit captures it",
+         .fallback = 0,
+         .range = Range{0, 1e6}},
         {.name = "samples_per_cycle",
          .unit = dimensionless,
          .description = "samples of the series per forcing cycle",

@@ -42,6 +42,13 @@ FieldTable sweep_rows() {
          .description = "number of transient forcing cycles before the measured ones",
          .fallback = 200,
          .range = Range{0, 1e6}},
+        {.name = "settle_cycles",
+         .type = FieldType::integer,
+         .unit = dimensionless,
+         .description = "further cycles, at most, for which a chaotic motion is continued, without "
+                        "exponents, to find out whether a periodic orbit captures it",
+         .fallback = 0,
+         .range = Range{0, 1e6}},
         {.name = "carry_state",
          .type = FieldType::choice,
          .description = "none: each point starts from the initial state of base; up, down: from "

@@ -224,7 +224,8 @@ using Warning = std::variant<
     warning::RawProductOverflows, warning::SumRuleMissed, warning::NoExponents, warning::RankLost,
     warning::NearlyTangent, warning::TransfersCut, warning::ModuliCut, warning::SectionsCut,
     warning::StretchesCut, warning::OrbitSearchStopped, warning::CapturedTransient,
-    warning::NotStationary, warning::NoManifold, warning::PerturbedRunCut, warning::NoDistanceSlope>;
+    warning::NotStationary, warning::NoManifold, warning::PerturbedRunCut,
+    warning::NoDistanceSlope>;
 
 /// Appends the warnings about a product. If `histories` are requested: all; otherwise only the
 /// violation of the sum rule.

@@ -87,10 +87,10 @@ double variance_with_fit(const std::vector<double>& off, std::size_t fitted) {
     const double independent = covariance(0);
     double variance = independent;
     for (std::size_t lag = 1; lag <= lags; ++lag)
-        variance += (1 + elementary::cos(
-                             std::numbers::pi * static_cast<double>(lag) /
-                             static_cast<double>(lags))) *
-                    covariance(lag);
+        variance +=
+            (1 + elementary::cos(
+                     std::numbers::pi * static_cast<double>(lag) / static_cast<double>(lags))) *
+            covariance(lag);
     // Corrects for the fitted part and for the removed mean.
     return std::max(variance, least_variance * independent) / (1 - 0.75 * dependent) /
            (1 - static_cast<double>(fitted) / n);

@@ -62,13 +62,12 @@ void Energy::on_stretch(const Stretch& stretch) {
 void Energy::add_steps(const Law& law, const Oscillation& begin, double tau, double duration) {
     do {
         const double part = std::clamp(next_step_ - tau, 0.0, duration);
-        const Integrals sum = sum_ + (last_.in_closed_form
-                                          ? law.antiderivative->over_time(part) +
-                                                law.antiderivative->at(law.flow->after(begin, part))
-                                          : law.quadrature->over(begin, part));
+        const Integrals sum =
+            sum_ + (last_.in_closed_form ? law.antiderivative->over_time(part) +
+                                               law.antiderivative->at(law.flow->after(begin, part))
+                                         : law.quadrature->over(begin, part));
         at_steps_.push_back({sum(x_squared), sum(x_dot_squared), impacts_});
-        next_step_ =
-            at_steps_.size() < steps_.count() ? steps_.end_of(at_steps_.size()) : infinity;
+        next_step_ = at_steps_.size() < steps_.count() ? steps_.end_of(at_steps_.size()) : infinity;
     } while (next_step_ <= tau + duration);
 }
 
@@ -161,7 +160,8 @@ EnergyBalance Energy::balance(const Interval& window) const {
         .rms = rms,
         .peak = peak_,
         .rms_error = error_of_sum(squares) / observed / (2 * rms),
-        .share_impacts_error = error_of_sum(excess) / (before.impacts + 2 * p.zeta() * before.x_dot_squared),
+        .share_impacts_error =
+            error_of_sum(excess) / (before.impacts + 2 * p.zeta() * before.x_dot_squared),
         .difference_of_halves = difference_of_halves(squares)};
 }
 

@@ -30,6 +30,8 @@ constexpr double captured_within = 0.1;
 constexpr std::size_t transient_history = 4096;
 // A chaotic run is continued in rounds of this many cycles.
 constexpr long cycles_of_round = 1024;
+// More impacts per cycle than any motion has except endless chatter (R = 1).
+constexpr long most_impacts_per_cycle = 1000;
 // Longest time, in cycles, in which the next contact of a flying ball is searched.
 constexpr double longest_flight = 10000;
 
@@ -231,15 +233,14 @@ void examine_before(
         return;
     const TransferProduct& product = before.product();
     capture.before = product.qr();
-    capture.chaotic_before =
-        verdict_by_exponents(growth_of(product)) == Verdict::chaotic ||
-        shows_chaotic_transient(product.qr_history(), product.start_tau());
+    capture.chaotic_before = verdict_by_exponents(growth_of(product)) == Verdict::chaotic ||
+                             shows_chaotic_transient(product.qr_history(), product.start_tau());
 }
 
 /// Continues a chaotic run until a periodic orbit captures it or settle_cycles have passed.
 void settle_later(
-    const Parameters& p, std::span<const State> states, const State& scale,
-    const RegimeEvidence& e, Regime& r) {
+    const Parameters& p, std::span<const State> states, const State& scale, const RegimeEvidence& e,
+    Regime& r) {
     State s = states.back();
     const long end = e.stroboscopic.first() + static_cast<long>(states.size()) - 1;
     const long cycles = std::lround(e.settle_cycles);
@@ -247,8 +248,11 @@ void settle_later(
         round = std::min(cycles_of_round, cycles - done);
         StroboscopicRecord on(p);
         Observer* const observers[] = {&on};
-        const double duration = static_cast<double>(round) * p.cycle() * (1 + past_last_cycle);
-        if (!follow(p, s, 0, duration, e.stop, observers)) return;
+        const Limits limits{
+            .tau_end = static_cast<double>(round) * p.cycle() * (1 + past_last_cycle),
+            .max_impacts = round * most_impacts_per_cycle,
+            .stop = e.stop};
+        if (simulate(p, s, limits, observers).reason != End::tau_end) return;
         s = on.states.back();
         bool tried = false;
         r.orbit = orbit_at_end(p, on.states, scale, near_return_if_chaotic, e.stop, tried);
@@ -330,8 +334,8 @@ Regime regime_of(
         if (r.orbit) r.z = static_cast<double>(r.orbit->contacts) / r.orbit->cycles;
         if (r.capture && exponents_before) examine_before(p, start, e, *r.capture);
         if (r.contacts == 0 && !r.orbit)
-            r.untouched = untouched_end(
-                p, states.back(), e.stroboscopic.tau(states.size() - 1), e.stop);
+            r.untouched =
+                untouched_end(p, states.back(), e.stroboscopic.tau(states.size() - 1), e.stop);
     }
     r.type = type_of(r);
     return r;

@@ -66,7 +66,7 @@ struct Regime {
         std::optional<double> next_contact;  ///< tau; empty if it is later than 10,000 cycles
     };
     std::optional<Untouched> untouched;  ///< end of a run without contacts in its window
-    bool search_stopped = false;  ///< RegimeEvidence::stop ended the search for an orbit
+    bool search_stopped = false;         ///< RegimeEvidence::stop ended the search for an orbit
 };
 
 // Longest period that is searched for, cycles.
@@ -85,7 +85,8 @@ struct RegimeEvidence {
     Verdict by_exponents = Verdict::not_decided;
     /// By the exponents the motion can be quasi-periodic (can_be_quasi_periodic()).
     bool neutral = false;
-    double settle_cycles = 0;  ///< longest continuation of a chaotic run, to find out where it settles
+    double settle_cycles =
+        0;  ///< longest continuation of a chaotic run, to find out where it settles
     std::function<bool()> stop = {};  ///< ends the search for an orbit, see Limits::stop
 };
 

@@ -16,8 +16,9 @@ namespace {
 
 constexpr std::size_t most_points_of_torus = 2048, fewest_points_of_torus = 128;
 constexpr int most_curves = 6, lines_tried = 4;
-// Largest ratios of slope and curvature: 1 for a smooth curve, 4 and 16 for a set with a thickness.
-constexpr double most_slope_ratio = 1.5, most_curvature_ratio = 2;
+// Largest deviation of the ratios of length and curvature from 1: a set with a thickness has 4 and
+// 16.
+constexpr double length_tolerance = 0.1, curvature_tolerance = 0.4;
 constexpr std::size_t coarse_neighbours = 4;
 // Largest gap between phases, in turns.
 constexpr double most_phase_gap = 0.05;
@@ -112,8 +113,7 @@ double median_of(std::vector<double> values) {
     return *middle;
 }
 
-/// The points in the order of their phases; slope and curvature of the curve through them, as
-/// medians.
+/// The points in the order of their phases; length and median curvature of the curve through them.
 class SortedPoints {
 public:
     SortedPoints(std::span<const State> points, const State& scale, double frequency)
@@ -133,22 +133,23 @@ public:
     }
 
     struct Shape {
-        double slope, curvature;
+        double length, curvature;
     };
     /// From neighbours that are `step` places apart.
     Shape shape(std::size_t step) const {
-        std::vector<double> slopes, curvatures;
+        double length = 0;
+        std::vector<double> curvatures;
         const std::size_t n = phases_.size();
         for (std::size_t i = 0; i < n; ++i) {
             const std::size_t middle = (i + step) % n;
             const double before = apart(i, step), after = apart(middle, step);
             const State &left = at(i), &here = at(middle), &right = at(middle + step);
-            const Eigen::Vector4d line = (after * vector_of(left) + before * vector_of(right)) /
-                                         (before + after);
-            slopes.push_back(distance(left, here, scale_) / before);
+            const Eigen::Vector4d line =
+                (after * vector_of(left) + before * vector_of(right)) / (before + after);
+            length += distance(left, here, scale_) / static_cast<double>(step);
             curvatures.push_back(distance(here, state_of(line), scale_) / (before * after));
         }
-        return {median_of(std::move(slopes)), median_of(std::move(curvatures))};
+        return {length, median_of(std::move(curvatures))};
     }
 
 private:
@@ -163,6 +164,24 @@ private:
     std::vector<std::pair<double, std::size_t>> phases_;
 };
 
+/// True if points of another curve are farther from these than neighbours on a curve are from each
+/// other: they are not further points of the same curve.
+bool lie_apart(std::span<const State> points, std::span<const State> others, const State& scale) {
+    std::vector<double> nearest, neighbours;
+    const std::size_t examined = std::min<std::size_t>(others.size(), 64);
+    const auto to_nearest = [&](const State& from, std::size_t without) {
+        double distance_to = infinity;
+        for (std::size_t k = 0; k < points.size(); ++k)
+            if (k != without) distance_to = std::min(distance_to, distance(from, points[k], scale));
+        return distance_to;
+    };
+    for (std::size_t k = 0; k < examined; ++k) {
+        nearest.push_back(to_nearest(others[k], points.size()));
+        neighbours.push_back(to_nearest(points[k], k));
+    }
+    return median_of(std::move(nearest)) > 4 * median_of(std::move(neighbours));
+}
+
 /// Evidence that points at equal intervals, of which one lies on each curve, rotate on it.
 std::optional<QuasiPeriodic> on_one_curve(std::span<const State> points, const State& scale) {
     const Signal signal = windowed(points);
@@ -172,16 +191,18 @@ std::optional<QuasiPeriodic> on_one_curve(std::span<const State> points, const S
         const double largest_gap = sorted.largest_gap();
         if (largest_gap > most_phase_gap) continue;
         const auto fine = sorted.shape(1), coarse = sorted.shape(coarse_neighbours);
-        const double slope_ratio = fine.slope / coarse.slope,
+        const double length_ratio = fine.length / coarse.length,
                      curvature_ratio = fine.curvature / coarse.curvature;
-        if (!(slope_ratio < most_slope_ratio && curvature_ratio < most_curvature_ratio)) continue;
+        if (!(std::abs(length_ratio - 1) < length_tolerance &&
+              std::abs(curvature_ratio - 1) < curvature_tolerance))
+            continue;
         const double width = 1.0 / static_cast<double>(points.size());
         double error = 0;
         for (const auto& part : {first, last})
             error = std::max(error, std::abs(refined(windowed(part), line, width) - line));
         const double turns = line - std::round(line);
-        return QuasiPeriodic{
-            std::abs(turns), error, 1, points.size(), largest_gap, slope_ratio, curvature_ratio};
+        return QuasiPeriodic{std::abs(turns), error,          1, points.size(), largest_gap,
+                             length_ratio,    curvature_ratio};
     }
     return std::nullopt;
 }
@@ -194,11 +215,14 @@ std::optional<QuasiPeriodic> quasi_periodic(std::span<const State> states, const
     for (int curves = 1; curves <= most_curves; ++curves) {
         const auto apart = static_cast<std::size_t>(curves);
         if (states.size() / apart < fewest_points_of_torus) break;
-        std::vector<State> points;
-        for (std::size_t k = states.size() % apart; k < states.size(); k += apart)
+        std::vector<State> points, others;
+        for (std::size_t k = states.size() % apart; k < states.size(); k += apart) {
             points.push_back(states[k]);
+            if (curves > 1) others.push_back(states[k + 1]);
+        }
         auto found = on_one_curve(points, scale);
         if (!found) continue;
+        if (curves > 1 && !lie_apart(points, others, scale)) return std::nullopt;
         found->curves = curves;
         found->rotation_number /= curves;
         found->error /= curves;

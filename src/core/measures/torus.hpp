@@ -1,15 +1,16 @@
 // Quasi-periodic motion: evidence that the stroboscopic section is a smooth closed curve on which
 // the motion rotates.
 //
-// A motion on a two-frequency torus meets the section at points s(nu k), k = 0, 1, ..., where s is a
-// smooth function with period 1. The rotation number nu is a strong line of the spectrum; with a
+// A motion on a two-frequency torus meets the section at points s(nu k), k = 0, 1, ..., where s is
+// a smooth function with period 1. The rotation number nu is a strong line of the spectrum; with a
 // Hann window its frequency has an error of order 1/N^4. Points are sorted by their phases, nu k
 // modulo 1. On a smooth curve the distance of two neighbours is proportional to that of their
 // phases, and a point deviates from the line between its neighbours by the product of both phase
-// distances times half the curvature: slope and curvature are the same from nearest neighbours and
-// from every fourth point. In a chaotic band, however thin, or on a curve that is still being
-// approached, they grow by 4 and 16. If the torus meets the section in several curves, which the
-// motion visits in turn, every m-th point lies on the same one.
+// distances times half the curvature: the length of the curve and its curvature are the same from
+// nearest neighbours and from every fourth point. In a chaotic band that is thicker than these
+// deviations, or on a curve that is still being approached, they are up to 4 and 16 times as large.
+// If the torus meets the section in several curves, which the motion visits in turn, every m-th
+// point lies on the same one.
 #pragma once
 
 #include <optional>
@@ -26,9 +27,9 @@ struct QuasiPeriodic {
     int curves;          ///< closed curves in the section
     std::size_t points;  ///< examined points of one of them
     double largest_gap;  ///< between the phases of neighbours, turns
-    /// Median slope and curvature from nearest neighbours, over those from every fourth point: about
-    /// 1 for a smooth curve.
-    double slope_ratio, curvature_ratio;
+    /// Length and median curvature from nearest neighbours, over those from every fourth point:
+    /// about 1 for a smooth curve.
+    double length_ratio, curvature_ratio;
 };
 
 /// Evidence from states at successive whole cycles, of which the last 2048, at most

@@ -371,8 +371,7 @@ void Lyapunov::on_impact(const Impact& impact) {
 }
 
 const TransferProduct& Lyapunov::product() {
-    if (chatters_ && !(product_.sum_rule_residual() <= most_residual))
-        product_.end_sticking();
+    if (chatters_ && !(product_.sum_rule_residual() <= most_residual)) product_.end_sticking();
     chatters_ = false;
     return product_;
 }

@@ -4,9 +4,9 @@
 // density at frequency zero. It is estimated with sine tapers (Riedel and Sidorenko, IEEE Trans.
 // Signal Process. 43, 1995): the k-th taper is sqrt(2/(N+1)) sin(pi k n/(N+1)), n = 1 to N; the
 // squared sums of the tapered steps are nearly independent, each with one degree of freedom. The
-// mean of the steps is subtracted first, which removes the part (sum of v_k)^2/N of the k-th square:
-// together .96 of 8. About seven degrees of freedom remain, so that (mean - truth)/error follows
-// Student's distribution with seven degrees of freedom: wider intervals than the normal
+// mean of the steps is subtracted first, which removes the part (sum of v_k)^2/N of the k-th
+// square: together .96 of 8. About seven degrees of freedom remain, so that (mean - truth)/error
+// follows Student's distribution with seven degrees of freedom: wider intervals than the normal
 // distribution, because the error is itself an estimate.
 #pragma once
 
@@ -21,7 +21,8 @@ namespace vines {
 
 /// Steps of equal duration into which a window is divided.
 inline constexpr int error_steps = 128;
-/// Fewest steps with a standard error. A run that ends within its window has fewer than error_steps.
+/// Fewest steps with a standard error. A run that ends within its window has fewer than
+/// error_steps.
 inline constexpr std::size_t fewest_error_steps = 32;
 
 /// Degrees of freedom of all standard errors.
@@ -41,9 +42,7 @@ public:
         if (cycles >= fewest_error_steps) count_ = static_cast<std::size_t>(cycles);
     }
     std::size_t count() const { return count_; }
-    double duration() const {
-        return (window_.to - window_.from) / static_cast<double>(count_);
-    }
+    double duration() const { return (window_.to - window_.from) / static_cast<double>(count_); }
     double end_of(std::size_t step) const {
         return step + 1 == count_ ? window_.to
                                   : window_.from + static_cast<double>(step + 1) * duration();

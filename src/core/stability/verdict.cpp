@@ -15,6 +15,9 @@ namespace {
 
 // A shorter history gives no standard error.
 constexpr std::size_t least_entries = 32;
+// Entries that determine the standard error of a part of a history: twice as many as the tapers
+// resolve.
+constexpr std::size_t least_entries_of_transient = 18;
 // 1/10 of the impacts counts as transient.
 constexpr std::size_t transient_part = 10;
 
@@ -116,7 +119,7 @@ constexpr double three_sigma_probability = 0.00135;
 }  // namespace
 
 bool shows_chaotic_transient(const ExponentHistory& h, double start) {
-    if (h.tau.size() < least_entries) return false;
+    if (h.tau.empty()) return false;
     const auto sum_at = [&](std::size_t k) { return h.lambda[k][0] * (h.tau[k] - start); };
     std::size_t lowest = 0, first = 0, last = 0;
     double growth = 0;
@@ -125,7 +128,7 @@ bool shows_chaotic_transient(const ExponentHistory& h, double start) {
         if (sum_at(k) - sum_at(lowest) > growth)
             growth = sum_at(k) - sum_at(lowest), first = lowest, last = k;
     }
-    if (growth < least_transient_growth || last - first < least_entries) return false;
+    if (growth < least_transient_growth || last - first < least_entries_of_transient) return false;
     const auto steps = even_steps(h, start, first, last, 1, 0);
     const double late = std::accumulate(steps.begin() + error_steps / 2, steps.end(), 0.0);
     // A sum of steps with zero mean rises above its lowest value, somewhere in the history, as

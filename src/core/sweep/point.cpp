@@ -38,6 +38,7 @@ AnalysisRequest wanted_of(const Parameters& p, const State& start, const PointOp
         .window = {0, tau_end},
         .parts = {.section = o.section != SectionKind::none, .energy = true, .regime = true},
         .estimators = qr_alone,
+        .settle_cycles = o.settle_cycles,
         .section_phase = o.section_phase,
         .most_points = o.section_points,
         .most_listed = 1};
@@ -50,10 +51,30 @@ Regime without_lists(Regime regime) {
     return regime;
 }
 
-/// Verdict on the steady state: a capture outweighs the transient before it.
+/// A capture outweighs the transient before it.
 Verdict final_verdict(Verdict verdict, const Regime& regime) {
     if (!regime.capture || verdict == Verdict::none) return verdict;
     return regime.type == RegimeType::none ? Verdict::none : Verdict::regular;
+}
+
+/// lambda1 from the window's start to the last entry of the history up to tau.
+double lambda1_until(const TransferProduct& product, double tau) {
+    const ExponentHistory& h = product.qr_history();
+    if (h.tau.empty() || tau >= h.tau.back()) return product.qr()[0];
+    const auto after = std::ranges::upper_bound(h.tau, tau);
+    return after == h.tau.begin() ? nan : h.lambda[after - h.tau.begin() - 1][0];
+}
+
+/// PointResult::chaotic_cycles.
+std::optional<double> chaotic_cycles_of(const Analysis& a, double settle_cycles, double cycle) {
+    const auto& capture = a.regime->capture;
+    const TransferProduct& product = a.exponents->product;
+    const bool is_chaotic = a.exponents->judgement.verdict == Verdict::chaotic;
+    if (!is_chaotic &&
+        !(capture && shows_chaotic_transient(product.qr_history(), product.start_tau())))
+        return std::nullopt;
+    if (capture && capture->tau) return *capture->tau / cycle;
+    return a.reached.to / cycle + (is_chaotic && !capture ? settle_cycles : 0);
 }
 
 /// Rms of the steady motion without absorber, or, if none exists, from the same start.
@@ -114,6 +135,11 @@ void PointRun::conclude(const Outcome& outcome) {
     r.lambda = a.exponents->product.qr();
     r.standard_error = a.exponents->growth.standard_error;
     r.verdict = final_verdict(a.exponents->judgement.verdict, *a.regime);
+    r.chaotic_cycles = chaotic_cycles_of(a, options_.settle_cycles, p.cycle());
+    if (const auto& capture = a.regime->capture) {
+        r.lambda1_before = lambda1_until(a.exponents->product, capture->tau.value_or(infinity));
+        r.lambda1_after = capture->after[0];
+    }
     r.regime = without_lists(std::move(*a.regime));
     r.x_max = energy.peak;
     r.x_rms = energy.rms;
@@ -191,6 +217,44 @@ std::vector<std::string> start_names(std::span<const SweepPoint> row) {
 }
 
 }  // namespace
+
+namespace {
+
+/// Mean of a Poisson distribution whose probability of at most `count` events is `probability`.
+double poisson_mean(int count, double probability) {
+    const auto at_most = [count](double mean) {
+        double term = elementary::exp(-mean), sum = term;
+        for (int k = 1; k <= count; ++k) sum += term *= mean / k;
+        return sum;
+    };
+    double low = 0, high = 50;
+    for (int step = 0; step < 60; ++step) {
+        const double middle = 0.5 * (low + high);
+        (at_most(middle) > probability ? low : high) = middle;
+    }
+    return 0.5 * (low + high);
+}
+
+}  // namespace
+
+Lifetime lifetime_of(std::span<const Motion> motions) {
+    constexpr double outside = 0.025;
+    Lifetime life{};
+    double cycles = 0;
+    for (const Motion& m : motions) {
+        if (!m.result.measured || !m.result.chaotic_cycles) continue;
+        cycles += *m.result.chaotic_cycles;
+        life.captured += m.result.regime.capture.has_value();
+        ++life.runs;
+    }
+    if (life.runs == 0) return life;
+    life.low = cycles / poisson_mean(life.captured, outside);
+    if (life.captured > 0) {
+        life.mean = cycles / life.captured;
+        life.high = cycles / poisson_mean(life.captured - 1, 1 - outside);
+    }
+    return life;
+}
 
 std::vector<const Motion*> ranked(const SweepPoint& point) {
     std::vector<const Motion*> motions;

@@ -43,7 +43,9 @@ enum class SectionKind { none, impact, stroboscopic };
 struct PointOptions {
     double transient_cycles = 200;  ///< run before the measurement; whole cycles
     double cycles = 1000;           ///< measured; whole cycles
-    long max_impacts = 1000000;     ///< of the measured part; see transient_impacts_per_cycle
+    /// Cycles for which a chaotic motion is continued to see whether an orbit captures it.
+    double settle_cycles = 0;
+    long max_impacts = 1000000;  ///< of the measured part; see transient_impacts_per_cycle
     SectionKind section = SectionKind::none;
     std::size_t section_points = 200;  ///< keeps the last ones
     double section_phase = 0;          ///< stroboscopic section: rad after each whole cycle
@@ -59,8 +61,14 @@ struct PointResult {
     /// With PointOptions::carry: state at the first whole cycle at or after the measured part.
     std::optional<State> at_end;
     Exponents lambda, standard_error;  ///< qr
-    Verdict verdict;                   ///< of the steady state
-    Regime regime;                     ///< without its lists
+    /// On the orbit that captures the motion, if one does; otherwise on the measured part.
+    Verdict verdict;
+    /// lambda1 up to the capture and of the orbit; empty without a capture.
+    std::optional<double> lambda1_before, lambda1_after;
+    /// Cycles, from the start of the measured part, for which a motion is known to be chaotic:
+    /// until its capture, or as long as it was followed. Empty if no chaos is shown.
+    std::optional<double> chaotic_cycles;
+    Regime regime;  ///< without its lists
     /// m; m; x_rms over that of the steady motion (free decay: same start) without absorber.
     double x_max, x_rms, x_rms_ratio;
     double x_rms_error, share_impacts_error;  ///< standard errors (EnergyBalance)
@@ -130,6 +138,16 @@ struct SweepPoint {
     std::vector<Motion> motions;
     std::optional<Motion> second;  ///< from a second start, to detect dependence on the start
 };
+
+/// Lifetime of chaotic transients, in forcing cycles, from motions of which some were captured.
+struct Lifetime {
+    std::optional<double> mean;       ///< cycles of chaos per capture
+    std::optional<double> low, high;  ///< 95 % interval; `high` and `mean` empty without a capture
+    int captured, runs;
+};
+/// Lifetime from all motions with shown chaos, for captures at a constant rate; empty values if
+/// there are none.
+Lifetime lifetime_of(std::span<const Motion> motions);
 
 /// Measured motions in ascending order of x_max: the worst is the last.
 std::vector<const Motion*> ranked(const SweepPoint& point);

@@ -21,15 +21,23 @@ struct Judged {
     Judgement verdict;
     double lambda1;
 };
-inline Judged judged(const Parameters& p, const State& start, double cycles) {
+inline Judged judged(
+    const Parameters& p, const State& start, double cycles, double settle_cycles = 0) {
     Rhythm rhythm(p, {0, cycles * p.cycle()}, everything);
     StroboscopicRecord stroboscopic(p);
     Lyapunov lyapunov(p, 0, cycles * p.cycle(), qr_alone);
     Observer* const observers[] = {&rhythm, &stroboscopic, &lyapunov};
     const Outcome outcome = simulate(p, start, {cycles * p.cycle(), 10000000, {}}, observers);
     const Growth growth = growth_of(lyapunov.product());
-    Regime regime =
-        regime_of(p, start, {rhythm, stroboscopic, 0, outcome.tau, verdict_by_exponents(growth)});
+    Regime regime = regime_of(
+        p, start,
+        {.rhythm = rhythm,
+         .stroboscopic = stroboscopic,
+         .tau_start = 0,
+         .tau_end = outcome.tau,
+         .by_exponents = verdict_by_exponents(growth),
+         .neutral = can_be_quasi_periodic(growth),
+         .settle_cycles = settle_cycles});
     const Judgement verdict = judge(growth, regime, lyapunov.product().start_tau());
     return {std::move(regime), verdict, growth.lambda1};
 }

@@ -164,9 +164,7 @@ TEST_CASE("the standard errors of x_rms, the fraction of impacts and z are those
         double value = 0, square = 0, variance = 0;
         void add(double v, double error) { value += v, square += v * v, variance += error * error; }
         /// Stated error over the standard deviation.
-        double ratio() const {
-            return std::sqrt(variance / (square - value * value / windows));
-        }
+        double ratio() const { return std::sqrt(variance / (square - value * value / windows)); }
     } rms, share, z;
     State state = default_state(p);
     for (int k = 0; k < windows; ++k) {
@@ -211,7 +209,6 @@ TEST_CASE("the smallest peak in a cycle is that of dense samples") {
             peak = std::max(peak, std::abs(series.series.x[i]));
         }
         CHECK(
-            cycle_peaks.least() ==
-            doctest::Approx(*std::ranges::min_element(peaks)).epsilon(1e-5));
+            cycle_peaks.least() == doctest::Approx(*std::ranges::min_element(peaks)).epsilon(1e-5));
     }
 }

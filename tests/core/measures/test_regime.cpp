@@ -175,3 +175,65 @@ TEST_CASE("without time to repeat the run, a capture is dated from the kept stat
     REQUIRE(r.capture);
     CHECK(r.capture->tau == last.tau_of(last.first()));
 }
+
+TEST_CASE("chaos before a capture is shown though the mean over the whole run is not chaotic") {
+    Parameters p = table1(0.0038, Damping::equation_of_motion);
+    p.R_plus = p.R_minus = 0.9;
+    const double cycle = p.cycle();
+    for (const double tau : {300.0, 500.0})
+        CHECK(judged(p, default_state(p), tau / cycle).verdict.verdict == Verdict::chaotic);
+    const Judged whole = judged(p, default_state(p), 748 / cycle);
+    REQUIRE(whole.regime.capture);
+    CHECK(whole.regime.capture->chaotic_before == true);
+    CHECK(whole.verdict.reason == VerdictReason::transient);
+}
+
+TEST_CASE("growth in one step, algebraic growth and a driftless sum show no chaotic transient") {
+    const auto history_of = [](auto sum_at) {
+        ExponentHistory h;
+        for (int k = 1; k <= 1000; ++k) {
+            h.tau.push_back(k);
+            h.lambda.push_back({sum_at(k) / k, 0, 0, 0});
+        }
+        return h;
+    };
+    CHECK(shows_chaotic_transient(
+        history_of([](int k) { return 0.1 * std::min(k, 500) - 0.2 * std::max(0, k - 500); }), 0));
+    CHECK_FALSE(shows_chaotic_transient(history_of([](int k) { return k < 500 ? 0.0 : 60.0; }), 0));
+    CHECK_FALSE(shows_chaotic_transient(history_of([](int k) { return 3 * std::log(k); }), 0));
+    std::mt19937_64 engine(3);
+    std::normal_distribution<double> noise;
+    int shown = 0;
+    for (int trial = 0; trial < 1000; ++trial) {
+        double sum = 0;
+        shown += shows_chaotic_transient(history_of([&](int) { return sum += noise(engine); }), 0);
+    }
+    CHECK(shown <= 5);
+}
+
+TEST_CASE("a ball that flies without impacts is not judged before its next contact") {
+    Parameters p = table1(1, Damping::equation_of_motion);
+    const State flying{0, 0, 1e-4, 0}, resting{0, 0, 0, 0};
+    const Judged due = judged(p, flying, 150);
+    CHECK(due.verdict.verdict == Verdict::not_decided);
+    CHECK(due.verdict.reason == VerdictReason::next_contact);
+    REQUIRE(due.regime.untouched);
+    const auto contacts = record(p, flying, 20000, 1).impacts;
+    CHECK(due.regime.untouched->next_contact.value() == doctest::Approx(contacts.at(0).tau));
+    CHECK(judged(p, resting, 30).verdict.reason == VerdictReason::untouched);
+    // The oscillator, at rest at first, will reach the resting ball's wall.
+    p.b = 0.01;
+    const Judged growing = judged(p, resting, 3);
+    CHECK(growing.verdict.reason == VerdictReason::next_contact);
+    CHECK(growing.regime.untouched->next_contact);
+}
+
+TEST_CASE("a chaotic run is continued on request until an orbit captures it") {
+    const Parameters p = table1(0.021734177215189873, Damping::closed_form);
+    CHECK_FALSE(judged(p, default_state(p), 1000).regime.capture);
+    const Judged j = judged(p, default_state(p), 1000, 100000);
+    CHECK(j.verdict.verdict == Verdict::chaotic);
+    REQUIRE(j.regime.capture);
+    CHECK(j.regime.capture->tau.value() > 1000 * p.cycle());
+    CHECK(j.regime.orbit->cycles == 3);
+}

@@ -188,3 +188,35 @@ TEST_CASE(
         CHECK(starts.size() + 2 <= most_starts);  // the last states of two neighbours follow
     }
 }
+
+TEST_CASE("a captured motion reports lambda1 before and after its capture") {
+    const auto [p, captured] = captured_transient();
+    const double cycles = std::ceil(1.5 * captured / p.cycle());
+    const PointResult r =
+        measure(p, default_state(p), {.transient_cycles = 0, .cycles = cycles}, {});
+    REQUIRE(r.lambda1_before);
+    CHECK(r.verdict == Verdict::regular);
+    CHECK(*r.lambda1_before > 0.05);
+    CHECK(*r.lambda1_after < 0);
+    CHECK(r.chaotic_cycles.value() == doctest::Approx(captured / p.cycle()).epsilon(0.05));
+}
+
+TEST_CASE("the lifetime of chaos is the time of all chaotic motions over their captures") {
+    const auto motion = [](std::optional<double> cycles, bool captured) {
+        Motion m{};
+        m.result.measured = true;
+        m.result.chaotic_cycles = cycles;
+        if (captured) m.result.regime.capture.emplace();
+        return m;
+    };
+    const Motion ensemble[] = {
+        motion(1000, true), motion(3000, true), motion(5000, false), motion({}, true)};
+    const Lifetime life = lifetime_of(ensemble);
+    CHECK(life.runs == 3);
+    CHECK(life.captured == 2);
+    CHECK(life.mean.value() == doctest::Approx(4500));
+    // 2 * 9000 over the quantiles .975 and .025 of chi-square with 6 and 4 degrees of freedom.
+    CHECK(life.low.value() == doctest::Approx(18000 / 14.4494).epsilon(1e-4));
+    CHECK(life.high.value() == doctest::Approx(18000 / 0.484419).epsilon(1e-4));
+    CHECK_FALSE(lifetime_of(std::span(ensemble).last(1)).low);
+}
