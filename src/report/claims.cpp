@@ -63,7 +63,7 @@ void positive_exponents(Report& report, const PositiveExponents& paper, const Bo
         {paper.where, "lambda1 (qr) over its standard error", paper.chaotic},
         {over_error(here), over_error(other),
          with_error(here) + "; by eq. (1) " + with_error(other)},
-        {{3, infinity}, "positive by three standard errors"});
+        {{student_95, infinity}, "positive: the 95 % interval lies above zero"});
     const Positive found = all_positive(here.product.raw_product_history());
     report.add(
         {paper.where,

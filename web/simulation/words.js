@@ -6,13 +6,13 @@ import {regimes} from "../shared/quantities.js";
 import {run} from "./run.js";
 import {parameterLine, valueText} from "./sliders.js";
 
-const untouched = ({tau}) => (tau.length ? "no impacts in the window" : "the ball meets no wall");
+const untouched = ({verdict}) => (verdict ? "no impacts in the window" : "the ball meets no wall");
 
-function motionText({regime, exponents, energy, impacts: all}, units) {
+function motionText({regime, exponents, energy}, units) {
   const {type, periodic, capture, period_cycles: cycles, impacts_per_period: impacts} = regime;
   if (energy.peak === 0) return "at rest: no forcing, no impact";
   if (type === "none")
-    return regime.description === "no impacts" ? untouched(all) : regime.description;
+    return regime.description === "no impacts" ? untouched(exponents) : regime.description;
   const name = `${regimes[type] ?? regime.description} (${type})`;
   if (periodic) {
     const hits = type === "V" ? `, ${count(impacts, "impact")}` : "";
@@ -21,6 +21,7 @@ function motionText({regime, exponents, energy, impacts: all}, units) {
     const before = late ? `, after a chaotic transient up to ${units.at(capture.tau)}` : "";
     return `${name}, ${regime.stable ? "" : "un"}stable periodic orbit${period}${before}`;
   }
+  if (regime.quasi_periodic) return regime.description;
   const {verdict} = exponents;
   return verdict && verdict !== "not_decided" ? `${name}, ${verdict}` : name;
 }

@@ -7,8 +7,8 @@ from typing import Literal, TypedDict
 
 NUMBER_LISTS = frozenset({
     "C", "J", "M", "M_condition", "R", "T", "V", "V_velocity", "asked", "asked_s",
-    "contacts", "cycles_with", "distance", "final", "im", "impact_speed", "impacts",
-    "impulse", "impulse_N_s", "lambda", "lambda1", "lambda2", "lambda3", "lambda4",
+    "contacts", "cycles_with", "distance", "final", "high", "im", "impact_speed", "impacts",
+    "impulse", "impulse_N_s", "lambda", "lambda1", "lambda2", "lambda3", "lambda4", "low",
     "margin_F", "margin_f", "modulus", "momentum_error", "phase", "pulse_spoils_s", "re",
     "relative_speed", "relative_speed_ratio", "rounding_floor", "side", "standard_error",
     "tau", "tau_end", "tau_start", "time_difference", "time_difference_s", "time_end_s",
@@ -248,6 +248,8 @@ class SimulateFields(TypedDict, total=False):
     exponents: estimators of the Lyapunov exponents: qr (Benettin), eigenvalues (33),
         raw_product ((33) unscaled in double precision, as in the paper); default: ["qr",
         "eigenvalues", "raw_product"]
+    settle_cycles: with regime: further cycles, at most, for which a chaotic run is continued to
+        find out whether a periodic orbit captures it (dimensionless); 0 to 1e+06; default: 0
     samples_per_cycle: samples of the series per forcing cycle (dimensionless); 1 to 10000;
         default: 32
     section_phase: value of Omega tau, modulo 2 pi, at which the stroboscopic section samples
@@ -292,6 +294,7 @@ class SimulateFields(TypedDict, total=False):
     perturbation: Perturbation
     include: Iterable[Literal["series", "impacts", "exponents", "eigenvalues", "matrices", "section", "energy", "regime", "manifold"]]
     exponents: Iterable[Literal["qr", "eigenvalues", "raw_product"]]
+    settle_cycles: int
     samples_per_cycle: float
     section_phase: float
     max_points: int
@@ -313,6 +316,9 @@ class SweepFields(TypedDict, total=False):
         default: 1000
     transient_cycles: number of transient forcing cycles before the measured ones
         (dimensionless); 0 to 1e+06; default: 200
+    settle_cycles: further cycles, at most, for which a chaotic motion is continued, without
+        exponents, to find out whether a periodic orbit captures it (dimensionless); 0 to 1e+06;
+        default: 0
     carry_state: none: each point starts from the initial state of base; up, down: from the
         final state of its predecessor in ascending or descending order of the values on the
         first axis; default: "none"
@@ -334,6 +340,7 @@ class SweepFields(TypedDict, total=False):
     starts: Iterable[Start] | Literal["default set"]
     cycles: int
     transient_cycles: int
+    settle_cycles: int
     carry_state: Literal["none", "up", "down"]
     section: Literal["none", "impact", "stroboscopic"]
     section_points: int

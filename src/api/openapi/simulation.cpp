@@ -56,9 +56,9 @@ Json capture() {
           "limit ended the run, it can be later than the capture"},
          {"status", one_of({"captured", "on_its_way"}),
           "captured, or on_its_way: the run ends before its capture"},
-         {"chaotic_before", or_null(flag()), "true after a chaotic transient; null if unknown"},
+         {"chaotic_before", or_null(flag()), "true if chaos before the capture is shown, otherwise null"},
          {"exponents_before", object_of(final_keys()),
-          "exponents of the run before the capture, by qr"},
+          "exponents of the run before the capture, or of the whole run if that comes later, by qr"},
          {"exponents_after", object_of(final_keys()),
           "exponents of the orbit, from its multipliers"}});
 }
@@ -80,7 +80,7 @@ Keys orbit_keys() {
 Keys rhythm_keys() {
     return {
         {"quasi_periodic", or_null(object_of(values_of(properties::quasi_periodic))),
-         "present if the motion is on a torus: its stroboscopic section is a smooth closed curve"},
+         "null unless the motion is on a torus: its stroboscopic section is a smooth closed curve"},
         {"cycles_with", numbers(), "fractions of cycles with 0, 1, 2, ... contacts"},
         {"share_two_impacts", number(), "fraction of cycles with two contacts"},
         {"z_moving", table_of(moving_z_columns), "moving average of z"},

@@ -38,6 +38,7 @@ Json simulation_parameters() {
             {"cycles", number(), "requested length of the run in forcing cycles"},
             {"window", interval(), "requested window"},
             {"samples_per_cycle", number(), "samples of the series per forcing cycle"},
+            {"settle_cycles", number(), "as requested"},
             {"section_phase", number(), "phase of the stroboscopic section, rad"},
             {"max_points", whole(), "as requested, or as reduced by a limit of the server"},
             {"max_impacts", whole(), "as requested"},
