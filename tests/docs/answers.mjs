@@ -21,12 +21,12 @@ const platform = {...machine, b: 0.03, f: 14};
 export const simulations = [
   // Reduced and periodic; SI and periodic, with windows; a free decay in SI.
   {preset: "fig11", tau_end: 300, include: everything},
-  // Quasi-periodic.
-  {b: 0.019898, cycles: 2000, include: ["regime", "exponents"], max_points: 300},
   {preset: "fig16", include: everything, windows: [[100, 300]], perturbation: {size: 1e-8}},
   {...platform, F: 0, x0: 0.01, y0: 0.02, tau_end: 400, include: everything},
   // Tangent contacts: the oscillator swings by the width of the cavity, in units where omega0 = 1.
   {m1: 1, k1: 1, c1: 0, m2: 0.0084, F: 0, b: 0.01, R: 0.6, x0: 0.01 - 3e-17, y0: 0, tau_end: 21},
+  // Quasi-periodic.
+  {b: 0.019898, cycles: 2000, include: ["regime", "exponents"], max_points: 300},
 ];
 
 const b = (values) => [{parameter: "b", values}];
