@@ -56,9 +56,11 @@ Json capture() {
           "limit ended the run, it can be later than the capture"},
          {"status", one_of({"captured", "on_its_way"}),
           "captured, or on_its_way: the run ends before its capture"},
-         {"chaotic_before", or_null(flag()), "true if chaos before the capture is shown, otherwise null"},
+         {"chaotic_before", or_null(flag()),
+          "true if chaos before the capture is shown, otherwise null"},
          {"exponents_before", object_of(final_keys()),
-          "exponents of the run before the capture, or of the whole run if that comes later, by qr"},
+          "exponents of the run before the capture, or of the whole run if that comes later, by "
+          "qr"},
          {"exponents_after", object_of(final_keys()),
           "exponents of the orbit, from its multipliers"}});
 }
