@@ -211,7 +211,8 @@ const exponentText = ({lambda, status, standard_error: errors}) =>
 /** A motion that ends on an orbit is regular, even if its transient, part of λ₁, was not. */
 function verdictText({verdict, periodic, lambda, standard_error: errors}) {
   const way = periodic && lambda?.[0] > 2 * (errors?.[0] ?? 0);
-  return way ? "regular in the end; λ₁ includes the transient" : verdicts[verdict];
+  if (way) return "regular in the end; λ₁ includes the transient";
+  return verdict === "chaotic" ? "chaotic over the measured cycles" : verdicts[verdict];
 }
 
 const wholePercent = (share) => `${(share * 100).toFixed(0)} %`;

@@ -92,8 +92,8 @@ Keys verdict_keys() {
     return {
         optional(
             {"verdict", enum_schema<Verdict>(),
-             "chaotic, regular, not_decided, or null if there is no motion to judge; present with "
-             "qr, as the next two keys"}),
+             "chaotic over this window, regular, not_decided, or null if there is no motion to "
+             "judge; present with qr, as the next two keys"}),
         optional({"verdict_sigmas", or_null(number()), "lambda1 over its standard error"}),
         optional({"verdict_reason", text(), "reason for the verdict, a sentence"})};
 }
