@@ -101,7 +101,7 @@ struct Sentence {
         return text;
     }
     std::string operator()(const NoManifold&) const {
-        return "the manifold of two symmetric impacts needs the same R at both walls: only the "
+        return "the manifold of two symmetric impacts needs one constant R at both walls: only the "
                "run's points are given";
     }
     std::string operator()(const PerturbedRunCut& w) const {

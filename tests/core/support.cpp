@@ -59,6 +59,15 @@ Parameters table1(double b, Damping damping) {
     return p;
 }
 
+std::shared_ptr<const RestitutionTable> random_table(std::mt19937_64& engine, double speed) {
+    RestitutionTable table;
+    for (const double share : {0.3, 1.0, 2.0}) {
+        table.speed.push_back(share * speed * uniform(engine, 0.9, 1.1));
+        table.R.push_back(uniform(engine, 0.3, 0.9));
+    }
+    return std::make_shared<const RestitutionTable>(table);
+}
+
 System random_system(std::mt19937_64& engine) {
     const auto u = [&](double from, double to) { return uniform(engine, from, to); };
     System s;

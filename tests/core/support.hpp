@@ -57,6 +57,9 @@ struct CapturedTransient {
 };
 CapturedTransient captured_transient();
 
+/// A law of restitution with three points at speeds of order `speed`; rises and falls.
+std::shared_ptr<const RestitutionTable> random_table(std::mt19937_64& engine, double speed);
+
 /// A valid system and start, over the usual ranges and well beyond; reproducible by the seed.
 struct System {
     Parameters parameters;

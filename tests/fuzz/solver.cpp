@@ -39,8 +39,8 @@ public:
         }
     }
     void on_impact(const Impact& i) override {
-        const double epsilon = p_.epsilon, R = p_.restitution(i.side);
-        const double before = i.x_dot_before - i.y_dot_before,
+        const double before = i.x_dot_before - i.y_dot_before, epsilon = p_.epsilon,
+                     R = p_.restitution(i.side, std::abs(before)),
                      after = i.x_dot_after - i.y_dot_after,
                      speed = std::abs(i.x_dot_before) + std::abs(i.y_dot_before);
         const double momentum = i.x_dot_after - i.x_dot_before +

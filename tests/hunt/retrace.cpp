@@ -55,7 +55,7 @@ Retraced retrace(const Parameters& p, const State& start, const std::vector<Even
         y = lo.x - event.side * Precise(p.b);
         if (event.kind == Event::impact) {
             Collision<Precise>& c = e.collision;
-            c.R = p.restitution(event.side);
+            c.R = p.restitution(event.side, 0);
             c.x_dot_before = lo.x_dot;
             c.y_dot_before = y_dot;
             c.x_ddot_before = free.acceleration(lo, theta);

@@ -124,7 +124,7 @@ struct EnergyResult {
 /// Half cycles as points (C, V) for the slow invariant manifold: peak of |x|, mean speed of the
 /// ball.
 struct ManifoldResult {
-    std::optional<Manifold> manifold;  ///< empty if R differs between the walls
+    std::optional<Manifold> manifold;  ///< empty without one constant R of both walls
     std::vector<double> tau;           ///< end of each half cycle
     std::vector<ManifoldPoint> points;
 };
@@ -204,7 +204,7 @@ struct CapturedTransient {
 struct NotStationary {
     bool lambda1, x_rms, conservative;
 };
-struct NoManifold {};  ///< R differs between the walls; the manifold assumes equal walls
+struct NoManifold {};  ///< the manifold assumes one constant R of both walls
 /// The perturbed run ended before its reference, because it reached max_impacts or was interrupted.
 struct PerturbedRunCut {
     double tau;

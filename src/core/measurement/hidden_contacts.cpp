@@ -170,7 +170,7 @@ struct HiddenContactSearch {
     std::vector<Velocities> velocities_after(std::size_t i, double y_dot_before) const {
         const IdentifiedImpact& m = impacts[i];
         const Parameters& p = system.own();
-        const double R = p.restitution(m.side), share = p.epsilon * (1 + R) / (1 + p.epsilon),
+        const double R = p.restitution(m.side, 0), share = p.epsilon * (1 + R) / (1 + p.epsilon),
                      meets = (m.x_dot_before - m.x_dot_after) / share;
         std::vector<Velocities> all;
         const double met = m.x_dot_before - y_dot_before, x_dot = m.x_dot_before - share * met;

@@ -124,8 +124,9 @@ void append(
     const Parameters& p, const DeviationFlows& flows, const IdentifiedImpact& before,
     const IdentifiedImpact& i, TransferProduct& product) {
     Impact impact{};
-    impact.R = p.restitution(i.side);
+    impact.side = i.side;
     impact.relative_speed_before = i.x_dot_before - i.y_dot_before;
+    impact.R = p.restitution(i.side, std::abs(impact.relative_speed_before));
     impact.x_ddot_before = i.x_ddot_before;
     const double duration = i.tau - before.tau,
                  stuck = before.release ? before.release->tau - before.tau : 0;

@@ -14,7 +14,7 @@ double Impact::phase() const {
 }
 
 Impact impact_at(const Parameters& p, const Contact& contact, double x_ddot, double tau) {
-    const double R = p.restitution(contact.side), w = contact.relative_speed;
+    const double w = contact.relative_speed, R = p.restitution(contact.side, std::abs(w));
     Impact i;
     i.tau = tau;
     i.side = contact.side;
@@ -40,8 +40,8 @@ Eigen::Vector4d wall_normal() { return {0, 1, 0, -1}; }
 // S, eq. (25): the impact as a linear map of (x', x, y', y); positions are unchanged.
 Matrix4 Saltation::S() const {
     Matrix4 S = Matrix4::Identity();
-    S(0, 0) -= jump_x, S(0, 2) += jump_x;
-    S(2, 0) += jump_y, S(2, 2) -= jump_y;
+    S(0, 0) -= jump_x_dot, S(0, 2) += jump_x_dot;
+    S(2, 0) += jump_y_dot, S(2, 2) -= jump_y_dot;
     return S;
 }
 
@@ -51,18 +51,31 @@ Matrix4 Saltation::matrix() const { return S() + r() * wall_normal().transpose()
 double Saltation::condition() const {
     // M^-1 = S^-1 - S^-1 r g^T S^-1/(1 + g^T S^-1 r). S leaves positions unchanged and g depends on
     // them alone: g^T S^-1 = g^T and 1 + g^T r = -R, without large entries of r to cancel.
-    if (R == 0) return infinity;
+    if (is_singular()) return infinity;
     const Matrix4 S_inverse = S().inverse();
     return matrix().norm() * (S_inverse + S_inverse * r() * wall_normal().transpose() / R).norm();
 }
 
 Saltation saltation(const Parameters& p, const Impact& i) {
-    const double jump_y = (1 + i.R) / (1 + p.epsilon), jump_x = p.epsilon * jump_y;
+    const double R_speed =
+        p.has_constant_R() ? i.R
+                           : p.restitution_derivative(i.side, std::abs(i.relative_speed_before));
+    const double jump_y = (1 + i.R) / (1 + p.epsilon), jump_x = p.epsilon * jump_y,
+                 jump_y_dot = (1 + R_speed) / (1 + p.epsilon), jump_x_dot = p.epsilon * jump_y_dot;
     const double kappa = i.x_ddot_before / i.relative_speed_before;
     // r = (f+ - S f-)/(x'- - y'-) with f = (x'', x', 0, y'), eq. (27): a deviation shifts the
     // impact in time. x'' jumps by -2 zeta (x'+ - x'-), velocities by jump_x, jump_y times (x'- -
     // y'-).
-    return {i.R, jump_x, jump_y, jump_x * (kappa + 2 * p.zeta()), -jump_y * kappa};
+    const double two_zeta = 2 * p.zeta();
+    return {
+        .R = i.R,
+        .R_speed = R_speed,
+        .jump_x = jump_x,
+        .jump_y = jump_y,
+        .jump_x_dot = jump_x_dot,
+        .jump_y_dot = jump_y_dot,
+        .r_x = jump_x_dot * (kappa + two_zeta) + (jump_x - jump_x_dot) * two_zeta,
+        .r_y = -jump_y_dot * kappa};
 }
 
 }  // namespace vines

@@ -25,7 +25,7 @@ struct Impact {
     double x_dot_before, x_dot_after, y_dot_before, y_dot_after;
     double relative_speed_before, relative_speed_after;
     double x_ddot_before;
-    double R;      ///< restitution coefficient of this side
+    double R;      ///< restitution coefficient of this side at this speed
     bool grazing;  ///< nearly grazing: see grazing_depth
 
     double phase() const;  ///< theta in [0, 2 pi)
@@ -40,15 +40,21 @@ inline constexpr double grazing_depth = 1e-9;
 /// The impact at a contact, eq. (4): conserves x' + epsilon y', reverses x' - y' with factor R.
 Impact impact_at(const Parameters& parameters, const Contact& contact, double x_ddot, double tau);
 
-/// M = S + r g^T with g^T = [0 1 0 -1] (23) and r = (f+ - S f-)/(g^T f-), eq. (27). Stored by its
-/// factors, because the entries of r grow without bound towards grazing while every determinant of
-/// M is linear in them.
+/// M = S + r g^T with g^T = [0 1 0 -1] (23) and r = (f+ - S f-)/(g^T f-), eq. (27), where S is the
+/// derivative of the impact law (25). Stored by its factors, because the entries of r grow without
+/// bound towards grazing while every determinant of M is linear in them.
 struct Saltation {
-    double R;
-    double jump_x, jump_y;  ///< (1 + R) epsilon/(1 + epsilon) and (1 + R)/(1 + epsilon)
-    double r_x, r_y;        ///< entries 0 and 2 of r; they contain x''/(x'- - y'-)
+    double R;        ///< factor for x - y
+    double R_speed;  ///< factor for x' - y': d(R w)/dw, R for a constant R
+    /// (1 + R) epsilon/(1 + epsilon) and (1 + R)/(1 + epsilon): velocities jump by these times
+    /// x' - y'.
+    double jump_x, jump_y;
+    double jump_x_dot, jump_y_dot;  ///< the same with R_speed, for deviations of the velocities
+    double r_x, r_y;                ///< entries 0 and 2 of r; they contain x''/(x'- - y'-)
 
-    Matrix4 S() const;  ///< eq. (25)
+    double determinant() const { return R * R_speed; }
+    bool is_singular() const { return R == 0 || R_speed == 0; }
+    Matrix4 S() const;  ///< eq. (25), with R_speed
     Eigen::Vector4d r() const { return {r_x, -jump_x, r_y, jump_y}; }
     Matrix4 matrix() const;
     /// matrix() * deviations, in 13 operations per deviation.
@@ -57,9 +63,9 @@ struct Saltation {
         using Row = Eigen::Matrix<double, 1, Deviations::ColsAtCompileTime>;
         const Row rate = d.row(0) - d.row(2), gap = d.row(1) - d.row(3);
         Deviations out;
-        out.row(0) = d.row(0) - jump_x * rate + r_x * gap;
+        out.row(0) = d.row(0) - jump_x_dot * rate + r_x * gap;
         out.row(1) = d.row(1) - jump_x * gap;
-        out.row(2) = d.row(2) + jump_y * rate + r_y * gap;
+        out.row(2) = d.row(2) + jump_y_dot * rate + r_y * gap;
         out.row(3) = d.row(3) + jump_y * gap;
         return out;
     }
@@ -71,7 +77,7 @@ struct Saltation {
 /// The vector g of eq. (23): d(x - y)/dPhi, normal to both walls in state space.
 Eigen::Vector4d wall_normal();
 
-/// Saltation matrix of an impact. M has determinant R^2 and eigenvalues of moduli 1, 1, R, R.
+/// Saltation matrix of an impact. M has eigenvalues of moduli 1, 1, R, R_speed.
 Saltation saltation(const Parameters& parameters, const Impact& impact);
 
 }  // namespace vines

@@ -41,6 +41,28 @@ std::string format(double value) {
 
 }  // namespace
 
+double RestitutionTable::at(double w) const {
+    const auto after = std::ranges::upper_bound(speed, w);
+    if (after == speed.begin()) return R.front();
+    if (after == speed.end()) return R.back();
+    const auto k = static_cast<std::size_t>(after - speed.begin());
+    return R[k - 1] + (R[k] - R[k - 1]) * (w - speed[k - 1]) / (speed[k] - speed[k - 1]);
+}
+
+double RestitutionTable::derivative(double w) const {
+    const auto after = std::ranges::upper_bound(speed, w);
+    if (after == speed.begin() || after == speed.end()) return at(w);
+    const auto k = static_cast<std::size_t>(after - speed.begin());
+    return at(w) + w * (R[k] - R[k - 1]) / (speed[k] - speed[k - 1]);
+}
+
+bool Parameters::has_equal_walls() const {
+    const auto equal = [](const auto& one, const auto& other) {
+        return one == other || (one && other && *one == *other);
+    };
+    return R_plus == R_minus && equal(table_plus, table_minus);
+}
+
 SiParameters in_si(const Parameters& p, double m1, double k1) {
     SiParameters si{m1, 0, k1, p.epsilon * m1, p.G * p.epsilon, 0};
     si.c1 = p.lambda * si.m2 * si.omega0();

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cmath>
+#include <memory>
 #include <numbers>
 #include <span>
 #include <string>
@@ -34,6 +35,18 @@ struct SiParameters {
     double Omega() const { return f / f0(); }  ///< exactly 1 for f = f0()
 };
 
+/// Restitution coefficient as a function of the speed w = |x' - y'| before the impact: linear
+/// between the points, constant outside.
+struct RestitutionTable {
+    std::vector<double> speed;  ///< m per unit of tau, ascending, >= 0
+    std::vector<double> R;      ///< of equal length, in [0, 1]
+
+    double at(double w) const;
+    /// d(R w)/dw: the factor for deviations of x' - y'.
+    double derivative(double w) const;
+    bool operator==(const RestitutionTable&) const = default;
+};
+
 /// Dimensionless unless a unit is given; symbols as in the paper. The defaults are Table 1 with the
 /// b of Fig. 3; epsilon and lambda follow from the SI values of the table, which rounds them to .84
 /// % and 1.43.
@@ -46,6 +59,8 @@ struct Parameters {
     double R_minus = 0.6;                       ///< restitution coefficient where x - y = -b
     double b = 0.022;                           ///< clearance (half-width of the cavity), m
     Damping damping = Damping::equation_of_motion;
+    /// Laws that replace R_plus and R_minus, which then are their values at zero speed.
+    std::shared_ptr<const RestitutionTable> table_plus, table_minus;
 
     double zeta() const;  ///< damping ratio of x'' + 2 zeta x' + x = ...
     double A() const;     ///< forcing amplitude over epsilon, m, eq. (3)
@@ -53,7 +68,19 @@ struct Parameters {
     double cycle() const { return 2 * std::numbers::pi / Omega; }  ///< forcing period, in tau
     /// Half a cycle of the faster of forcing and oscillator, in tau.
     double faster_half_cycle() const { return std::numbers::pi / (Omega > 1 ? Omega : 1); }
-    double restitution(int side) const { return side > 0 ? R_plus : R_minus; }
+    /// R of a wall at a speed w = |x' - y'| before the impact.
+    double restitution(int side, double w) const {
+        const auto& table = side > 0 ? table_plus : table_minus;
+        return table ? table->at(w) : side > 0 ? R_plus : R_minus;
+    }
+    /// d(R w)/dw.
+    double restitution_derivative(int side, double w) const {
+        const auto& table = side > 0 ? table_plus : table_minus;
+        return table ? table->derivative(w) : side > 0 ? R_plus : R_minus;
+    }
+    bool has_constant_R() const { return !table_plus && !table_minus; }
+    /// True if both walls obey the same law.
+    bool has_equal_walls() const;
 };
 
 /// The same system in SI units, for an oscillator with mass m1 and stiffness k1.

@@ -138,7 +138,7 @@ void Run::leave_or_stick() {
     bounce_limit_ = press > 0 ? longest_bounce_ : 0;
     if (relative_speed_ != 0) {
         zeros_ = 1;
-        const double R = p_.restitution(side_);
+        const double R = p_.restitution(side_, std::abs(relative_speed_));
         // Sum of the geometric series of 2 w/press.
         const double rest = 2 * std::abs(relative_speed_) / (press * (1 - R));
         if (press > 0 && R < 1 && rest < chatter_rest &&

@@ -110,29 +110,31 @@ Volume carried(const Volume& volume, const Leg& leg) {
 
 namespace {
 
-/// M in the coordinates (x', x, z', z) with z = x - y: z' becomes -R z' + r_z z and z becomes -R
-/// z, x' gains -jump_x z' + r_x z and x gains -jump_x z.
+/// M in the coordinates (x', x, z', z) with z = x - y: z' becomes -R_speed z' + r_z z and z becomes
+/// -R z, x' gains -jump_x_dot z' + r_x z and x gains -jump_x z.
 struct Relative {
-    double R, jump_x, r_x, r_z;
-    /// R r_x - jump_x r_z, in which R x''/(x'- - y'-) cancels: x'' enters linearly everywhere
+    double R, R_speed, jump_x, jump_x_dot, r_x, r_z;
+    /// R_speed r_x - jump_x_dot r_z, in which R_speed x''/(x'- - y'-) cancels: x'' enters linearly
+    /// everywhere
     double mixed;
 };
 Relative relative(const Saltation& M) {
     const double r_z = M.r_x - M.r_y;
-    return {M.R, M.jump_x, M.r_x, r_z, M.R * M.r_x - M.jump_x * r_z};
+    return {
+        M.R, M.R_speed, M.jump_x, M.jump_x_dot, M.r_x, r_z, M.R_speed * M.r_x - M.jump_x_dot * r_z};
 }
 
 }  // namespace
 
 Area carried(const Area& w, const Saltation& M) {
-    const auto [R, jump_x, r_x, r_z, mixed] = relative(M);
+    const auto [R, R_speed, jump_x, jump_x_dot, r_x, r_z, mixed] = relative(M);
     // Components in the coordinates of x and z: 12 is x, z'; 23 is z', z.
     const double u02 = -w(1), u03 = w(0) - w(2), u12 = -w(0) - w(3), u13 = -w(4),
                  u23 = u03 + w(3) + w(5);
-    const double on_u23 = jump_x * u23;
-    const double v01 = w(0) - jump_x * (u03 - u12 - on_u23) - r_x * u13,
-                 v02 = r_z * u03 - R * u02 + mixed * u23, v03 = R * (on_u23 - u03),
-                 v12 = r_z * u13 - R * (u12 + on_u23), v13 = -R * u13, v23 = R * R * u23;
+    const double v01 = w(0) - jump_x * u03 + jump_x_dot * (u12 + jump_x * u23) - r_x * u13,
+                 v02 = r_z * u03 - R_speed * u02 + mixed * u23, v03 = R * (jump_x_dot * u23 - u03),
+                 v12 = r_z * u13 - R_speed * (u12 + jump_x * u23), v13 = -R * u13,
+                 v23 = M.determinant() * u23;
     Area out;
     out << v01, -v02, v01 - v03, -v01 - v12, -v13, v01 - v03 + v12 + v23;
     return out;
@@ -140,12 +142,12 @@ Area carried(const Area& w, const Saltation& M) {
 
 Volume carried(const Volume& volume, const Saltation& M) {
     // det(M) M^-T n.
-    const auto [R, jump_x, r_x, r_z, mixed] = relative(M);
+    const auto [R, R_speed, jump_x, jump_x_dot, r_x, r_z, mixed] = relative(M);
     const Eigen::Vector4d& n = volume.normal;
-    const double along_x_dot = n(0) + n(2), along_x = n(1) + n(3);
-    const double along_z_dot = R * (n(2) - jump_x * along_x_dot),
-                 along_z = mixed * along_x_dot + r_z * n(2) + R * (n(3) - jump_x * along_x);
-    return {{R * R * along_x_dot + along_z_dot, R * R * along_x + along_z, -along_z_dot, -along_z}};
+    const double along_x_dot = n(0) + n(2), along_x = n(1) + n(3), det = M.determinant();
+    const double along_z_dot = R * (n(2) - jump_x_dot * along_x_dot),
+                 along_z = mixed * along_x_dot + r_z * n(2) + R_speed * (n(3) - jump_x * along_x);
+    return {{det * along_x_dot + along_z_dot, det * along_x + along_z, -along_z_dot, -along_z}};
 }
 
 void Flag::pass(const Leg& leg, double epsilon) {
@@ -212,7 +214,7 @@ void PowerProduct::pass(const Leg& leg) {
 }
 
 void PowerProduct::strike(const Saltation& M) {
-    if (M.R == 0) rank_ = std::min(rank_, 3);
+    if (M.is_singular()) rank_ = std::min(rank_, 3);
     first_.matrix = M.times(first_.matrix);
     first_.rescale();
     for (int k = 0; k < 6; ++k) second_.matrix.col(k) = carried(Area(second_.matrix.col(k)), M);
@@ -221,7 +223,7 @@ void PowerProduct::strike(const Saltation& M) {
     for (int k = 0; k < 4; ++k)
         third_.matrix.col(k) = carried(Volume{third_.matrix.col(k)}, M).normal;
     third_.rescale();
-    log_det_ += 2 * elementary::log(M.R);
+    log_det_ += elementary::log(M.R) + elementary::log(std::abs(M.R_speed));
 }
 
 Moduli PowerProduct::log_moduli() const {

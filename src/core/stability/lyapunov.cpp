@@ -121,8 +121,8 @@ struct TransferProduct::Qr {
     Flag flag;
     std::array<double, 4> extracted_logs{};  // logarithms extracted from its four sizes
     double log_det = 0;                      // exact value for the flights: -2 zeta s
-    // Product of the coefficients of restitution, and the logarithm extracted from it.
-    double restitution_product = 1, log_restitution = 0;
+    // Product of the determinants of the impacts, and the logarithm extracted from it.
+    double determinant_product = 1, log_determinants = 0;
     /// Bound of the rounding error in the logarithms of length, area and volume.
     std::array<double, 3> rounding_bounds{};
     int since_rescale = 0;  // impacts since the last rescaling
@@ -138,12 +138,13 @@ struct TransferProduct::Qr {
 
     void strike(const Saltation& M) {
         const double steepness = steepness_of(M);
-        if (M.R < 1e-3 || steepness > steep) return strike_magnified(M, steepness);
+        if (std::min(M.R, std::abs(M.R_speed)) < 1e-3 || steepness > steep)
+            return strike_magnified(M, steepness);
         // Within these limits an impact and a flight of one part let no size grow by more than 1e17
         // (for a flight of duration 1e10) or shrink by more than 1e10.
         flag.strike(M);
         for (double& bound : rounding_bounds) bound += rounding;
-        restitution_product *= M.R;
+        determinant_product *= M.determinant();
         if (++since_rescale == 4) rescale();
     }
 
@@ -160,7 +161,7 @@ struct TransferProduct::Qr {
                 before[k] > 0
                     ? typical_rounding * (1 + (1 + steepness) * std::sqrt(before[k] / after[k]))
                     : 0;
-        log_restitution += elementary::log(M.R);
+        log_determinants += elementary::log(M.R) + elementary::log(std::abs(M.R_speed));
         rescale();
     }
 
@@ -182,7 +183,7 @@ struct TransferProduct::Qr {
             product = product < 0 ? -1 : 1;
         };
         take(flag.determinant, extracted_logs[3]);
-        take(restitution_product, log_restitution);
+        take(determinant_product, log_determinants);
     }
 
     double log_det_carried() const {
@@ -196,12 +197,11 @@ struct TransferProduct::Qr {
         Exponents logs{};
         double before = 0;
         for (int k = 0; k < rank; ++k) {
-            // The determinant of an impact, R^2, is kept apart: log_det_carried() is compared with
+            // The determinants of the impacts are kept apart: log_det_carried() is compared with
             // the exact value for the flights.
-            const double sum =
-                k < 3 ? extracted_logs[k] + 0.5 * elementary::log(squares[k])
-                      : log_det_carried() +
-                            2 * (log_restitution + elementary::log(restitution_product));
+            const double sum = k < 3 ? extracted_logs[k] + 0.5 * elementary::log(squares[k])
+                                     : log_det_carried() + log_determinants +
+                                           elementary::log(std::abs(determinant_product));
             logs[k] = sum - before;
             before = sum;
         }
@@ -286,7 +286,7 @@ void TransferProduct::append(std::span<const Leg> legs, const Saltation& M, doub
         if (qr_) qr_->pass(leg, epsilon_);
         if (powers_) powers_->product.pass(leg);
     }
-    if (M.R == 0) rank_ = std::min(rank_, 3);  // x' - y' = 0 after the impact
+    if (M.is_singular()) rank_ = std::min(rank_, 3);  // R = 0: x' - y' = 0 after it
     if (qr_) {
         qr_->strike(M);
         qr_->thinned.add(tau, [&] { return descending(qr_->logs(rank_), rank_, tau - start_); });

@@ -11,8 +11,8 @@
 //                lambda1 - ln(1/2.2e-16)/T, the rounding floor, and near T = 709/lambda1 it
 //                overflows.
 //
-// Sum rule, exact from impact to impact without sticking: the four exponents sum to -2 zeta + 2/T *
-// (sum of ln R over the impacts).
+// Sum rule, exact from impact to impact without sticking: the four exponents sum to -2 zeta + 1/T *
+// (sum of ln |det M| over the impacts), R^2 for a constant R.
 //
 // Sticking leaves only the deviations of the centre of mass (rank 2); an impact with R = 0 removes
 // that of x - y (rank 3). From then on the exponents beyond the rank are minus infinity, and the

@@ -250,7 +250,7 @@ bool count_period(const Parameters& p, const Stop& stop, PeriodicOrbit& orbit) {
 /// cycles. Unequal walls can leave the motion between chatters symmetric, but not the chatters.
 bool is_symmetric(
     const Parameters& p, const PeriodicOrbit& orbit, const State& scale, const Stop& stop) {
-    if (orbit.cycles % 2 == 0 || (p.R_plus != p.R_minus && orbit.impacts != 0)) return false;
+    if (orbit.cycles % 2 == 0 || (!p.has_equal_walls() && orbit.impacts != 0)) return false;
     const auto half = follow(p, orbit.state, orbit.tau, 0.5 * orbit.cycles * p.cycle(), stop);
     return half && distance(state_of(-vector_of(*half)), orbit.state, scale) < symmetric_within;
 }

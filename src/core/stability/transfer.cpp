@@ -64,6 +64,12 @@ Moduli ImpactTransfer::J_moduli() const {
     return moduli_of(*this, false);
 }
 
+Moduli ImpactTransfer::M_moduli() const {
+    Moduli moduli = {1, 1, M.R, std::abs(M.R_speed)};
+    std::ranges::sort(moduli, std::greater<>());
+    return moduli;
+}
+
 Moduli ImpactTransfer::T_moduli() const { return moduli_of(*this, true); }
 
 void TransferRecord::on_impact(const Impact& impact) {

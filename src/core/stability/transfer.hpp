@@ -35,7 +35,7 @@ struct ImpactTransfer {
     Matrix4 T() const { return M.times(J()); }
     Moduli J_moduli() const;
     /// Exactly 1, 1, R, R (section 4): M is triangular for the centre of mass and x - y.
-    Moduli M_moduli() const { return {1, 1, M.R, M.R}; }
+    Moduli M_moduli() const;
     /// From the exterior powers: accurate for any damping and any entries of M.
     Moduli T_moduli() const;
 };

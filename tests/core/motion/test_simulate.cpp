@@ -66,7 +66,7 @@ struct Invariants : Observer {
         restitution = std::max(
             restitution, std::abs(
                              i.x_dot_after - i.y_dot_after +
-                             p.restitution(i.side) * (i.x_dot_before - i.y_dot_before)));
+                             p.restitution(i.side, 0) * (i.x_dot_before - i.y_dot_before)));
         towards = towards && i.side * i.relative_speed_before > 0;
     }
     const Parameters& p;

@@ -430,3 +430,42 @@ TEST_CASE("the exponents of a sticking motion exist wherever in its chatter the 
         CHECK(product.rank() == 2);
     }
 }
+
+TEST_CASE("the exponents obey the sum rule with a restitution that depends on the speed") {
+    std::mt19937_64 engine(12);
+    for (int n = 0; n < 10; ++n) {
+        Parameters p = table1(0.02, Damping::equation_of_motion);
+        p.table_plus = random_table(engine, 0.02), p.table_minus = random_table(engine, 0.02);
+        Lyapunov lyapunov(p, 0, 800, all_estimators);
+        const Record run = record(p, default_state(p), 800, 100000, {&lyapunov});
+        if (!run.sticks.empty()) continue;
+        const TransferProduct& product = lyapunov.product();
+        double log_det = 0;
+        for (std::size_t k = 1; k < run.impacts.size(); ++k) {
+            const Impact& i = run.impacts[k];
+            const double w = std::abs(i.relative_speed_before);
+            CHECK(i.R == p.restitution(i.side, w));
+            log_det += std::log(i.R * std::abs(p.restitution_derivative(i.side, w)));
+        }
+        const double T = product.end_tau() - product.start_tau(), law = -2 * p.zeta() + log_det / T;
+        const Exponents qr = product.qr();
+        CHECK(qr[0] + qr[1] + qr[2] + qr[3] == doctest::Approx(law).epsilon(1e-10));
+        CHECK(product.sum_rule_residual() < 1e-10);
+        const Exponents eigenvalues = product.eigenvalues();
+        CHECK(
+            eigenvalues[0] + eigenvalues[1] + eigenvalues[2] + eigenvalues[3] ==
+            doctest::Approx(law).epsilon(1e-6));
+    }
+}
+
+TEST_CASE("a table with one R everywhere gives the motion and exponents of a constant R") {
+    Parameters constant = table1(0.018, Damping::closed_form), table = constant;
+    table.table_plus = table.table_minus = std::make_shared<const RestitutionTable>(
+        RestitutionTable{{0, 0.01, 0.05}, {0.6, 0.6, 0.6}});
+    Lyapunov one(constant, 0, 1000, qr_alone), other(table, 0, 1000, qr_alone);
+    const Record a = record(constant, default_state(constant), 1000, 100000, {&one}),
+                 b = record(table, default_state(table), 1000, 100000, {&other});
+    CHECK(a.outcome.state.x == b.outcome.state.x);
+    CHECK(a.impacts.size() == b.impacts.size());
+    CHECK(one.product().qr() == other.product().qr());
+}
