@@ -132,8 +132,9 @@ std::optional<double> chaotic_transient_end(const ExponentHistory& h, double sta
         return std::nullopt;
     const auto steps = even_steps(h, start, first, last, 1, 0);
     const double late = std::accumulate(steps.begin() + error_steps / 2, steps.end(), 0.0);
-    // A departure from one unstable orbit ends at ln(1/ulp) in all.
-    if (std::min(late, growth - late) > least_transient_growth) return h.tau[last];
+    if (growth > least_growth_of_departures &&
+        std::min(late, growth - late) > 0.25 * least_growth_of_departures)
+        return h.tau[last];
     // A sum of steps with zero mean rises above its lowest value, somewhere in the history, as
     // often as the modulus of one sum exceeds that level or its double: by the reflection principle
     // at most four times as often as a single sum. Parts of the history's length are as many looks.
