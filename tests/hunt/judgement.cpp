@@ -19,6 +19,15 @@ constexpr double capture_time_tolerance = 0.01;
 // in proportion to the number of cycles, in a slow approach even less.
 constexpr double least_growth = 25;
 constexpr double sigmas = 5;
+// Growth before a capture, as a logarithm, that is a chaotic transient, and that which is none.
+constexpr double chaotic_transient = 40, no_transient = 15;
+// On a torus the length of a deviation varies by fewer e-folds than this.
+constexpr double most_shrinking = 7;
+// Among the points of a closed curve none is as close to another as this.
+constexpr double no_chance_return = 1e-8;
+// Largest distance from the curve of a quasi-periodic motion, relative to its size.
+constexpr double off_the_curve = 0.01;
+constexpr double rotation_tolerance = 1e-7;
 
 template <class... Values>
 std::string sentence(const char* format, Values... values) {
@@ -95,6 +104,61 @@ void judge_orbit(
     }
 }
 
+void judge_transient(const Statement& s, const LongRun& run, int period, Judgement& j) {
+    if (period == 0 || !s.periodic) return;
+    const auto rise = run.rise(0, std::min(run.captured_from(period, next_to), s.cycles));
+    j.transient = rise.sustained > chaotic_transient;
+    j.transient_missed = j.transient && !s.chaotic_before;
+    if (j.transient_missed && s.verdict == Verdict::regular && s.covers_start &&
+        s.captured_at > 1.0)
+        j.wrong.push_back(sentence(
+            "regular is reported without chaos before the capture, but deviations grow by %.1f "
+            "e-folds before it",
+            rise.sustained));
+    if (s.chaotic_before && rise.whole < no_transient)
+        j.wrong.push_back(sentence(
+            "chaos before the capture is reported, but deviations grow by %.1f e-folds at most",
+            rise.whole));
+}
+
+void judge_torus(
+    const Statement& s, const LongRun& run, int period, const std::optional<SectionCurve>& curve,
+    std::vector<std::string>& wrong) {
+    const Statement::QuasiPeriodic& q = *s.quasi_periodic;
+    const int end = run.cycles();
+    const auto add = [&](const std::string& why) {
+        wrong.push_back(
+            sentence(
+                "quasi-periodic (rotation number %.9g +- %.2g, %d curves) is reported, but ",
+                q.rotation_number, q.error, q.curves) +
+            why);
+    };
+    const double growth = run.growth(s.cycles, end);
+    if (s.verdict != Verdict::regular) add("the verdict is not regular");
+    if (period > 0) add(sentence("the long run returns every %d cycles", period));
+    else if (growth > least_growth)
+        add(sentence("deviations grow by %.1f e-folds in the long run", growth));
+    else if (growth < -most_shrinking)
+        add(sentence("deviations shrink by %.1f e-folds in the long run", -growth));
+    else if (run.closest_return(s.cycles) < no_chance_return)
+        add(sentence("the long run returns to within %.1g", run.closest_return(s.cycles)));
+    else if (!curve) add("the section of the long run is no smooth closed curve");
+    else if (curve->curves != q.curves) add(sentence("there are %d", curve->curves));
+    else if (curve->farthest > off_the_curve)
+        add(sentence("the long run leaves the curve by %.2g", curve->farthest));
+    else {
+        double miss = INFINITY;
+        for (const double sign : {1., -1.}) {
+            const double difference = sign * q.rotation_number * q.curves - curve->rotation;
+            miss = std::min(miss, std::abs(difference - std::round(difference)) / q.curves);
+        }
+        if (miss > 5 * q.error + rotation_tolerance + 3 * curve->error)
+            add(sentence(
+                "it is %.9g +- %.1g: %.2g off", std::abs(curve->rotation) / q.curves, curve->error,
+                miss));
+    }
+}
+
 void judge_verdict(
     const Statement& s, const LongRun& run, int period, std::vector<std::string>& wrong) {
     const int end = run.cycles(), captured = period > 0 ? run.captured_from(period, next_to) : end;
@@ -126,7 +190,8 @@ void judge_verdict(
             wrong.push_back("chaotic is reported for a motion that always returns");
     }
     if (s.verdict == Verdict::regular && s.lambda1 > student_three_sigma * s.error &&
-        !s.chaotic_before && !s.periodic)
+        !s.chaotic_before && !s.periodic &&
+        !(s.quasi_periodic && run.growth(0, s.cycles) < least_growth))
         wrong.push_back(
             sentence("regular is reported with lambda1 = %.4g +- %.2g", s.lambda1, s.error));
     if (s.verdict == Verdict::chaotic && s.lambda1 < 0)
@@ -144,12 +209,25 @@ void judge_verdict(
 
 }  // namespace
 
-Judgement judge(const Parameters& p, const Statement& s, const LongRun& run) {
+bool torus_possible(const LongRun& run) {
+    const int end = run.cycles();
+    const double growth = run.growth(end / 4, end);
+    return end >= 2000 && run.period_at(end) == 0 && growth < least_growth &&
+           growth > -most_shrinking && run.closest_return(end / 4) > no_chance_return;
+}
+
+Judgement judge(
+    const Parameters& p, const Statement& s, const LongRun& run,
+    const std::optional<SectionCurve>& curve) {
     Judgement j;
     if (run.cycles() <= s.cycles) return j;
     const int period = run.period_at(run.cycles());
     if (s.periodic) judge_orbit(p, s, run, period, j.wrong);
     judge_verdict(s, run, period, j.wrong);
+    judge_transient(s, run, period, j);
+    if (s.quasi_periodic) judge_torus(s, run, period, curve, j.wrong);
+    j.torus = curve && curve->farthest < off_the_curve;
+    j.torus_missed = j.torus && !s.quasi_periodic;
     const int returned = run.period_at(s.cycles);
     if (returned > 0 && returned <= longest_sought && returned == period &&
         run.captured_from(period, next_to) <= s.cycles) {

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <functional>
 
 #include "tangent.hpp"
 
@@ -210,6 +211,35 @@ LongRun::PeriodContacts LongRun::contacts_at_end(int period) const {
 }
 
 double LongRun::growth(int from, int to) const { return growth_[to] - growth_[from]; }
+
+LongRun::Rise LongRun::rise(int from, int to) const {
+    int lowest = from, begin = from, end = from;
+    for (int k = from; k <= to; ++k) {
+        if (growth_[k] < growth_[lowest]) lowest = k;
+        if (growth(lowest, k) > growth(begin, end)) begin = lowest, end = k;
+    }
+    const double whole = growth(begin, end);
+    constexpr int quarters = 4, removed = 3;
+    if (end - begin < 4 * quarters) return {whole, 0};
+    std::vector<double> steps;
+    for (int k = begin; k < end; ++k) steps.push_back(growth(k, k + 1));
+    std::ranges::sort(steps, std::greater<>());
+    double sustained = whole;
+    for (int k = 0; k < removed; ++k) sustained -= steps[k];
+    for (int q = 0; q < quarters; ++q) {
+        const auto bound = [&](int k) { return begin + (end - begin) * k / quarters; };
+        if (growth(bound(q), bound(q + 1)) < 0.05 * whole) return {whole, 0};
+    }
+    return {whole, sustained};
+}
+
+double LongRun::closest_return(int from) const {
+    const Scale scale = scale_at(cycles_);
+    double closest = INFINITY;
+    for (int k = from; k < cycles_ - 1; ++k)
+        closest = std::min(closest, distance(at_cycle(cycles_), at_cycle(k), scale));
+    return closest;
+}
 
 LongRun::Exponent LongRun::exponent(int from, int to) const {
     constexpr int blocks = 20;

@@ -15,6 +15,7 @@ public:
     LongRun(const Parameters& parameters, const State& start, int cycles);
 
     int cycles() const { return cycles_; }  ///< completed
+    const State& at_cycle(int k) const { return states_[2 * static_cast<std::size_t>(k)]; }
     /// Smallest period in forcing cycles, up to 400, with which the states up to cycle `at` have
     /// returned for two periods; 0: none.
     int period_at(int at) const;
@@ -37,6 +38,15 @@ public:
 
     /// ln of the growth of a deviation between two cycles.
     double growth(int from, int to) const;
+    /// Largest growth of a deviation from any cycle to any later one, as a logarithm. `sustained`:
+    /// without its three largest cycles, and zero unless it grows in each quarter of that time.
+    struct Rise {
+        double whole, sustained;
+    };
+    Rise rise(int from, int to) const;
+    /// Distance of the last state from the closest one of the cycles from `from` on, relative to
+    /// the size of the motion, without the cycle before.
+    double closest_return(int from) const;
     struct Exponent {
         double lambda1, error;  ///< standard error of the mean of 20 blocks
     };
@@ -50,7 +60,6 @@ private:
     int complete_cycles() const;
     Scale scale_at(int cycle) const;
     double distance(const State& a, const State& b, const Scale& scale) const;
-    const State& at_cycle(int k) const { return states_[2 * static_cast<std::size_t>(k)]; }
 
     Parameters parameters_;
     int cycles_ = 0;

@@ -47,10 +47,11 @@ Statement sweep_point(const System& system, int transient, int cycles) {
         s.period = r.regime.orbit->cycles;
         s.symmetric = r.regime.orbit->symmetric;
     }
-    if (r.regime.capture) {
-        if (r.regime.capture->tau) s.captured_at = *r.regime.capture->tau / p.cycle();
-        s.chaotic_before = r.regime.capture->chaotic_before == true;
-    }
+    if (r.regime.capture && r.regime.capture->tau)
+        s.captured_at = *r.regime.capture->tau / p.cycle();
+    s.chaotic_before = r.regime.capture && r.chaotic_cycles;
+    if (const auto& q = r.regime.quasi_periodic)
+        s.quasi_periodic = {q->rotation_number, q->error, q->curves};
     s.type = name_of(r.regime.type);
     s.request = request(
         system, "\"transient_cycles\":" + std::to_string(transient) +
@@ -63,6 +64,7 @@ Statement simulation(const System& system, int cycles) {
     s.interface = "simulation, " + std::to_string(cycles) + " cycles";
     s.start = system.start;
     s.cycles = cycles;
+    s.covers_start = true;
     s.request = request(
         system, "\"cycles\":" + std::to_string(cycles) +
                     ",\"max_impacts\":" + std::to_string(max_impacts_of_request) +
@@ -84,6 +86,8 @@ Statement simulation(const System& system, int cycles) {
         if (tau.is_number()) s.captured_at = tau.get<double>() / system.parameters.cycle();
         s.chaotic_before = regime["capture"]["chaotic_before"] == true;
     }
+    if (const api::Json& q = regime["quasi_periodic"]; q.is_object())
+        s.quasi_periodic = {q["rotation_number"], number(q["standard_error"]), q["curves"]};
     s.type = regime["type"];
     return s;
 }

@@ -21,7 +21,13 @@ struct Statement {
     int period;  ///< in cycles; valid, with `symmetric`, if periodic
     bool symmetric;
     std::optional<double> captured_at;  ///< in cycles; empty: not captured
-    bool chaotic_before;
+    bool chaotic_before;                ///< chaos before the capture is reported
+    bool covers_start;                  ///< the verdict is on the whole run, not on its end alone
+    struct QuasiPeriodic {
+        double rotation_number, error;
+        int curves;
+    };
+    std::optional<QuasiPeriodic> quasi_periodic;
     std::string type;
     std::string request;  ///< reproduces the run
 };

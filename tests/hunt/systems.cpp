@@ -102,6 +102,21 @@ System neutral(std::mt19937_64& engine) {
     return system;
 }
 
+System torus(std::mt19937_64& engine) {
+    Parameters p;
+    p.damping = Damping::equation_of_motion;
+    if (chance(engine, 0.4)) {
+        p.b = uniform(engine, 0.0197, 0.0203);
+        return {p, default_state(p)};
+    }
+    p.epsilon = log_uniform(engine, 0.07, 0.14);
+    p.lambda = log_uniform(engine, 0.2, 2);
+    p.Omega = uniform(engine, 2.8, 3.4);
+    p.R_plus = p.R_minus = uniform(engine, 0.5, 0.9);
+    p.b = unattached_amplitude(p) * log_uniform(engine, 0.2, 5);
+    return with_random_start(engine, p);
+}
+
 }  // namespace
 
 std::mt19937_64 engine_of(std::uint64_t seed, int number) {
@@ -112,17 +127,18 @@ std::mt19937_64 engine_of(std::uint64_t seed, int number) {
 }
 
 const char* name_of(Kind kind) {
-    constexpr const char* names[] = {"wide", "table", "band", "contracting", "neutral"};
+    constexpr const char* names[] = {"wide", "table", "band", "contracting", "neutral", "torus"};
     return names[static_cast<int>(kind)];
 }
 
 Kind random_kind(std::mt19937_64& engine) {
     const double u = uniform(engine, 0, 1);
-    return u < 0.45   ? Kind::wide
-           : u < 0.65 ? Kind::table
-           : u < 0.75 ? Kind::band
-           : u < 0.92 ? Kind::contracting
-                      : Kind::neutral;
+    return u < 0.4    ? Kind::wide
+           : u < 0.58 ? Kind::table
+           : u < 0.66 ? Kind::band
+           : u < 0.8  ? Kind::contracting
+           : u < 0.86 ? Kind::neutral
+                      : Kind::torus;
 }
 
 namespace {
@@ -134,6 +150,7 @@ System any_system(Kind kind, std::mt19937_64& engine) {
         case Kind::band: return band(engine);
         case Kind::contracting: return contracting(engine);
         case Kind::neutral: return neutral(engine);
+        case Kind::torus: return torus(engine);
     }
     return {};
 }

@@ -22,10 +22,10 @@ System strongly_damped(std::mt19937_64& engine);
 
 /// Kinds of systems in which verdicts tend to be wrong: wide ranges of all parameters; Table 1 over
 /// b; a thin chaotic band next to a stable orbit; strongly contracting walls with long periods;
-/// neutral motions (R = 1, zeta = 0, a ball without impacts).
-enum class Kind { wide, table, band, contracting, neutral };
-inline constexpr Kind kinds[] = {
-    Kind::wide, Kind::table, Kind::band, Kind::contracting, Kind::neutral};
+/// neutral motions (R = 1, zeta = 0, a ball without impacts); ranges in which tori are frequent.
+enum class Kind { wide, table, band, contracting, neutral, torus };
+inline constexpr Kind kinds[] = {Kind::wide,        Kind::table,   Kind::band,
+                                 Kind::contracting, Kind::neutral, Kind::torus};
 const char* name_of(Kind kind);
 Kind random_kind(std::mt19937_64& engine);
 System random_system(Kind kind, std::mt19937_64& engine);

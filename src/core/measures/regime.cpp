@@ -26,6 +26,9 @@ constexpr int follow_rounds[] = {150, 300, 600, 1200};
 constexpr double past_last_cycle = 1e-12;
 // A run counts as captured while it stays this close to the orbit.
 constexpr double captured_within = 0.1;
+// A run this close to the orbit follows it: chaos that is confined to the orbit's neighbourhood is
+// searched up to there.
+constexpr double settled_within = 1e-3;
 // Length of the history in which a chaotic transient is searched.
 constexpr std::size_t transient_history = 4096;
 // A chaotic run is continued in rounds of this many cycles.
@@ -166,8 +169,8 @@ public:
     double distance_at(long k, const State& state) const {
         return distance(state, along_[static_cast<std::size_t>((phase_ + k) % period_)], scale_);
     }
-    bool is_near(long k, const State& state) const {
-        return distance_at(k, state) < captured_within;
+    bool is_near(long k, const State& state, double within = captured_within) const {
+        return distance_at(k, state) < within;
     }
 
 private:
@@ -198,15 +201,26 @@ private:
     const long before_;
 };
 
-/// Time of the first whole cycle from which on the run stays near the orbit; empty if never.
-std::optional<double> captured_from(
+/// Times of the first whole cycles from which on the run stays near the orbit, and follows it (not
+/// earlier than the first kept state); empty if never.
+struct Arrival {
+    std::optional<double> captured, settled;
+};
+Arrival arrival_at(
     const Parameters& p, const State& start, const PeriodicOrbit& orbit,
     std::span<const State> states, const State& scale, const RegimeEvidence& e) {
     const long first = e.stroboscopic.first(), end = first + static_cast<long>(states.size());
     const OrbitComparison comparison(p, orbit, scale, end - 1, states.back());
     long from = end;
-    while (from > first && comparison.is_near(from - 1, states[from - 1 - first])) --from;
-    if (from == end) return std::nullopt;
+    const auto extend = [&](double within) {
+        while (from > first && comparison.is_near(from - 1, states[from - 1 - first], within))
+            --from;
+        return from < end ? std::optional(e.stroboscopic.tau_of(from)) : std::nullopt;
+    };
+    Arrival arrival;
+    arrival.settled = extend(settled_within);
+    arrival.captured = extend(captured_within);
+    if (from == end) return arrival;
     // The first kept state is already near: a second run examines the states before it. If that run
     // is interrupted, the time of the first kept state stands.
     if (from == first && first > 0) {
@@ -217,24 +231,42 @@ std::optional<double> captured_from(
             .max_impacts = std::numeric_limits<long>::max(),
             .stop = [&] { return last.arrived || (e.stop && e.stop()); }};
         const End end_of_run = simulate(p, start, limits, observers).reason;
-        if (last.arrived || end_of_run == End::tau_end) from = last.cycle + 1;
+        if (last.arrived || end_of_run == End::tau_end)
+            arrival.captured = e.stroboscopic.tau_of(last.cycle + 1);
     }
-    return e.stroboscopic.tau_of(from);
+    return arrival;
 }
 
-/// Adds the exponents before the capture, by a second run up to there.
-void examine_before(
-    const Parameters& p, const State& start, const RegimeEvidence& e, Capture& capture) {
-    const double until = std::min(capture.tau.value_or(e.tau_end), e.tau_end);
-    Lyapunov before(p, 0, until, {.qr = true, .history = transient_history});
-    Observer* const observers[] = {&before};
+/// Product of the transfer matrices from the start to `until`; empty if time ran out.
+std::optional<TransferProduct> product_until(
+    const Parameters& p, const State& start, double until, const RegimeEvidence& e) {
+    Lyapunov lyapunov(p, 0, until, {.qr = true, .history = transient_history});
+    Observer* const observers[] = {&lyapunov};
     if (simulate(p, start, {until, std::numeric_limits<long>::max(), e.stop}, observers).reason !=
         End::tau_end)
-        return;
-    const TransferProduct& product = before.product();
-    capture.before = product.qr();
-    capture.chaotic_before = verdict_by_exponents(growth_of(product)) == Verdict::chaotic ||
-                             shows_chaotic_transient(product.qr_history(), product.start_tau());
+        return std::nullopt;
+    return lyapunov.take();
+}
+
+/// Adds the exponents before the capture, by a second run. Chaos near the orbit delays the capture.
+void examine_before(
+    const Parameters& p, const State& start, const RegimeEvidence& e, double settled,
+    Capture& capture) {
+    std::optional<double> chaos_until;
+    if (capture.tau && settled > *capture.tau) {
+        const auto product = product_until(p, start, settled, e);
+        if (!product) return;
+        chaos_until = chaotic_transient_end(product->qr_history(), product->start_tau());
+        if (chaos_until && *chaos_until > *capture.tau)
+            capture.tau = std::ceil(*chaos_until / p.cycle()) * p.cycle();
+    }
+    const auto product =
+        product_until(p, start, std::min(capture.tau.value_or(e.tau_end), e.tau_end), e);
+    if (!product) return;
+    capture.before = product->qr();
+    capture.chaotic_before = chaos_until ||
+                             verdict_by_exponents(growth_of(*product)) == Verdict::chaotic ||
+                             chaotic_transient_end(product->qr_history(), product->start_tau());
 }
 
 /// Continues a chaotic run until a periodic orbit captures it or settle_cycles have passed.
@@ -323,16 +355,16 @@ Regime regime_of(
         const State scale = scale_of(p, states.last(std::min(states.size(), longest_period)));
         r.orbit = orbit_of(p, states, scale, e);
         r.search_stopped = !r.orbit && e.stop && e.stop();
-        if (r.orbit)
+        double settled = e.tau_end;
+        if (r.orbit) {
+            const Arrival arrival = arrival_at(p, start, *r.orbit, states, scale, e);
+            settled = arrival.settled.value_or(e.tau_end);
             r.capture = {
-                captured_from(p, start, *r.orbit, states, scale, e),
-                {nan, nan, nan, nan},
-                r.orbit->exponents(p),
-                std::nullopt};
-        else if (e.by_exponents == Verdict::chaotic) settle_later(p, states, scale, e, r);
+                arrival.captured, {nan, nan, nan, nan}, r.orbit->exponents(p), std::nullopt};
+        } else if (e.by_exponents == Verdict::chaotic) settle_later(p, states, scale, e, r);
         else if (e.neutral) r.quasi_periodic = quasi_periodic(in_window(e, states), scale);
         if (r.orbit) r.z = static_cast<double>(r.orbit->contacts) / r.orbit->cycles;
-        if (r.capture && exponents_before) examine_before(p, start, e, *r.capture);
+        if (r.capture && exponents_before) examine_before(p, start, e, settled, *r.capture);
         if (r.contacts == 0 && !r.orbit)
             r.untouched =
                 untouched_end(p, states.back(), e.stroboscopic.tau(states.size() - 1), e.stop);

@@ -28,15 +28,15 @@ enum class RegimeType { none, I, II, III, IV, V, VI };
 
 /// Capture of a run by the periodic orbit that attracts it.
 struct Capture {
-    /// Time from which the run stays near the orbit (or later, if the search ran out of time);
-    /// after the run's end if the run was continued (RegimeEvidence::settle_cycles). Empty if the
-    /// run ends on its way to the orbit.
+    /// Time from which the run stays near the orbit without chaos (or later, if the search ran out
+    /// of time); after the run's end if the run was continued (RegimeEvidence::settle_cycles).
+    /// Empty if the run ends on its way to the orbit.
     std::optional<double> tau;
     /// Exponents by qr from the first impact to tau or to the end; NaN with too few impacts.
     Exponents before;
     Exponents after;  ///< from the Floquet multipliers
     /// True if chaos before the capture is shown: by verdict_by_exponents() or
-    /// shows_chaotic_transient(). False if it is not shown. Empty: not examined.
+    /// chaotic_transient_end(). False if it is not shown. Empty: not examined.
     std::optional<bool> chaotic_before;
 };
 

@@ -23,6 +23,20 @@ constexpr std::size_t coarse_neighbours = 4;
 // Largest gap between phases, in turns.
 constexpr double most_phase_gap = 0.05;
 
+// Largest ratio of the curvatures that the second half of the points shows between neighbours of
+// the first half and that all points show: a motion that still approaches a curve or an orbit has a
+// larger one.
+constexpr double most_drift = 3;
+// Largest error of the rotation number, in turns over all points.
+constexpr double most_error = 0.1;
+
+// Distance of two of the points, in units of the scale, that is a return: on a curve with 65,536
+// points the closest one is at about 1e-5.
+constexpr double is_return = 1e-8;
+// Smallest median gap between the phases, in units of the mean gap: points of a periodic motion
+// coincide.
+constexpr double least_median_gap = 0.01;
+
 using Signal = std::vector<std::complex<double>>;
 
 std::complex<double> turned(double turns) {
@@ -30,7 +44,8 @@ std::complex<double> turned(double turns) {
     return {elementary::cos(angle), elementary::sin(angle)};
 }
 
-/// (x, x') of the points as complex numbers, without their mean, weighted by a Hann window.
+/// (x, x') of the points as complex numbers, without their mean, weighted by the square of a Hann
+/// window.
 Signal windowed(std::span<const State> points) {
     Signal signal;
     std::complex<double> mean = 0;
@@ -38,8 +53,8 @@ Signal windowed(std::span<const State> points) {
     mean /= static_cast<double>(points.size());
     for (std::size_t k = 0; k < points.size(); ++k) {
         const double place = static_cast<double>(k + 1) / static_cast<double>(points.size() + 1);
-        signal.push_back(
-            (std::complex(points[k].x, points[k].x_dot) - mean) * (1 - turned(place).real()));
+        const double hann = 1 - turned(place).real();
+        signal.push_back((std::complex(points[k].x, points[k].x_dot) - mean) * (hann * hann));
     }
     return signal;
 }
@@ -132,6 +147,12 @@ public:
         return largest;
     }
 
+    double median_gap() const {
+        std::vector<double> gaps;
+        for (std::size_t i = 0; i < phases_.size(); ++i) gaps.push_back(apart(i, 1));
+        return median_of(std::move(gaps));
+    }
+
     struct Shape {
         double length, curvature;
     };
@@ -152,11 +173,34 @@ public:
         return {length, median_of(std::move(curvatures))};
     }
 
+    /// Median curvature from the deviations of further points of the same motion, the first of
+    /// which follows the last of these, from the lines between their neighbours.
+    double curvature_at(std::span<const State> further, double frequency) const {
+        std::vector<double> curvatures;
+        for (std::size_t k = 0; k < further.size(); ++k) {
+            const double turns = frequency * static_cast<double>(points_.size() + k),
+                         phase = turns - std::floor(turns);
+            const auto right = static_cast<std::size_t>(
+                std::ranges::lower_bound(phases_, std::pair<double, std::size_t>(phase, 0)) -
+                phases_.begin());
+            const std::size_t left = right + phases_.size() - 1;
+            const double whole = apart(left, 1), before = turned_from(left, phase),
+                         after = whole - before;
+            const Eigen::Vector4d line =
+                (after * vector_of(at(left)) + before * vector_of(at(right))) / whole;
+            curvatures.push_back(distance(further[k], state_of(line), scale_) / (before * after));
+        }
+        return median_of(std::move(curvatures));
+    }
+
 private:
+    double turned_from(std::size_t i, double phase) const {
+        const double turns = phase - phases_[i % phases_.size()].first;
+        return turns < 0 ? turns + 1 : turns;
+    }
     const State& at(std::size_t i) const { return points_[phases_[i % phases_.size()].second]; }
     double apart(std::size_t i, std::size_t step) const {
-        const double turns = phases_[(i + step) % phases_.size()].first - phases_[i].first;
-        return turns < 0 ? turns + 1 : turns;
+        return turned_from(i, phases_[(i + step) % phases_.size()].first);
     }
 
     const std::span<const State> points_;
@@ -189,17 +233,25 @@ std::optional<QuasiPeriodic> on_one_curve(std::span<const State> points, const S
     for (const double line : strongest_lines(signal)) {
         const SortedPoints sorted(points, scale, line);
         const double largest_gap = sorted.largest_gap();
-        if (largest_gap > most_phase_gap) continue;
+        const auto count = static_cast<double>(points.size());
+        if (largest_gap > most_phase_gap || sorted.median_gap() * count < least_median_gap)
+            continue;
         const auto fine = sorted.shape(1), coarse = sorted.shape(coarse_neighbours);
         const double length_ratio = fine.length / coarse.length,
                      curvature_ratio = fine.curvature / coarse.curvature;
         if (!(std::abs(length_ratio - 1) < length_tolerance &&
               std::abs(curvature_ratio - 1) < curvature_tolerance))
             continue;
-        const double width = 1.0 / static_cast<double>(points.size());
+        const SortedPoints of_first(first, scale, line);
+        if (of_first.largest_gap() > most_phase_gap ||
+            !(of_first.curvature_at(points.subspan(first.size()), line) <
+              most_drift * fine.curvature))
+            continue;
+        const double width = 1 / count;
         double error = 0;
         for (const auto& part : {first, last})
             error = std::max(error, std::abs(refined(windowed(part), line, width) - line));
+        if (error > most_error * width) continue;
         const double turns = line - std::round(line);
         return QuasiPeriodic{std::abs(turns), error,          1, points.size(), largest_gap,
                              length_ratio,    curvature_ratio};
@@ -210,6 +262,11 @@ std::optional<QuasiPeriodic> on_one_curve(std::span<const State> points, const S
 }  // namespace
 
 std::optional<QuasiPeriodic> quasi_periodic(std::span<const State> states, const State& scale) {
+    const auto returns = [&](const State& s) {
+        return distance(s, states.back(), scale) < is_return;
+    };
+    if (states.empty() || std::ranges::any_of(states.first(states.size() - 1), returns))
+        return std::nullopt;
     // The first half can be a transient.
     states = states.last(std::min(states.size() / 2, most_points_of_torus));
     for (int curves = 1; curves <= most_curves; ++curves) {

@@ -118,8 +118,8 @@ constexpr double three_sigma_probability = 0.00135;
 
 }  // namespace
 
-bool shows_chaotic_transient(const ExponentHistory& h, double start) {
-    if (h.tau.empty()) return false;
+std::optional<double> chaotic_transient_end(const ExponentHistory& h, double start) {
+    if (h.tau.empty()) return std::nullopt;
     const auto sum_at = [&](std::size_t k) { return h.lambda[k][0] * (h.tau[k] - start); };
     std::size_t lowest = 0, first = 0, last = 0;
     double growth = 0;
@@ -128,15 +128,21 @@ bool shows_chaotic_transient(const ExponentHistory& h, double start) {
         if (sum_at(k) - sum_at(lowest) > growth)
             growth = sum_at(k) - sum_at(lowest), first = lowest, last = k;
     }
-    if (growth < least_transient_growth || last - first < least_entries_of_transient) return false;
+    if (growth < least_transient_growth || last - first < least_entries_of_transient)
+        return std::nullopt;
     const auto steps = even_steps(h, start, first, last, 1, 0);
     const double late = std::accumulate(steps.begin() + error_steps / 2, steps.end(), 0.0);
+    if (growth > least_growth_of_departures &&
+        std::min(late, growth - late) > 0.25 * least_growth_of_departures)
+        return h.tau[last];
     // A sum of steps with zero mean rises above its lowest value, somewhere in the history, as
     // often as the modulus of one sum exceeds that level or its double: by the reflection principle
     // at most four times as often as a single sum. Parts of the history's length are as many looks.
     const double looks = (h.tau.back() - start) / (h.tau[last] - h.tau[first]);
-    return late > least_late_growth && growth - late > least_late_growth &&
-           4 * looks * student_tail(growth / error_of_sum(steps)) < three_sigma_probability;
+    const bool shown =
+        late > least_late_growth && growth - late > least_late_growth &&
+        4 * looks * student_tail(growth / error_of_sum(steps)) < three_sigma_probability;
+    return shown ? std::optional(h.tau[last]) : std::nullopt;
 }
 
 }  // namespace vines

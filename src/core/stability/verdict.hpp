@@ -15,6 +15,7 @@
 // chaotic motion has long quiet intervals.
 #pragma once
 
+#include <optional>
 #include <vector>
 
 #include "core/stability/lyapunov.hpp"
@@ -54,10 +55,13 @@ bool can_be_quasi_periodic(const Growth& growth);
 
 /// Least growth, as a logarithm, that shows a chaotic transient.
 inline constexpr double least_transient_growth = 20;
-/// True if deviations grow in some part of a history, by at least e^20, more than chance permits
-/// anywhere in it. For motions that settle afterwards, whose mean growth shows nothing. `start`:
-/// start of the history's window.
-bool shows_chaotic_transient(const ExponentHistory& history, double start);
+/// Growth that departure from one unstable orbit, which ends at least_growth, does not reach.
+inline constexpr double least_growth_of_departures = 40;
+/// End of a part of a history in which deviations grow by more than e^40, a fourth of it in each
+/// half, or by more than e^20 and more than chance permits anywhere in the history; empty if none
+/// does. For motions that settle afterwards, whose mean growth shows nothing. `start`: start of the
+/// history's window.
+std::optional<double> chaotic_transient_end(const ExponentHistory& history, double start);
 
 /// Increments of the first exponent's sum of logarithms, lambda1(tau) tau, between the entries of a
 /// history without its first tenth. Their slope contains less of the transient than lambda1, which

@@ -71,7 +71,7 @@ std::optional<double> chaotic_cycles_of(const Analysis& a, double settle_cycles,
     const TransferProduct& product = a.exponents->product;
     const bool is_chaotic = a.exponents->judgement.verdict == Verdict::chaotic;
     if (!is_chaotic &&
-        !(capture && shows_chaotic_transient(product.qr_history(), product.start_tau())))
+        !(capture && chaotic_transient_end(product.qr_history(), product.start_tau())))
         return std::nullopt;
     if (capture && capture->tau) return *capture->tau / cycle;
     return a.reached.to / cycle + (is_chaotic && !capture ? settle_cycles : 0);

@@ -197,18 +197,42 @@ TEST_CASE("growth in one step, algebraic growth and a driftless sum show no chao
         }
         return h;
     };
-    CHECK(shows_chaotic_transient(
+    CHECK(chaotic_transient_end(
         history_of([](int k) { return 0.1 * std::min(k, 500) - 0.2 * std::max(0, k - 500); }), 0));
-    CHECK_FALSE(shows_chaotic_transient(history_of([](int k) { return k < 500 ? 0.0 : 60.0; }), 0));
-    CHECK_FALSE(shows_chaotic_transient(history_of([](int k) { return 3 * std::log(k); }), 0));
+    // Growth at a rate that varies slowly, so that its statistics show nothing.
+    const auto modulated = chaotic_transient_end(
+        history_of([](int k) {
+            return 0.12 * std::min(k, 500) + 15 * std::sin(k / 40.0) - 0.3 * std::max(0, k - 500);
+        }),
+        0);
+    REQUIRE(modulated);
+    CHECK(*modulated == doctest::Approx(500).epsilon(0.1));
+    CHECK_FALSE(chaotic_transient_end(history_of([](int k) { return k < 500 ? 0.0 : 60.0; }), 0));
+    CHECK_FALSE(chaotic_transient_end(history_of([](int k) { return 3 * std::log(k); }), 0));
     std::mt19937_64 engine(3);
-    std::normal_distribution<double> noise;
+    std::normal_distribution<double> noise(0, 0.4);
     int shown = 0;
     for (int trial = 0; trial < 1000; ++trial) {
         double sum = 0;
-        shown += shows_chaotic_transient(history_of([&](int) { return sum += noise(engine); }), 0);
+        shown += chaotic_transient_end(history_of([&](int) { return sum += noise(engine); }), 0)
+                     .has_value();
     }
     CHECK(shown <= 5);
+}
+
+TEST_CASE("chaos within a tenth of the orbit that captures the motion afterwards is reported") {
+    Parameters p;
+    p.epsilon = 0.00125690514050242, p.lambda = 77.29266101043963, p.G = 2.047049019742476;
+    p.damping = Damping::closed_form, p.Omega = 2.159284633275977;
+    p.R_plus = 0.5455576435283742, p.R_minus = 0.3873823159677105, p.b = 0.0003306238808957134;
+    const State start{
+        -0.0007637250016036435, 0.000118798761182269, 0.0012033671585689365,
+        0.00032632705285220596};
+    const Judged j = judged(p, start, 1000);
+    REQUIRE(j.regime.capture);
+    CHECK(j.regime.capture->chaotic_before == true);
+    CHECK(*j.regime.capture->tau > 140 * p.cycle());
+    CHECK(j.verdict.reason == VerdictReason::transient);
 }
 
 TEST_CASE("a ball that flies without impacts is not judged before its next contact") {

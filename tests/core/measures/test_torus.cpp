@@ -60,7 +60,23 @@ TEST_CASE("a curve with a thickness, too few points and a periodic motion are no
     const double turns = 0.30901699437494742;
     CHECK_FALSE(quasi_periodic(on_curve(turns, 2000, 1e-4), unit));
     CHECK_FALSE(quasi_periodic(on_curve(turns, 200), unit));
-    CHECK_FALSE(quasi_periodic(on_curve(5.0 / 17, 2000), unit));
+    for (const double returning : {5.0 / 17, 317.0 / 513, 1854.0 / 3001})
+        CHECK_FALSE(quasi_periodic(on_curve(returning, 8000), unit));
+}
+
+TEST_CASE("a slow spiral onto a point is no torus, also near a resonance") {
+    for (const double turns : {0.30901699437494742, 0.4284475410888928})
+        for (const double modulus : {0.9999, 0.99963}) {
+            CAPTURE(turns);
+            CAPTURE(modulus);
+            std::vector<State> states = on_curve(turns, 2000);
+            for (std::size_t k = 0; k < states.size(); ++k) {
+                const double size = std::pow(modulus, static_cast<double>(k));
+                State& s = states[k];
+                s = {s.x_dot * size, s.x * size, s.y_dot * size, s.y * size};
+            }
+            CHECK_FALSE(quasi_periodic(states, unit));
+        }
 }
 
 TEST_CASE("a quasi-periodic motion with two impacts in every cycle is regular") {
