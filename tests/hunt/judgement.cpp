@@ -163,12 +163,13 @@ void judge_verdict(
     const Statement& s, const LongRun& run, int period, std::vector<std::string>& wrong) {
     const int end = run.cycles(), captured = period > 0 ? run.captured_from(period, next_to) : end;
     if (s.verdict == Verdict::regular) {
-        if (chaotic(run, 0, captured) && captured > s.cycles) {
-            const auto exponent = run.exponent(0, captured);
+        const int from = s.covers_start ? 0 : s.cycles;
+        if (chaotic(run, from, captured) && captured > s.cycles) {
+            const auto exponent = run.exponent(from, captured);
             wrong.push_back(sentence(
-                "regular is reported, but the run is irregular up to cycle %d: lambda1 = %.4g +- "
-                "%.2g",
-                captured, exponent.lambda1, exponent.error));
+                "regular is reported, but the run is irregular from cycle %d to %d: lambda1 = %.4g "
+                "+- %.2g",
+                from, captured, exponent.lambda1, exponent.error));
         }
     } else if (s.verdict == Verdict::chaotic) {
         if (period > 0 && captured <= 1)

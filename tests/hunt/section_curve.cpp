@@ -98,8 +98,8 @@ public:
             const double step = position_[i + 1] - position_[i],
                          next = std::sqrt(square_of_distance(node(i + 1), node(i + 2)));
             if (step > longest_step * length()) return false;
-            sharp += along(node(i), node(i + 1), node(i + 1), node(i + 2)) <
-                     least_cosine * step * next;
+            sharp +=
+                along(node(i), node(i + 1), node(i + 1), node(i + 2)) < least_cosine * step * next;
         }
         return static_cast<double>(sharp) < most_sharp * static_cast<double>(order_.size());
     }

@@ -14,7 +14,8 @@ struct SectionCurve {
     int curves;
     double rotation;  ///< turns of the first curve per return to it, between -1/2 and 1/2
     double error;     ///< difference of the rotation numbers of the run's halves
-    /// Largest distance of a point from the curve, relative to its extent, over the examined cycles.
+    /// Largest distance of a point from the curve, relative to its extent, over the examined
+    /// cycles.
     double farthest;
 };
 

@@ -29,6 +29,8 @@ constexpr double captured_within = 0.1;
 // A run this close to the orbit follows it: chaos that is confined to the orbit's neighbourhood is
 // searched up to there.
 constexpr double settled_within = 1e-3;
+// Cycles for which a run that ends near the orbit is followed, and those between two looks.
+constexpr int longest_departure = 4096, cycles_of_look = 64;
 // Length of the history in which a chaotic transient is searched.
 constexpr std::size_t transient_history = 4096;
 // A chaotic run is continued in rounds of this many cycles.
@@ -201,6 +203,28 @@ private:
     const long before_;
 };
 
+/// True if the motion leaves the neighbourhood of the orbit, with which it is compared at cycle k,
+/// once more before it follows the orbit. An orbit of a long period can attract a motion only after
+/// several passages.
+bool leaves_again(
+    const Parameters& p, const State& state, long k, const OrbitComparison& comparison,
+    const std::function<bool()>& stop) {
+    State s = state;
+    for (int done = 0; done < longest_departure; done += cycles_of_look) {
+        StroboscopicRecord on(p);
+        Observer* const observers[] = {&on};
+        if (!follow(p, s, 0, cycles_of_look * p.cycle() * (1 + past_last_cycle), stop, observers))
+            return false;
+        for (const State& next : std::span(on.states).subspan(1)) {
+            ++k;
+            if (!comparison.is_near(k, next)) return true;
+            if (comparison.is_near(k, next, settled_within)) return false;
+        }
+        s = on.states.back();
+    }
+    return false;
+}
+
 /// Times of the first whole cycles from which on the run stays near the orbit, and follows it (not
 /// earlier than the first kept state); empty if never.
 struct Arrival {
@@ -221,6 +245,7 @@ Arrival arrival_at(
     arrival.settled = extend(settled_within);
     arrival.captured = extend(captured_within);
     if (from == end) return arrival;
+    if (!arrival.settled && leaves_again(p, states.back(), end - 1, comparison, e.stop)) return {};
     // The first kept state is already near: a second run examines the states before it. If that run
     // is interrupted, the time of the first kept state stands.
     if (from == first && first > 0) {

@@ -28,7 +28,9 @@ constexpr double most_phase_gap = 0.05;
 // larger one.
 constexpr double most_drift = 3;
 // Largest error of the rotation number, in turns over all points.
-constexpr double most_error = 0.1;
+constexpr double most_error = 0.01;
+// Largest relative difference of the line's amplitude between both halves: constant on a torus.
+constexpr double most_decay = 0.01;
 
 // Distance of two of the points, in units of the scale, that is a return: on a curve with 65,536
 // points the closest one is at about 1e-5.
@@ -68,14 +70,15 @@ double line_at(const Signal& signal, double frequency) {
 }
 
 /// Fast Fourier transform of a power of two of values: X_n = sum of x_k exp(-2 pi i n k/N).
-void transform(std::span<std::complex<double>> x) {
+/// `roots` holds exp(-2 pi i k/M) for k < M/2, where M is a multiple of N.
+void transform(std::span<std::complex<double>> x, const Signal& roots) {
     const std::size_t n = x.size();
     if (n == 1) return;
     Signal even, odd;
     for (std::size_t k = 0; k < n; k += 2) even.push_back(x[k]), odd.push_back(x[k + 1]);
-    transform(even), transform(odd);
+    transform(even, roots), transform(odd, roots);
     for (std::size_t k = 0; k < n / 2; ++k) {
-        const auto part = turned(-static_cast<double>(k) / static_cast<double>(n)) * odd[k];
+        const auto part = roots[k * (2 * roots.size() / n)] * odd[k];
         x[k] = even[k] + part;
         x[k + n / 2] = even[k] - part;
     }
@@ -106,7 +109,10 @@ std::vector<double> strongest_lines(const Signal& signal) {
     while (n < 2 * signal.size()) n *= 2;
     Signal spectrum = signal;
     spectrum.resize(n);
-    transform(spectrum);
+    Signal roots;
+    for (std::size_t k = 0; k < n / 2; ++k)
+        roots.push_back(turned(-static_cast<double>(k) / static_cast<double>(n)));
+    transform(spectrum, roots);
     std::vector<std::pair<double, std::size_t>> maxima;
     for (std::size_t k = 0; k < n; ++k) {
         const double here = std::abs(spectrum[k]);
@@ -248,6 +254,8 @@ std::optional<QuasiPeriodic> on_one_curve(std::span<const State> points, const S
               most_drift * fine.curvature))
             continue;
         const double width = 1 / count;
+        const double early = line_at(windowed(first), line), late = line_at(windowed(last), line);
+        if (!(std::abs(late - early) < most_decay * early)) continue;
         double error = 0;
         for (const auto& part : {first, last})
             error = std::max(error, std::abs(refined(windowed(part), line, width) - line));

@@ -235,6 +235,24 @@ TEST_CASE("chaos within a tenth of the orbit that captures the motion afterwards
     CHECK(j.verdict.reason == VerdictReason::transient);
 }
 
+TEST_CASE("a run that leaves the neighbourhood of its orbit once more is not captured yet") {
+    Parameters p;
+    p.epsilon = 0.075734637292841883, p.lambda = 0.02115741424509213, p.G = 0.032637994868559832;
+    p.damping = Damping::closed_form, p.Omega = 2.0976927190108516;
+    p.R_plus = 0.19279955890545986, p.R_minus = 0.47674603825882939, p.b = 0.0008726291654418065;
+    const State start{
+        0.00053557974805195816, -0.00057118383661351193, -0.0012145992250063224,
+        -0.00067190514568056352};
+    const Judged early = judged(p, start, 1000);
+    REQUIRE(early.regime.orbit);
+    CHECK(early.regime.orbit->cycles == 107);
+    CHECK_FALSE(early.regime.capture->tau);
+    const Judged late = judged(p, start, 4500);
+    REQUIRE(late.regime.capture);
+    REQUIRE(late.regime.capture->tau);
+    CHECK(*late.regime.capture->tau > 3000 * p.cycle());
+}
+
 TEST_CASE("a ball that flies without impacts is not judged before its next contact") {
     Parameters p = table1(1, Damping::equation_of_motion);
     const State flying{0, 0, 1e-4, 0}, resting{0, 0, 0, 0};

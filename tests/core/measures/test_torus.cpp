@@ -65,11 +65,11 @@ TEST_CASE("a curve with a thickness, too few points and a periodic motion are no
 }
 
 TEST_CASE("a slow spiral onto a point is no torus, also near a resonance") {
-    for (const double turns : {0.30901699437494742, 0.4284475410888928})
-        for (const double modulus : {0.9999, 0.99963}) {
+    for (const double turns : {0.30901699437494742, 0.4284475410888928, 0.439991229})
+        for (const double modulus : {0.9999, 0.99963, 0.9993}) {
             CAPTURE(turns);
             CAPTURE(modulus);
-            std::vector<State> states = on_curve(turns, 2000);
+            std::vector<State> states = on_curve(turns, 4000);
             for (std::size_t k = 0; k < states.size(); ++k) {
                 const double size = std::pow(modulus, static_cast<double>(k));
                 State& s = states[k];
