@@ -76,7 +76,7 @@ Growth growth_of(const TransferProduct& product) {
     const ExponentHistory& h = product.qr_history();
     const double start = product.start_tau(), T = product.end_tau() - start,
                  lambda1 = product.qr()[0];
-    Growth g{lambda1, product.qr()[1], {nan, nan, nan, nan}, lambda1 * T, nan, nan};
+    Growth g{lambda1, nan, {nan, nan, nan, nan}, lambda1 * T, nan, nan};
     const std::size_t stride = h.coarse_stride();
     for (std::size_t i = 0; i < h.tau.size(); i += stride)
         if (h.tau[i] >= start + 0.5 * T) {
@@ -89,6 +89,9 @@ Growth growth_of(const TransferProduct& product) {
         const auto steps = even_steps(h, start, std::nullopt, last, stride, k);
         g.standard_error[k] = error_of_sum(steps) / (h.tau[last] - start);
         if (k == 0) g.difference_of_halves = difference_of_halves(steps);
+        if (k != 1) continue;
+        const auto late = std::span(steps).last(error_steps / 2);
+        g.late_lambda2 = std::accumulate(late.begin(), late.end(), 0.0) / error_of_sum(late);
     }
     return g;
 }
@@ -101,7 +104,7 @@ Verdict verdict_by_exponents(const Growth& g) {
 
 bool can_be_quasi_periodic(const Growth& g) {
     return verdict_by_exponents(g) != Verdict::chaotic && std::abs(g.late) < least_late_growth &&
-           g.lambda2 < -student_three_sigma * g.standard_error[1];
+           g.late_lambda2 < -student_three_sigma;
 }
 
 namespace {

@@ -36,7 +36,8 @@ inline constexpr double least_late_growth = 2.77;
 /// means over the window; NaN with fewer than 32 entries in the history. Dimensionless except the
 /// exponents and their errors (per unit of tau); NaN if unavailable.
 struct Growth {
-    double lambda1, lambda2;
+    double lambda1;
+    double late_lambda2;       ///< of the second half of the window, in its standard errors
     Exponents standard_error;  ///< of all four exponents
     /// Sum of the first exponent's logarithms over the window and over its second half.
     double whole, late;
@@ -50,7 +51,7 @@ Growth growth_of(const TransferProduct& product);
 Verdict verdict_by_exponents(const Growth& growth);
 
 /// True if the exponents are those of a motion on a torus: the first one is zero within its error
-/// and without growth or decay in the second half of the window, the second one is negative.
+/// and without growth or decay in the second half of the window, where the second one is negative.
 bool can_be_quasi_periodic(const Growth& growth);
 
 /// Least growth, as a logarithm, that shows a chaotic transient.

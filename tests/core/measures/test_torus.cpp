@@ -88,6 +88,11 @@ TEST_CASE("a quasi-periodic motion with two impacts in every cycle is regular") 
     CHECK(j.regime.quasi_periodic->rotation_number == doctest::Approx(0.0555158).epsilon(1e-6));
 }
 
+TEST_CASE("a torus is recognised after a transient") {
+    const Parameters p = table1(0.0199733, Damping::equation_of_motion);
+    CHECK(judged(p, default_state(p), 8000).verdict.reason == VerdictReason::quasi_periodic);
+}
+
 TEST_CASE("a weakly chaotic band and an undamped motion are not quasi-periodic by confidence") {
     const Parameters band = table1(0.0165, Damping::closed_form);
     CHECK_FALSE(judged(band, default_state(band), 2000).regime.quasi_periodic);
