@@ -7,6 +7,7 @@
 #include "api/request.hpp"
 #include "api/schema/json.hpp"
 #include "core/analysis/analysis.hpp"
+#include "core/analysis/perturbation.hpp"
 #include "core/measures/regime.hpp"
 #include "core/sweep/recommend.hpp"
 
@@ -40,6 +41,8 @@ Json describe_window(const TransferProduct& product);
 void add_estimators(
     Json& part, const TransferProduct& product, const Growth& growth, const ExponentOptions& shown,
     bool histories);
+
+Json describe_perturbation(Perturbation&& perturbation);
 
 /// Type, impacts per cycle, periodic orbit and capture; null where a part does not exist.
 Json describe_regime(const Regime& regime);

@@ -7,7 +7,7 @@
 
 #include "api/answer_json.hpp"
 #include "api/describe.hpp"
-#include "api/fitted_unknowns.hpp"
+#include "api/identify_parts.hpp"
 #include "api/properties.hpp"
 #include "api/version.hpp"
 #include "api/warning_text.hpp"

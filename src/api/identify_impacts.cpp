@@ -1,5 +1,3 @@
-#include "api/identify.hpp"
-
 #include <fmt/format.h>
 
 #include <cmath>
@@ -8,6 +6,7 @@
 #include <vector>
 
 #include "api/columns.hpp"
+#include "api/identify_parts.hpp"
 #include "api/parse.hpp"
 #include "api/schema/check.hpp"
 #include "core/measurement/identified_impact.hpp"

@@ -1,14 +1,11 @@
-#include "api/identify.hpp"
-
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
 
 #include "api/cancellation.hpp"
-#include "api/fitted_unknowns.hpp"
+#include "api/identify_parts.hpp"
 #include "api/parse.hpp"
-#include "api/record_columns.hpp"
 #include "api/schema/check.hpp"
 
 namespace vines::api {

@@ -1,12 +1,9 @@
-#include "api/measured_forcing.hpp"
-
 #include <fmt/format.h>
 
 #include <cmath>
 #include <numbers>
 
-#include "api/problem.hpp"
-#include "api/record_columns.hpp"
+#include "api/identify_parts.hpp"
 #include "core/measurement/harmonic.hpp"
 #include "core/motion/elementary.hpp"
 

@@ -1,5 +1,4 @@
-#include "api/perturbation.hpp"
-
+// The field `perturbation` of a request, and its part of the answer.
 #include <algorithm>
 
 #include "api/answer_json.hpp"

@@ -1,10 +1,9 @@
-#include "api/record_columns.hpp"
-
+// Finds the column of a record that holds a channel, and its unit.
 #include <algorithm>
 #include <cctype>
 #include <optional>
 
-#include "api/csv.hpp"
+#include "api/identify_parts.hpp"
 #include "api/problem.hpp"
 #include "api/schema/field.hpp"
 

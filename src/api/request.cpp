@@ -2,8 +2,6 @@
 
 #include <algorithm>
 
-#include "api/perturbation.hpp"
-
 namespace vines::api {
 
 namespace {

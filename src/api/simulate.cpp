@@ -7,7 +7,6 @@
 
 #include "api/answer_json.hpp"
 #include "api/describe.hpp"
-#include "api/perturbation.hpp"
 #include "api/schema/field.hpp"
 #include "api/version.hpp"
 

@@ -19,11 +19,6 @@ struct Axis {
     std::vector<double> values;
 };
 
-/// Reads {parameter, from, to, count, scale} or {parameter, values} with at most `most` values.
-/// Errors are added to `errors`, with `where` before their pointers; the axis is then empty.
-Axis read_axis(
-    const Json& given, const std::string& where, std::size_t most, std::vector<FieldError>& errors);
-
 /// The systems of a sweep's points, by arithmetic alone: the request is read once.
 class SweepSystems {
 public:

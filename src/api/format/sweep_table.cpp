@@ -10,7 +10,6 @@
 #include "api/answer_json.hpp"
 #include "api/problem.hpp"
 #include "api/sweep.hpp"
-#include "api/sweep_line_check.hpp"
 
 namespace vines::api {
 

@@ -37,12 +37,6 @@ Json four_statuses();
 /// `final` and `status`.
 Keys final_keys();
 
-// Paths.
-
-Json paths();
-Json tags();
-/// components/parameters.
-Json parameter_components();
 /// The fields as query parameters; `example`: values of some of them, which together are a valid
 /// request.
 Json query_of(const FieldTable& fields, const Json& example);

@@ -11,6 +11,29 @@
 
 namespace vines::api {
 
+Field integer(
+    const char* name, const char* description, Range range, Json fallback, const char* unit) {
+    return {
+        .name = name,
+        .type = FieldType::integer,
+        .unit = unit,
+        .description = description,
+        .fallback = std::move(fallback),
+        .range = range};
+}
+
+Field choice(
+    const std::string& name, const std::string& description, std::vector<std::string> choices,
+    Json fallback, const std::string& fallback_note) {
+    return {
+        .name = name,
+        .type = FieldType::choice,
+        .description = description,
+        .fallback = std::move(fallback),
+        .fallback_note = fallback_note,
+        .choices = std::move(choices)};
+}
+
 FieldTable grouped(const char* group, FieldTable rows) {
     for (Field& row : rows) row.group = group;
     return rows;

@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
-#include "api/schema/channels.hpp"
 #include "api/schema/enum_names.hpp"
 #include "api/schema/tables.hpp"
 
@@ -70,23 +69,19 @@ void adapt_to_record(Field& f) {
 }
 
 Field column_row(const Channel& c) {
-    return {
-        .name = c.name + "_column",
-        .type = FieldType::choice,
-        .description = "name of the column of " + (c.forcing.empty() ? c.quantity : c.forcing),
-        .fallback_note = fmt::format(
+    return choice(
+        c.name + "_column", "name of the column of " + (c.forcing.empty() ? c.quantity : c.forcing),
+        {}, nullptr,
+        fmt::format(
             "{}, or the first name that begins with {}{}", c.column,
-            fmt::join(c.beginnings, " or "), c.forcing.empty() ? "" : "; optional")};
+            fmt::join(c.beginnings, " or "), c.forcing.empty() ? "" : "; optional"));
 }
 
 Field unit_row(const Channel& c) {
-    return {
-        .name = c.name + "_unit",
-        .type = FieldType::choice,
-        .description =
-            "unit of " + c.quantity + ", unless the column's name or a row of units gives one",
-        .fallback = c.units[0].name,
-        .choices = unit_names(c)};
+    return choice(
+        c.name + "_unit",
+        "unit of " + c.quantity + ", unless the column's name or a row of units gives one",
+        unit_names(c), c.units[0].name);
 }
 
 FieldTable impact_rows() {
