@@ -3,6 +3,7 @@
 
 #include <cmath>
 #include <functional>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -32,6 +33,11 @@ Json describe(const Property<Source> (&properties)[count], const Source* source)
 template <class Source, std::size_t count>
 Json describe(const Property<Source> (&properties)[count], const Source& source) {
     return describe(properties, &source);
+}
+/// Null if there is no source.
+template <class Source, std::size_t count>
+Json describe(const Property<Source> (&properties)[count], const std::optional<Source>& source) {
+    return source ? describe(properties, *source) : Json(nullptr);
 }
 
 /// Upper bound of a value as JSON text with a comma, in bytes; `si`: and of its SI counterpart.

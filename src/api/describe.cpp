@@ -4,7 +4,6 @@
 
 #include <cmath>
 
-#include "api/answer_json.hpp"
 #include "api/properties.hpp"
 #include "core/motion/elementary.hpp"
 
@@ -42,17 +41,16 @@ Json describe_energy(const EnergyResult& e) {
 }
 
 Json describe_manifold(const Manifold& m) {
-    auto point = [](const ManifoldPoint& of) { return describe(properties::manifold_point, of); };
-    const bool breaks = m.symmetry_breaking.has_value();
+    auto point = [](const auto& of) { return describe(properties::manifold_point, of); };
     return object(
         {{"R", m.R},
          {"Omega", m.Omega},
          {"b", m.b},
          {"fold", point(m.fold)},
          {"activation_amplitude", m.fold.C},
-         {"symmetry_breaking", breaks ? point(*m.symmetry_breaking) : Json(nullptr)},
+         {"symmetry_breaking", point(m.symmetry_breaking)},
          {"second_contact", point(m.second_contact)},
-         {"stable_ends_by", breaks ? "symmetry_breaking" : "second_contact"},
+         {"stable_ends_by", m.symmetry_breaking ? "symmetry_breaking" : "second_contact"},
          {"stable", describe(branch_columns, m.stable)},
          {"unstable", describe(branch_columns, m.unstable)},
          {"asymmetric", describe(branch_columns, m.asymmetric)},
@@ -65,10 +63,6 @@ Json describe_manifold(const ManifoldResult& m) {
     j["points"] = {{quantity.tau.name, column(m.tau)}};
     j["points"].update(describe(branch_columns, m.points));
     return j;
-}
-
-Json describe_recommendation(const std::optional<Recommendation>& r) {
-    return r ? describe(properties::recommendation, *r) : Json(nullptr);
 }
 
 namespace {
@@ -112,30 +106,6 @@ Json describe_capture(const Capture& c) {
          {"exponents_before", describe_final(c.before)},
          {"exponents_after", describe_final(c.after)}});
 }
-
-}  // namespace
-
-Json describe_regime(const Regime& r) {
-    const PeriodicOrbit* const orbit = r.orbit ? &*r.orbit : nullptr;
-    Json j = object({{"type", name_of(r.type)}, {"description", describe_type(r)}});
-    j.update(describe(properties::rhythm, r));
-    j.update(describe(properties::orbit, orbit));
-    append(
-        j, {{"multipliers", orbit ? describe_multipliers(*orbit) : Json(nullptr)},
-            {"orbit", orbit ? describe(properties::orbit_state, *orbit) : Json(nullptr)},
-            {"quasi_periodic", r.quasi_periodic
-                                   ? describe(properties::quasi_periodic, *r.quasi_periodic)
-                                   : Json(nullptr)},
-            {"capture", r.capture ? describe_capture(*r.capture) : Json(nullptr)},
-            {"cycles_with", column(r.cycles_with)},
-            {"share_two_impacts", r.cycles_with.size() > 2 ? r.cycles_with[2] : 0},
-            {"z_moving", describe(moving_z_columns, r)},
-            {"synchronised", describe(properties::synchrony, r)},
-            {"stretches", describe(stretch_columns, r.stretches)}});
-    return j;
-}
-
-namespace {
 
 std::string reason_of(const Judgement& judgement, const Growth& g, const Regime& r) {
     const std::string sigmas = fmt::format(
@@ -200,7 +170,35 @@ std::string reason_of(const Judgement& judgement, const Growth& g, const Regime&
     return "";
 }
 
+/// 95 % interval of each exponent.
+Json describe_interval(const Exponents& lambda, const Exponents& error) {
+    const auto ends = [&](double sign) {
+        Exponents end;
+        for (int k = 0; k < 4; ++k) end[k] = lambda[k] + sign * student_95 * error[k];
+        return column(end);
+    };
+    return object({{"level", interval_level}, {"low", ends(-1)}, {"high", ends(1)}});
+}
+
 }  // namespace
+
+Json describe_regime(const Regime& r) {
+    const PeriodicOrbit* const orbit = r.orbit ? &*r.orbit : nullptr;
+    Json j = object({{"type", name_of(r.type)}, {"description", describe_type(r)}});
+    j.update(describe(properties::rhythm, r));
+    j.update(describe(properties::orbit, orbit));
+    append(
+        j, {{"multipliers", orbit ? describe_multipliers(*orbit) : Json(nullptr)},
+            {"orbit", describe(properties::orbit_state, r.orbit)},
+            {"quasi_periodic", describe(properties::quasi_periodic, r.quasi_periodic)},
+            {"capture", r.capture ? describe_capture(*r.capture) : Json(nullptr)},
+            {"cycles_with", column(r.cycles_with)},
+            {"share_two_impacts", r.cycles_with.size() > 2 ? r.cycles_with[2] : 0},
+            {"z_moving", describe(moving_z_columns, r)},
+            {"synchronised", describe(properties::synchrony, r)},
+            {"stretches", describe(stretch_columns, r.stretches)}});
+    return j;
+}
 
 Json describe_final(const Exponents& values) {
     return {{"final", column(values)}, {"status", statuses_of(values)}};
@@ -213,20 +211,6 @@ Json describe_window(const TransferProduct& product) {
         {"impacts", product.impacts()},
         {"sum_rule_residual", finite_or_null(product.sum_rule_residual())}};
 }
-
-namespace {
-
-/// 95 % interval of each exponent.
-Json describe_interval(const Exponents& lambda, const Exponents& error) {
-    const auto ends = [&](double sign) {
-        Exponents end;
-        for (int k = 0; k < 4; ++k) end[k] = lambda[k] + sign * student_95 * error[k];
-        return column(end);
-    };
-    return object({{"level", interval_level}, {"low", ends(-1)}, {"high", ends(1)}});
-}
-
-}  // namespace
 
 void add_estimators(
     Json& j, const TransferProduct& product, const Growth& growth, const ExponentOptions& shown,

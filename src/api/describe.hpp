@@ -2,14 +2,11 @@
 // is null; a word in `status` gives the reason.
 #pragma once
 
-#include <optional>
-
 #include "api/request.hpp"
 #include "api/schema/json.hpp"
 #include "core/analysis/analysis.hpp"
 #include "core/analysis/perturbation.hpp"
 #include "core/measures/regime.hpp"
-#include "core/sweep/recommend.hpp"
 
 namespace vines::api {
 
@@ -25,8 +22,6 @@ Json describe_sections(const Sections& sections);
 Json describe_energy(const EnergyResult& energy);
 Json describe_manifold(const Manifold& manifold);
 Json describe_manifold(const ManifoldResult& manifold);
-/// Null if there is none.
-Json describe_recommendation(const std::optional<Recommendation>& recommendation);
 
 /// {final, status} of the four exponents, per unit of tau.
 Json describe_final(const Exponents& values);

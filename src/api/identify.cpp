@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "api/answer_json.hpp"
 #include "api/describe.hpp"
 #include "api/identify_parts.hpp"
 #include "api/properties.hpp"
@@ -281,20 +280,6 @@ System identified_system(const IdentifyRequest& r, const MeasurementResult& resu
     return used;
 }
 
-}  // namespace
-
-std::string words_of(IdentificationStage stage, int round) {
-    switch (stage) {
-        case IdentificationStage::spikes: return "looking for spikes";
-        case IdentificationStage::impacts:
-            return "refining the impacts" + (round > 0 ? fmt::format(", round {}", round) : "");
-        case IdentificationStage::exponents: break;
-    }
-    return "computing the exponents";
-}
-
-namespace {
-
 MeasurementResult watched_result(const IdentifyRequest& r, const IdentificationWatch& watch) {
     try {
         return evaluate_measurement(r.measurement, watch);
@@ -326,6 +311,16 @@ MeasurementResult watched_result(const IdentifyRequest& r, const IdentificationW
 }
 
 }  // namespace
+
+std::string words_of(IdentificationStage stage, int round) {
+    switch (stage) {
+        case IdentificationStage::spikes: return "looking for spikes";
+        case IdentificationStage::impacts:
+            return "refining the impacts" + (round > 0 ? fmt::format(", round {}", round) : "");
+        case IdentificationStage::exponents: break;
+    }
+    return "computing the exponents";
+}
 
 Json identify_answer(const IdentifyRequest& r, const IdentificationWatch& watch) {
     const Measurement& m = r.measurement;

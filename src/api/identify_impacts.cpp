@@ -3,7 +3,6 @@
 #include <cmath>
 #include <cstdlib>
 #include <optional>
-#include <vector>
 
 #include "api/columns.hpp"
 #include "api/identify_parts.hpp"
@@ -167,9 +166,7 @@ bool has_phase(const Json& impacts) {
 
 void read_impact_list(IdentifyRequest& r, Json given, std::size_t most, CancelCheck& cancel) {
     if (!given.is_object())
-        refuse(
-            {{"/impacts", nullptr, nullptr,
-              "impacts is an object of columns, as in the answer of /v1/simulate"}});
+        refuse("/impacts", "impacts is an object of columns, as in the answer of /v1/simulate");
     ImpactColumnReader list(r, given, most, cancel);
     ListedColumns c = read_columns(list);
     given = nullptr;

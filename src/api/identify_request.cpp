@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "api/cancellation.hpp"
 #include "api/identify_parts.hpp"
 #include "api/parse.hpp"
 #include "api/schema/check.hpp"
@@ -80,8 +79,8 @@ IdentifyRequest read_fields(const Json& given, bool with_record, bool forcing_fi
     if (merged.has("impact_times_s")) {
         if (!with_record)
             refuse(
-                {{"/impact_times_s", nullptr, nullptr,
-                  "impact_times_s needs a record; a list of impacts has its own times"}});
+                "/impact_times_s",
+                "impact_times_s needs a record; a list of impacts has its own times");
         for (const Json& t : merged.fields["impact_times_s"])
             m.impact_times.push_back(t.get<double>() * r.system.si->omega0());
         std::sort(m.impact_times.begin(), m.impact_times.end());
@@ -190,13 +189,10 @@ void read_record(IdentifyRequest& r, const Json& fields, Csv csv, CancelCheck& c
 std::vector<CsvColumn> read_record_columns(Json record, CancelCheck& cancel) {
     std::vector<CsvColumn> columns;
     if (!record.is_object())
-        refuse(
-            {{"/record", nullptr, nullptr,
-              "record must be an object that maps column names to arrays of numbers"}});
+        refuse("/record", "record must be an object that maps column names to arrays of numbers");
     for (auto& [name, values] : record.get_ref<Json::object_t&>()) {
         CsvColumn column{name, {}, {}};
-        if (!values.is_array())
-            refuse({{"/record/" + name, nullptr, nullptr, "a column is an array of numbers"}});
+        if (!values.is_array()) refuse("/record/" + name, "a column is an array of numbers");
         column.values.reserve(entries_of(values));
         take_entries(values, [&](std::size_t i, double number, const Json& value) {
             cancel.step();
@@ -250,9 +246,9 @@ IdentifyRequest read_identify_request(Json fields, const ReadLimits& limits) {
     Json record = taken(fields, "record"), impacts = taken(fields, "impacts");
     if (has_record == has_impacts)
         refuse(
-            {{"/record", nullptr, nullptr,
-              "give either record: {time_s, displacement_m, acceleration_m_s2} or impacts, with "
-              "their states"}});
+            "/record",
+            "give either record: {time_s, displacement_m, acceleration_m_s2} or impacts, with "
+            "their states");
     if (has_impacts) {
         IdentifyRequest r = read_fields(fields, false, !has_phase(impacts));
         read_impact_list(r, std::move(impacts), limits.most_impacts, cancel);

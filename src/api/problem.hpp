@@ -37,5 +37,7 @@ void add_errors(
 
 /// Throws a Problem 422 that lists the errors.
 [[noreturn]] void refuse(std::vector<FieldError> errors);
+/// The same with one error, without value and range.
+[[noreturn]] void refuse(const std::string& pointer, const std::string& detail);
 
 }  // namespace vines::api

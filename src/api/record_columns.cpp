@@ -4,8 +4,6 @@
 #include <optional>
 
 #include "api/identify_parts.hpp"
-#include "api/problem.hpp"
-#include "api/schema/field.hpp"
 
 namespace vines::api {
 

@@ -7,7 +7,6 @@
 #include <cstring>
 #include <memory>
 #include <utility>
-#include <vector>
 
 #include "api/cancellation.hpp"
 #include "api/simulate.hpp"

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <numeric>
 
-#include "api/schema/check.hpp"
 #include "api/schema/enum_names.hpp"
 #include "api/schema/tables.hpp"
 #include "core/motion/elementary.hpp"

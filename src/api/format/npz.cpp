@@ -9,7 +9,6 @@
 #include "api/cancellation.hpp"
 #include "api/format/answer_list.hpp"
 #include "api/format/encode.hpp"
-#include "api/json_text.hpp"
 
 namespace vines::api {
 

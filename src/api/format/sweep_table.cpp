@@ -3,12 +3,9 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <functional>
-#include <limits>
 #include <utility>
 
 #include "api/answer_json.hpp"
-#include "api/problem.hpp"
 #include "api/sweep.hpp"
 
 namespace vines::api {

@@ -15,14 +15,13 @@ namespace document {
 
 namespace {
 
-constexpr const char *json_type = "application/json", *lines_type = "application/x-ndjson";
+constexpr const char* json_type = "application/json";
 
 struct Operation {
     const char *id, *tag, *summary, *description;
     const char* schema;  ///< of the response; null for plain text
     const char* type = json_type;
-    bool computes = false;  ///< takes fields, can be queued, sends Server-Timing
-    bool has_form = false;  ///< has a choice of formats
+    bool computes = false;  ///< takes fields, has formats, can be queued, sends Server-Timing
     bool is_open = false;   ///< needs no key
 };
 
@@ -32,7 +31,7 @@ Json content_of(const Operation& o) {
     Json example = o.schema ? answer_example(o.schema) : Json();
     if (!example.is_null()) media["example"] = std::move(example);
     Json content = {{o.type, std::move(media)}};
-    if (!o.has_form) return content;
+    if (!o.computes) return content;
     for (const FormatName& name : format_names)
         if (name.format != Format::json) content[name.media_type] = {{"schema", text()}};
     return content;
@@ -51,8 +50,7 @@ Json responses(const Operation& o, const std::vector<int>& others, bool reads) {
     std::vector<int> statuses = common_statuses();
     statuses.insert(statuses.end(), others.begin(), others.end());
     if (reads) statuses.push_back(304);
-    if (o.computes) statuses.insert(statuses.end(), {413, 422, 503});
-    if (o.has_form) statuses.push_back(406);
+    if (o.computes) statuses.insert(statuses.end(), {406, 413, 422, 503});
     all.update(responses_of(statuses));
     return all;
 }
@@ -90,43 +88,28 @@ Json post(const Operation& o, const char* request) {
     return operation;
 }
 
-Json simulate_path() {
-    Operation o = {
-        "simulate", "simulation", "One run",
-        "Computes trajectory, impacts and exponents from the parameters. include selects the parts "
-        "of the response, fields selects keys within them.",
-        "Simulation"};
-    o.computes = o.has_form = true;
+/// An operation with its fields in the body, or in the query.
+Json run_path(Operation o, const char* request, const FieldTable& fields) {
+    o.computes = true;
     Operation by_query = o;
-    by_query.id = "simulate_by_query";
-    by_query.summary = "One run, with the fields in the query";
-    return {
-        {"get", get_by_query(by_query, simulate_fields())}, {"post", post(o, "SimulateRequest")}};
-}
-
-Json manifold_path() {
-    Operation o = {
-        "manifold", "simulation", "The slow invariant manifold",
-        "The slow invariant manifold for the same parameters, and a recommended b. Both walls must "
-        "have the same R.",
-        "Manifold"};
-    o.computes = o.has_form = true;
-    Operation by_query = o;
-    by_query.id = "manifold_by_query";
-    by_query.summary = "The slow invariant manifold, with the fields in the query";
-    return {
-        {"get", get_by_query(by_query, manifold_fields())}, {"post", post(o, "ManifoldRequest")}};
+    const std::string id = std::string(o.id) + "_by_query",
+                      summary = std::string(o.summary) + ", with the fields in the query";
+    by_query.id = id.c_str();
+    by_query.summary = summary.c_str();
+    return {{"get", get_by_query(by_query, fields)}, {"post", post(o, request)}};
 }
 
 Json sweep_path() {
     Operation o = {
-        "sweep", "sweep", "Many runs over one to three parameters, as a stream",
+        "sweep",
+        "sweep",
+        "Many runs over one to three parameters, as a stream",
         "A stream of JSON lines: start, then points in any order, progress every 200 ms, sometimes "
         "a warning, and finally done or error. As CSV, CBOR or npz: a table of all points, whose "
         "connection is reset if the sweep ends early.",
-        "SweepLine"};
-    o.type = lines_type;
-    o.computes = o.has_form = true;
+        "SweepLine",
+        "application/x-ndjson"};
+    o.computes = true;
     return {{"post", post(o, "SweepRequest")}};
 }
 
@@ -138,7 +121,7 @@ Json identify_path() {
         "or from a list of impacts. A CSV or text body is a file of columns, with the fields in "
         "the query; a JSON body holds both.",
         "Identification"};
-    o.computes = o.has_form = true;
+    o.computes = true;
     Json operation = post(o, "IdentifyRequest");
     operation["parameters"] = query_of(identify_fields(), Json::object());
     const Json file = {
@@ -166,19 +149,31 @@ Json open_path(
 }
 
 Json metrics_path() {
-    Operation o = {
-        "metrics", "service", "Metrics",
-        "Metrics in the Prometheus text format: requests, waits, refusals, sweeps, impacts, the "
-        "process and the build. Answered without queueing.",
-        nullptr};
-    o.type = "text/plain; version=0.0.4; charset=utf-8";
-    return {{"get", get(o)}};
+    return {
+        {"get",
+         get(
+             {"metrics", "service", "Metrics",
+              "Metrics in the Prometheus text format: requests, waits, refusals, sweeps, impacts, "
+              "the process and the build. Answered without queueing.",
+              nullptr, "text/plain; version=0.0.4; charset=utf-8"})}};
 }
 
 Json paths() {
     return {
-        {"/v1/simulate", simulate_path()},
-        {"/v1/manifold", manifold_path()},
+        {"/v1/simulate",
+         run_path(
+             {"simulate", "simulation", "One run",
+              "Computes trajectory, impacts and exponents from the parameters. include selects the "
+              "parts of the response, fields selects keys within them.",
+              "Simulation"},
+             "SimulateRequest", simulate_fields())},
+        {"/v1/manifold",
+         run_path(
+             {"manifold", "simulation", "The slow invariant manifold",
+              "The slow invariant manifold for the same parameters, and a recommended b. Both "
+              "walls must have the same R.",
+              "Manifold"},
+             "ManifoldRequest", manifold_fields())},
         {"/v1/sweep", sweep_path()},
         {"/v1/identify", identify_path()},
         {"/v1/parameters",
@@ -215,15 +210,6 @@ Json tags() {
         {{"name", "health"}, {"description", "for probes; no key is needed"}}};
 }
 
-Json parameter_components() {
-    return {
-        {"If-None-Match",
-         {{"name", "If-None-Match"},
-          {"in", "header"},
-          {"description", "ETag of a cached response"},
-          {"schema", text()}}}};
-}
-
 Json all_schemas() {
     Json schemas = Json::object();
     for (const auto add :
@@ -237,7 +223,12 @@ Json components() {
     return {
         {"schemas", all_schemas()},
         {"responses", response_components()},
-        {"parameters", parameter_components()},
+        {"parameters",
+         {{"If-None-Match",
+           {{"name", "If-None-Match"},
+            {"in", "header"},
+            {"description", "ETag of a cached response"},
+            {"schema", text()}}}}},
         {"headers", header_components()},
         {"securitySchemes",
          {{"api_key",

@@ -71,26 +71,6 @@ std::size_t distance(const std::string& a, const std::string& b) {
     return row.back();
 }
 
-}  // namespace
-
-std::string nearest_name(std::span<const std::string> names, const std::string& name) {
-    if (name.size() > max_compared_length) return "";
-    const auto nearest = std::min_element(
-        names.begin(), names.end(),
-        [&](const auto& a, const auto& b) { return distance(name, a) < distance(name, b); });
-    // Allows one typing error per three letters, at least one.
-    const std::size_t errors = std::max<std::size_t>(1, name.size() / 3);
-    return distance(name, *nearest) <= errors ? *nearest : "";
-}
-
-std::string nearest_name(const FieldTable& table, const std::string& name) {
-    std::vector<std::string> names;
-    for (const Field& field : table) names.push_back(field.name);
-    return nearest_name(names, name);
-}
-
-namespace {
-
 /// The text as a number if all of it is one finite number; otherwise the text, which check()
 /// reports.
 Json number_or_text(const std::string& text) {
@@ -108,6 +88,22 @@ Json numbers_of(const std::string& text) {
 }
 
 }  // namespace
+
+std::string nearest_name(std::span<const std::string> names, const std::string& name) {
+    if (name.size() > max_compared_length) return "";
+    const auto nearest = std::min_element(
+        names.begin(), names.end(),
+        [&](const auto& a, const auto& b) { return distance(name, a) < distance(name, b); });
+    // Allows one typing error per three letters, at least one.
+    const std::size_t errors = std::max<std::size_t>(1, name.size() / 3);
+    return distance(name, *nearest) <= errors ? *nearest : "";
+}
+
+std::string nearest_name(const FieldTable& table, const std::string& name) {
+    std::vector<std::string> names;
+    for (const Field& field : table) names.push_back(field.name);
+    return nearest_name(names, name);
+}
 
 std::vector<std::string> split(const std::string& text, char separator) {
     std::vector<std::string> parts;
