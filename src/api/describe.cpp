@@ -9,16 +9,16 @@
 
 namespace vines::api {
 
-Json describe_system(const System& system) {
-    Json j = describe(properties::reduced, system.parameters);
-    append(j, {{"origin", system.origin}});
-    if (system.si) append(j, {{"si", describe(properties::si, *system.si)}});
-    return j;
-}
-
-Json describe_derived(const System& system) {
-    Json j = describe(properties::derived, system.parameters);
-    if (system.si) j.update(describe(properties::derived_si, *system.si));
+Json describe_system(const System& system, const Json& of_run) {
+    Json j = describe(properties::reduced, system.parameters),
+         derived = describe(properties::derived, system.parameters);
+    j["origin"] = system.origin;
+    if (system.si) {
+        j["si"] = describe(properties::si, *system.si);
+        derived.update(describe(properties::derived_si, *system.si));
+    }
+    j.update(of_run);
+    j["derived"] = std::move(derived);
     return j;
 }
 

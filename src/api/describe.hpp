@@ -10,10 +10,9 @@
 
 namespace vines::api {
 
-/// The resolved parameters of a system, and the quantities derived from them; without fields of a
-/// run.
-Json describe_system(const System& system);
-Json describe_derived(const System& system);
+/// The resolved parameters of a system, those of its run, and the quantities derived from the
+/// former.
+Json describe_system(const System& system, const Json& of_run = Json::object());
 
 /// {impact, stroboscopic}.
 Json describe_sections(const Sections& sections);

@@ -336,7 +336,6 @@ Json identify_answer(const IdentifyRequest& r, const IdentificationWatch& watch)
     const IdentifiedExponents& judged = result.judged;
     Json answer = {{"version", version()}, {"parameters", describe_system(used)}};
     make_room(answer, most_parts);
-    answer["parameters"]["derived"] = describe_derived(used);
     if (result.refined) {
         answer["signal"] = describe_signal(m, result, r.system.si->omega0());
         answer["signal"]["forcing"] =

@@ -35,11 +35,10 @@ void check_times(const std::vector<double>& time, const std::vector<std::uint32_
 void note_flaws(const MeasuredRecord& r, double omega0, std::vector<std::string>& notes) {
     const std::vector<TimeGap> gaps = time_gaps(r);
     if (!gaps.empty())
-        notes.push_back(
-            "the record has " + std::to_string(gaps.size()) + " gap(s), the first of " +
-            fmt::format("{:.4g}", (gaps[0].to - gaps[0].from) / omega0) + " s at " +
-            fmt::format("{:.6g}", gaps[0].from / omega0) +
-            " s: impacts inside a gap cannot be detected");
+        notes.push_back(fmt::format(
+            "the record has {} gap(s), the first of {:.4g} s at {:.6g} s: impacts inside a gap "
+            "cannot be detected",
+            gaps.size(), (gaps[0].to - gaps[0].from) / omega0, gaps[0].from / omega0));
     // A clipped signal repeats its extreme value.
     const auto warn_of_clipping = [&notes](
                                       const char* name, const std::vector<double>& column,
@@ -64,14 +63,12 @@ IdentifyRequest read_fields(const Json& given, bool with_record, bool forcing_fi
     r.system = read_system_alone(merged, forcing_fitted);
     r.forcing_fitted = forcing_fitted;
     r.notes = r.system.notes;
-    if (with_record && !r.system.si)
-        refuse(
-            {{"/m1", nullptr, nullptr,
-              "a record in seconds needs the oscillator's natural frequency: give m1, c1, k1, m2 "
-              "and f, or a preset"},
-             {"/k1", nullptr, nullptr,
-              "a record in seconds needs the oscillator's natural frequency: give m1, c1, k1, m2 "
-              "and f, or a preset"}});
+    if (with_record && !r.system.si) {
+        const std::string detail =
+            "a record in seconds needs the oscillator's natural frequency: give m1, c1, k1, m2 and "
+            "f, or a preset";
+        refuse({{"/m1", nullptr, nullptr, detail}, {"/k1", nullptr, nullptr, detail}});
+    }
     Measurement& m = r.measurement;
     m.parameters = r.system.parameters;
     m.R_given = given.contains("R") || (given.contains("R_plus") && given.contains("R_minus"));

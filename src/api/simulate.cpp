@@ -76,22 +76,21 @@ void fit_answer(SimulateRequest& r, std::size_t bytes, Warnings& warnings) {
 
 Json describe_parameters(const SimulateRequest& r) {
     const AnalysisRequest& w = r.wanted;
-    Json j = describe_system(r.system);
-    j.update(describe(properties::start, w.start));
+    Json run = describe(properties::start, w.start);
     append(
-        j, {{"tau_end", w.tau_end},
-            {"cycles", w.tau_end / w.parameters.cycle()},
-            {"window", {w.window.from, w.window.to}},
-            {"settle_cycles", w.settle_cycles},
-            {"samples_per_cycle", w.samples_per_cycle},
-            {"section_phase", w.section_phase},
-            {"max_points", w.most_points},
-            {"max_impacts", w.max_impacts}});
+        run, {{"tau_end", w.tau_end},
+              {"cycles", w.tau_end / w.parameters.cycle()},
+              {"window", {w.window.from, w.window.to}},
+              {"settle_cycles", w.settle_cycles},
+              {"samples_per_cycle", w.samples_per_cycle},
+              {"section_phase", w.section_phase},
+              {"max_points", w.most_points},
+              {"max_impacts", w.max_impacts}});
+    Json j = describe_system(r.system, run);
     if (r.system.si)
         append(
             j["si"], {{"x_velocity0", w.start.x_dot * r.system.si->omega0()},
                       {"y_velocity0", w.start.y_dot * r.system.si->omega0()}});
-    append(j, {{"derived", describe_derived(r.system)}});
     return j;
 }
 
@@ -271,8 +270,6 @@ Json simulate_answer(SimulateRequest r, const Stop& stop, std::size_t most_bytes
 
 Json manifold_answer(const ManifoldRequest& r, const Stop& stop) {
     const Parameters& p = r.system.parameters;
-    Json parameters = describe_system(r.system);
-    parameters["derived"] = describe_derived(r.system);
     const Manifold manifold = manifold_of(p, r.V_max, r.points);
     bool late = false;  // stop.requested() has returned true
     const Recommendations recommended =
@@ -285,7 +282,7 @@ Json manifold_answer(const ManifoldRequest& r, const Stop& stop) {
     if (r.system.si) add_si(described, *r.system.si);
     return {
         {"version", version()},
-        {"parameters", std::move(parameters)},
+        {"parameters", describe_system(r.system)},
         {"warnings", warnings},
         {"manifold", std::move(described)}};
 }

@@ -175,7 +175,7 @@ Json describe_point(const SweepRequest& r, std::size_t index, const SweepPoint& 
 }
 
 Json describe_row(const SweepRequest& r, std::size_t index, const RowSummary& row) {
-    const Axis& axis = r.reduced_axis();
+    const Axis& axis = r.axes[*r.plan.grid.reduced];
     Json line = describe_place(r, index);
     line["reduce"] = (r.plan.largest ? "max over " : "min over ") + axis.parameter;
     line.update(describe_peak(axis, row.worst));
@@ -208,7 +208,6 @@ Json sweep_start(const SweepRequest& r) {
     const System system = read_started_system(fields_of(r, r.plan.grid.place_of(0))).system;
     Json parameters = describe_system(system);
     for (const Axis& a : r.axes) parameters["origin"][a.parameter] = "swept: the first of its axis";
-    parameters["derived"] = describe_derived(system);
     const PointOptions& options = r.plan.options;
     std::vector<std::string> warnings = system.notes;
     for (const std::string& warning :

@@ -50,8 +50,6 @@ struct SweepRequest {
     std::vector<Json> starts;  ///< at least one; {} for the default start
     SweepPlan plan;
     std::shared_ptr<const SweepSystems> systems;  ///< used by the plan
-
-    const Axis& reduced_axis() const { return axes[*plan.grid.reduced]; }
 };
 
 /// The fields of a point: base, overridden by its start, then by its values.

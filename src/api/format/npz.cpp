@@ -107,6 +107,18 @@ std::string npy_of(const AnswerList& list) {
     }
 }
 
+/// Calls visit(path, list) for each list of an answer, in order; a path joins names with points.
+/// Lists of objects are skipped.
+template <class Visit>
+void visit_lists(const Json& answer, const Visit& visit, const std::string& path = "") {
+    if (answer.is_object()) {
+        for (const auto& [name, part] : answer.items())
+            visit_lists(part, visit, path.empty() ? name : path + "." + name);
+    } else if (const std::optional<AnswerList> list = AnswerList::of(answer)) {
+        visit(path, *list);
+    }
+}
+
 /// Removes the lists, which have their own files.
 void take_out_lists(Json& object) {
     std::vector<std::string> lists;

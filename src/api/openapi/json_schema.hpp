@@ -62,8 +62,6 @@ Json enum_schema() {
 
 /// I to VI, or none.
 Json regime_name();
-/// 1 or -1.
-Json side();
 
 /// The key of a quantity: with one value, or with a list, a column of a response.
 Key value_of(const Quantity& quantity);
