@@ -1,11 +1,8 @@
 // The lists of an answer: the columns of each, as quantities and their values for a source.
 #pragma once
 
-#include <cmath>
 #include <functional>
-#include <optional>
 #include <string>
-#include <vector>
 
 #include "api/answer_json.hpp"
 #include "api/quantity.hpp"

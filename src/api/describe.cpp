@@ -182,6 +182,28 @@ Json describe_interval(const Exponents& lambda, const Exponents& error) {
 
 }  // namespace
 
+Json describe_perturbation(Perturbation&& p) {
+    const std::optional<LinearStretch>& linear = p.linear;
+    Json j = describe(perturbation_columns, p);
+    j.update(
+        {{"start", object(
+                       {{"x", p.start.x},
+                        {"x_dot", p.start.x_dot},
+                        {"y", p.start.y},
+                        {"y_dot", p.start.y_dot}})},
+         {"impacts", describe(touch_columns, p.impacts)},
+         {quantity.distance.name, column(p.distance)},
+         {"predicted",
+          {{"lambda1", linear ? finite_or_null(linear->lambda1) : Json(nullptr)},
+           {quantity.distance.name, column(p.tangent)}}},
+         {"slope",
+          {{"lambda1", linear ? finite_or_null(linear->slope) : Json(nullptr)},
+           {quantity.tau_start.name, linear ? Json(linear->tau.from) : Json(nullptr)},
+           {quantity.tau_end.name, linear ? Json(linear->tau.to) : Json(nullptr)}}},
+         {quantity.parted.name, or_null(p.parted)}});
+    return j;
+}
+
 Json describe_regime(const Regime& r) {
     const PeriodicOrbit* const orbit = r.orbit ? &*r.orbit : nullptr;
     Json j = object({{"type", name_of(r.type)}, {"description", describe_type(r)}});

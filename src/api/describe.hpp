@@ -4,7 +4,6 @@
 
 #include "api/request.hpp"
 #include "api/schema/json.hpp"
-#include "core/analysis/analysis.hpp"
 #include "core/analysis/perturbation.hpp"
 #include "core/measures/regime.hpp"
 

@@ -217,13 +217,11 @@ void add_fit_warnings(
 /// Warnings about impacts that are missing, were restored or are left out.
 void add_continuity_warnings(const MeasurementResult& result, Warnings& warnings) {
     const Continuity& c = result.continuity;
-    const auto hidden = std::count_if(
-        result.found.impacts.begin(), result.found.impacts.end(),
-        [](const IdentifiedImpact& i) { return i.is_hidden && !i.comes_to_rest; });
-    const auto sticks = sticking_phases(result.found.impacts).size();
-    const auto listed = std::count_if(
-        result.found.impacts.begin(), result.found.impacts.end(),
-        [](const IdentifiedImpact& i) { return !i.comes_to_rest; });
+    const std::vector<IdentifiedImpact>& impacts = result.found.impacts;
+    const auto hidden = std::ranges::count_if(
+        impacts, [](const IdentifiedImpact& i) { return i.is_hidden && !i.comes_to_rest; });
+    const auto sticks = sticking_phases(impacts).size();
+    const auto listed = std::ranges::count(impacts, false, &IdentifiedImpact::comes_to_rest);
     if (hidden > 0 || sticks > 0)
         warnings.push_back(fmt::format(
             "{} impact(s) and {} sticking phase(s) {} were inserted: a simulation of the "

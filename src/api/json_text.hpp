@@ -1,11 +1,8 @@
 // Writes an answer as JSON text. Packed lists (answer_json.hpp) are written directly from memory.
 #pragma once
 
-#include <array>
 #include <cstddef>
-#include <cstdint>
 #include <functional>
-#include <span>
 #include <string>
 #include <string_view>
 

@@ -73,8 +73,7 @@ void check_alternatives(const Json& object, std::vector<FieldError>& errors) {
 }
 
 const Preset& preset_named(const std::string& name) {
-    const auto preset = std::find_if(
-        presets().begin(), presets().end(), [&](const Preset& p) { return p.name == name; });
+    const auto preset = std::ranges::find(presets(), name, &Preset::name);
     if (preset != presets().end()) return *preset;
     Json names = Json::array();
     for (const Preset& p : presets()) names.push_back(p.name);

@@ -2,9 +2,7 @@
 #pragma once
 
 #include <stdexcept>
-#include <string>
 #include <string_view>
-#include <vector>
 
 #include "api/schema/check.hpp"
 

@@ -17,12 +17,6 @@ struct SimulateRequest {
 /// Problem 422 naming every invalid field.
 SimulateRequest read_simulate_request(const Json& object);
 
-/// The perturbation of the initial state; nullopt if not given or invalid, which adds to `errors`.
-/// The unperturbed start must be valid.
-std::optional<State> read_perturbation(
-    const MergedFields& fields, const Parameters& parameters, const State& start,
-    std::vector<FieldError>& errors);
-
 /// The estimators of the field exponents, with a history of max_points.
 ExponentOptions read_estimators(const MergedFields& fields);
 

@@ -249,11 +249,10 @@ Answer simulate_in_parts(
             joined(left_out));
     answer["warnings"] = warnings;
     const bool is_fitted = mentions_limit(warnings, most_bytes);
-    if (!analysis.unkept_impacts || !answer.contains("impacts") || answer["impacts"].is_null())
-        return {std::move(answer), std::nullopt, analysis.outcome.impacts, is_fitted};
-    return {
-        std::move(answer), ListedRun{r.wanted, *analysis.unkept_impacts, scales_of(r, analysis)},
-        analysis.outcome.impacts, is_fitted};
+    std::optional<ListedRun> run;
+    if (analysis.unkept_impacts && answer.contains("impacts") && !answer["impacts"].is_null())
+        run = ListedRun{r.wanted, *analysis.unkept_impacts, scales_of(r, analysis)};
+    return {std::move(answer), std::move(run), analysis.outcome.impacts, is_fitted};
 }
 
 std::string write_answer(

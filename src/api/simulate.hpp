@@ -1,8 +1,6 @@
 // Answers of /v1/simulate and /v1/manifold.
 #pragma once
 
-#include <functional>
-
 #include "api/columns.hpp"
 #include "api/provenance.hpp"
 #include "api/request.hpp"

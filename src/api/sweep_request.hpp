@@ -2,11 +2,7 @@
 #pragma once
 
 #include <memory>
-#include <optional>
-#include <string>
-#include <vector>
 
-#include "api/problem.hpp"
 #include "api/request.hpp"
 #include "api/system_fields.hpp"
 #include "core/sweep/sweep.hpp"

@@ -1,11 +1,7 @@
 // Lists of an answer, packed or not, as input of tables and array files.
 #pragma once
 
-#include <cstdint>
-#include <optional>
-#include <span>
 #include <string>
-#include <vector>
 
 #include "api/answer_json.hpp"
 

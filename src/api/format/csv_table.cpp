@@ -1,5 +1,4 @@
 // CSV: the table of an answer.
-
 #include <fmt/format.h>
 
 #include <cmath>

@@ -2,12 +2,9 @@
 #pragma once
 
 #include <algorithm>
-#include <string>
-#include <vector>
 
 #include "api/quantity.hpp"
 #include "api/schema/enum_names.hpp"
-#include "api/schema/json.hpp"
 
 namespace vines::api::document {
 

@@ -1,9 +1,6 @@
 // The parts of the OpenAPI document, each made in a file of its own.
 #pragma once
 
-#include <string>
-#include <vector>
-
 #include "api/openapi/json_schema.hpp"
 #include "api/schema/tables.hpp"
 

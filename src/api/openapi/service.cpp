@@ -1,5 +1,4 @@
 // Responses about the service itself, problems, and the statuses and headers of all operations.
-
 #include "api/openapi/parts.hpp"
 #include "api/problem.hpp"
 

@@ -43,8 +43,7 @@ struct Checked {
     }
     bool is_choice(const Json& value) const {
         return value.is_string() &&
-               std::find(field.choices.begin(), field.choices.end(), value.get<std::string>()) !=
-                   field.choices.end();
+               std::ranges::count(field.choices, value.get_ref<const std::string&>()) > 0;
     }
     /// Calls check(pointer relative to the field, entry) for each entry of an array of this kind.
     template <class Check>

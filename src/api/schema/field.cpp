@@ -45,8 +45,7 @@ FieldTable operator+(FieldTable table, const FieldTable& more) {
 }
 
 const Field* find(const FieldTable& table, const std::string& name) {
-    const auto field =
-        std::find_if(table.begin(), table.end(), [&](const Field& f) { return f.name == name; });
+    const auto field = std::ranges::find(table, name, &Field::name);
     return field == table.end() ? nullptr : &*field;
 }
 
