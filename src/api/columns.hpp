@@ -1,10 +1,8 @@
 // The lists of an answer: the columns of each, as quantities and their values for a source.
 #pragma once
 
-#include <cmath>
 #include <functional>
 #include <string>
-#include <vector>
 
 #include "api/answer_json.hpp"
 #include "api/quantity.hpp"
@@ -32,6 +30,11 @@ Json describe(const Property<Source> (&properties)[count], const Source* source)
 template <class Source, std::size_t count>
 Json describe(const Property<Source> (&properties)[count], const Source& source) {
     return describe(properties, &source);
+}
+/// Null if there is no source.
+template <class Source, std::size_t count>
+Json describe(const Property<Source> (&properties)[count], const std::optional<Source>& source) {
+    return source ? describe(properties, *source) : Json(nullptr);
 }
 
 /// Upper bound of a value as JSON text with a comma, in bytes; `si`: and of its SI counterpart.

@@ -9,9 +9,7 @@
 #include <cmath>
 #include <optional>
 #include <set>
-#include <utility>
 
-#include "api/cancellation.hpp"
 #include "api/text_encoding.hpp"
 
 namespace vines::api {
@@ -144,10 +142,12 @@ double number_in(const Cell& cell, char separator, std::size_t line, const std::
         "has " + std::to_string(cells) + " columns, the header has " + std::to_string(columns));
 }
 
+auto is_number_by(char separator) {
+    return [separator](const Cell& c) { return number_of(c, separator).has_value(); };
+}
+
 bool has_number(const std::vector<Cell>& cells, char separator) {
-    return std::any_of(cells.begin(), cells.end(), [separator](const Cell& c) {
-        return number_of(c, separator).has_value();
-    });
+    return std::any_of(cells.begin(), cells.end(), is_number_by(separator));
 }
 
 /// A cheap test of the first character and of the presence of a separator: it rejects most lines of
@@ -167,10 +167,7 @@ std::optional<char> separator_of_numbers(std::string_view line, std::optional<ch
     if (!declared) separators += by_blanks;
     for (const char separator : separators) {
         split_cells(line, separator, cells);
-        const auto is_number = [separator](const Cell& c) {
-            return number_of(c, separator).has_value();
-        };
-        if (cells.size() > 1 && std::all_of(cells.begin(), cells.end(), is_number))
+        if (cells.size() > 1 && std::all_of(cells.begin(), cells.end(), is_number_by(separator)))
             return separator;
     }
     return std::nullopt;

@@ -5,11 +5,7 @@
 // names, blank lines and comments (#, %, //) are skipped.
 #pragma once
 
-#include <cstddef>
 #include <cstdint>
-#include <string>
-#include <string_view>
-#include <vector>
 
 #include "api/cancellation.hpp"
 #include "api/problem.hpp"

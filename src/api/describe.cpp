@@ -2,22 +2,23 @@
 
 #include <fmt/format.h>
 
-#include "api/answer_json.hpp"
+#include <cmath>
+
 #include "api/properties.hpp"
 #include "core/motion/elementary.hpp"
 
 namespace vines::api {
 
-Json describe_system(const System& system) {
-    Json j = describe(properties::reduced, system.parameters);
-    append(j, {{"origin", system.origin}});
-    if (system.si) append(j, {{"si", describe(properties::si, *system.si)}});
-    return j;
-}
-
-Json describe_derived(const System& system) {
-    Json j = describe(properties::derived, system.parameters);
-    if (system.si) j.update(describe(properties::derived_si, *system.si));
+Json describe_system(const System& system, const Json& of_run) {
+    Json j = describe(properties::reduced, system.parameters),
+         derived = describe(properties::derived, system.parameters);
+    j["origin"] = system.origin;
+    if (system.si) {
+        j["si"] = describe(properties::si, *system.si);
+        derived.update(describe(properties::derived_si, *system.si));
+    }
+    j.update(of_run);
+    j["derived"] = std::move(derived);
     return j;
 }
 
@@ -40,17 +41,16 @@ Json describe_energy(const EnergyResult& e) {
 }
 
 Json describe_manifold(const Manifold& m) {
-    auto point = [](const ManifoldPoint& of) { return describe(properties::manifold_point, of); };
-    const bool breaks = m.symmetry_breaking.has_value();
+    auto point = [](const auto& of) { return describe(properties::manifold_point, of); };
     return object(
         {{"R", m.R},
          {"Omega", m.Omega},
          {"b", m.b},
          {"fold", point(m.fold)},
          {"activation_amplitude", m.fold.C},
-         {"symmetry_breaking", breaks ? point(*m.symmetry_breaking) : Json(nullptr)},
+         {"symmetry_breaking", point(m.symmetry_breaking)},
          {"second_contact", point(m.second_contact)},
-         {"stable_ends_by", breaks ? "symmetry_breaking" : "second_contact"},
+         {"stable_ends_by", m.symmetry_breaking ? "symmetry_breaking" : "second_contact"},
          {"stable", describe(branch_columns, m.stable)},
          {"unstable", describe(branch_columns, m.unstable)},
          {"asymmetric", describe(branch_columns, m.asymmetric)},
@@ -63,10 +63,6 @@ Json describe_manifold(const ManifoldResult& m) {
     j["points"] = {{quantity.tau.name, column(m.tau)}};
     j["points"].update(describe(branch_columns, m.points));
     return j;
-}
-
-Json describe_recommendation(const std::optional<Recommendation>& r) {
-    return r ? describe(properties::recommendation, *r) : Json(nullptr);
 }
 
 namespace {
@@ -111,7 +107,102 @@ Json describe_capture(const Capture& c) {
          {"exponents_after", describe_final(c.after)}});
 }
 
+std::string reason_of(const Judgement& judgement, const Growth& g, const Regime& r) {
+    const std::string sigmas = fmt::format(
+        "lambda1 = {:.3g} lies {:.1f} standard errors {} zero", g.lambda1,
+        std::abs(g.lambda1 / g.standard_error[0]), g.lambda1 > 0 ? "above" : "below");
+    auto orbit = [&] {
+        return fmt::format(
+            "a stable periodic orbit, whose largest multiplier has the modulus {:.4g}",
+            elementary::modulus(r.orbit->multipliers[0]));
+    };
+    auto captured = [&] {
+        return "a periodic orbit captures the motion " +
+               (r.capture->tau ? fmt::format("at tau = {:.1f}", *r.capture->tau)
+                               : "after the run's end");
+    };
+    switch (judgement.reason) {
+        case VerdictReason::growth:
+            return fmt::format("{}; a verdict needs {:.1f}", sigmas, student_three_sigma) +
+                   (r.capture ? ", but " + captured() : "");
+        case VerdictReason::on_orbit: return "the motion is on " + orbit();
+        case VerdictReason::settling: return "the motion ends on " + orbit();
+        case VerdictReason::quasi_periodic:
+            return fmt::format(
+                "the motion is quasi-periodic: its section is a smooth closed curve, on which it "
+                "makes {:.6g} turns per cycle",
+                r.quasi_periodic->rotation_number);
+        case VerdictReason::next_contact:
+            if (!r.untouched) return "there are no impacts in this window";
+            return "there are no impacts in this window, but " +
+                   (r.untouched->y_dot == 0
+                        ? std::string("the oscillator has not reached its steady motion")
+                        : fmt::format("the ball flies with y' = {:.3g} m", r.untouched->y_dot)) +
+                   (r.untouched->next_contact ? fmt::format(
+                                                    ": the next contact is due at tau = {:.6g}",
+                                                    *r.untouched->next_contact)
+                                              : ": no contact within the next 10,000 cycles");
+        case VerdictReason::free_decay:
+            return "without forcing (G = 0) the motion dies out and has no long-term exponents";
+        case VerdictReason::untouched:
+            return "the ball has no impacts in the end, so there are no exponents to judge";
+        case VerdictReason::transient:
+            return "the window begins in a chaotic transient; " + captured();
+        case VerdictReason::not_known_before:
+            return captured() +
+                   "; the time limit left no time to check whether it was chaotic before";
+        case VerdictReason::no_error: return "too few impacts for a standard error of lambda1";
+        case VerdictReason::within_error:
+            return fmt::format("{}; a verdict needs {:.1f}", sigmas, student_three_sigma);
+        case VerdictReason::little_growth:
+            return fmt::format(
+                "{}, but deviations grow by no more than e^{:.1f} in this window, as they can "
+                "while the motion leaves one unstable orbit; a verdict needs e^{:.0f}",
+                sigmas, g.whole, least_growth);
+        case VerdictReason::algebraic_growth:
+            return fmt::format(
+                "{}, but deviations grow by no more than e^{:.1f} in the second half of this "
+                "window: that can be algebraic growth near a torus",
+                sigmas, g.late);
+        case VerdictReason::negative:
+            return sigmas + ", but no stable periodic orbit was found that the motion approaches";
+    }
+    return "";
+}
+
+/// 95 % interval of each exponent.
+Json describe_interval(const Exponents& lambda, const Exponents& error) {
+    const auto ends = [&](double sign) {
+        Exponents end;
+        for (int k = 0; k < 4; ++k) end[k] = lambda[k] + sign * student_95 * error[k];
+        return column(end);
+    };
+    return object({{"level", interval_level}, {"low", ends(-1)}, {"high", ends(1)}});
+}
+
 }  // namespace
+
+Json describe_perturbation(Perturbation&& p) {
+    const std::optional<LinearStretch>& linear = p.linear;
+    Json j = describe(perturbation_columns, p);
+    j.update(
+        {{"start", object(
+                       {{"x", p.start.x},
+                        {"x_dot", p.start.x_dot},
+                        {"y", p.start.y},
+                        {"y_dot", p.start.y_dot}})},
+         {"impacts", describe(touch_columns, p.impacts)},
+         {quantity.distance.name, column(p.distance)},
+         {"predicted",
+          {{"lambda1", linear ? finite_or_null(linear->lambda1) : Json(nullptr)},
+           {quantity.distance.name, column(p.tangent)}}},
+         {"slope",
+          {{"lambda1", linear ? finite_or_null(linear->slope) : Json(nullptr)},
+           {quantity.tau_start.name, linear ? Json(linear->tau.from) : Json(nullptr)},
+           {quantity.tau_end.name, linear ? Json(linear->tau.to) : Json(nullptr)}}},
+         {quantity.parted.name, or_null(p.parted)}});
+    return j;
+}
 
 Json describe_regime(const Regime& r) {
     const PeriodicOrbit* const orbit = r.orbit ? &*r.orbit : nullptr;
@@ -120,16 +211,77 @@ Json describe_regime(const Regime& r) {
     j.update(describe(properties::orbit, orbit));
     append(
         j, {{"multipliers", orbit ? describe_multipliers(*orbit) : Json(nullptr)},
-            {"orbit", orbit ? describe(properties::orbit_state, *orbit) : Json(nullptr)},
-            {"quasi_periodic", r.quasi_periodic
-                                   ? describe(properties::quasi_periodic, *r.quasi_periodic)
-                                   : Json(nullptr)},
+            {"orbit", describe(properties::orbit_state, r.orbit)},
+            {"quasi_periodic", describe(properties::quasi_periodic, r.quasi_periodic)},
             {"capture", r.capture ? describe_capture(*r.capture) : Json(nullptr)},
             {"cycles_with", column(r.cycles_with)},
             {"share_two_impacts", r.cycles_with.size() > 2 ? r.cycles_with[2] : 0},
             {"z_moving", describe(moving_z_columns, r)},
             {"synchronised", describe(properties::synchrony, r)},
             {"stretches", describe(stretch_columns, r.stretches)}});
+    return j;
+}
+
+Json describe_final(const Exponents& values) {
+    return {{"final", column(values)}, {"status", statuses_of(values)}};
+}
+
+Json describe_window(const TransferProduct& product) {
+    return {
+        {"window", product.impacts() > 0 ? Json::array({product.start_tau(), product.end_tau()})
+                                         : Json(nullptr)},
+        {"impacts", product.impacts()},
+        {"sum_rule_residual", finite_or_null(product.sum_rule_residual())}};
+}
+
+void add_estimators(
+    Json& j, const TransferProduct& product, const Growth& growth, const ExponentOptions& shown,
+    bool histories) {
+    if (shown.qr) {
+        Json qr = describe_final(product.qr());
+        qr["standard_error"] = column(growth.standard_error);
+        qr["degrees_of_freedom"] = degrees_of_freedom;
+        qr["interval"] = describe_interval(product.qr(), growth.standard_error);
+        if (histories) qr["history"] = describe(history_columns, product.qr_history());
+        j["qr"] = std::move(qr);
+    }
+    if (shown.eigenvalues) {
+        j["eigenvalues"] = describe_final(product.eigenvalues());
+        if (histories)
+            j["eigenvalues"]["history"] = describe(history_columns, product.eigenvalues_history());
+    }
+    if (!shown.raw_product) return;
+    const double start = product.start_tau();
+    const Exponents final = product.raw_product();
+    Json raw = describe_final(final);
+    raw[quantity.rounding_floor.name] =
+        finite_or_null(rounding_floor(final[0], product.end_tau() - start));
+    if (histories) {
+        const ExponentHistory& history = product.raw_product_history();
+        raw["history"] = describe(history_columns, history);
+        std::vector<double> floor;
+        for (std::size_t i = 0; i < history.tau.size(); ++i)
+            floor.push_back(rounding_floor(history.lambda[i][0], history.tau[i] - start));
+        raw["history"][quantity.rounding_floor.name] = column(floor);
+    }
+    j["raw_product"] = std::move(raw);
+}
+
+Json describe_exponents(
+    const WindowExponents& w, const ExponentOptions& shown, const Regime& regime, bool histories) {
+    Json j = describe_window(w.product);
+    if (shown.qr) {
+        j["verdict"] = enum_json(w.judgement.verdict);
+        j["verdict_sigmas"] = finite_or_null(w.growth.lambda1 / w.growth.standard_error[0]);
+        j["verdict_reason"] = reason_of(w.judgement, w.growth, regime);
+    }
+    add_estimators(j, w.product, w.growth, shown, histories);
+    const auto add_slope = [&](bool is_shown, const char* estimator, double slope) {
+        if (is_shown) j[estimator]["slope"] = finite_or_null(slope);
+    };
+    add_slope(shown.qr, "qr", w.slopes.qr);
+    add_slope(shown.eigenvalues, "eigenvalues", w.slopes.eigenvalues);
+    add_slope(shown.raw_product, "raw_product", w.slopes.raw_product);
     return j;
 }
 

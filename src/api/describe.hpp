@@ -2,20 +2,16 @@
 // is null; a word in `status` gives the reason.
 #pragma once
 
-#include <optional>
-
 #include "api/request.hpp"
 #include "api/schema/json.hpp"
-#include "core/analysis/analysis.hpp"
+#include "core/analysis/perturbation.hpp"
 #include "core/measures/regime.hpp"
-#include "core/sweep/recommend.hpp"
 
 namespace vines::api {
 
-/// The resolved parameters of a system, and the quantities derived from them; without fields of a
-/// run.
-Json describe_system(const System& system);
-Json describe_derived(const System& system);
+/// The resolved parameters of a system, those of its run, and the quantities derived from the
+/// former.
+Json describe_system(const System& system, const Json& of_run = Json::object());
 
 /// {impact, stroboscopic}.
 Json describe_sections(const Sections& sections);
@@ -24,8 +20,6 @@ Json describe_sections(const Sections& sections);
 Json describe_energy(const EnergyResult& energy);
 Json describe_manifold(const Manifold& manifold);
 Json describe_manifold(const ManifoldResult& manifold);
-/// Null if there is none.
-Json describe_recommendation(const std::optional<Recommendation>& recommendation);
 
 /// {final, status} of the four exponents, per unit of tau.
 Json describe_final(const Exponents& values);
@@ -40,6 +34,8 @@ Json describe_window(const TransferProduct& product);
 void add_estimators(
     Json& part, const TransferProduct& product, const Growth& growth, const ExponentOptions& shown,
     bool histories);
+
+Json describe_perturbation(Perturbation&& perturbation);
 
 /// Type, impacts per cycle, periodic orbit and capture; null where a part does not exist.
 Json describe_regime(const Regime& regime);

@@ -1,11 +1,10 @@
-#include "api/fitted_unknowns.hpp"
-
 #include <fmt/format.h>
 
 #include <cmath>
 #include <numbers>
 
 #include "api/answer_json.hpp"
+#include "api/identify_parts.hpp"
 #include "api/schema/enum_names.hpp"
 #include "core/motion/elementary.hpp"
 

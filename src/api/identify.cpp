@@ -5,9 +5,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "api/answer_json.hpp"
 #include "api/describe.hpp"
-#include "api/fitted_unknowns.hpp"
+#include "api/identify_parts.hpp"
 #include "api/properties.hpp"
 #include "api/version.hpp"
 #include "api/warning_text.hpp"
@@ -218,13 +217,11 @@ void add_fit_warnings(
 /// Warnings about impacts that are missing, were restored or are left out.
 void add_continuity_warnings(const MeasurementResult& result, Warnings& warnings) {
     const Continuity& c = result.continuity;
-    const auto hidden = std::count_if(
-        result.found.impacts.begin(), result.found.impacts.end(),
-        [](const IdentifiedImpact& i) { return i.is_hidden && !i.comes_to_rest; });
-    const auto sticks = sticking_phases(result.found.impacts).size();
-    const auto listed = std::count_if(
-        result.found.impacts.begin(), result.found.impacts.end(),
-        [](const IdentifiedImpact& i) { return !i.comes_to_rest; });
+    const std::vector<IdentifiedImpact>& impacts = result.found.impacts;
+    const auto hidden = std::ranges::count_if(
+        impacts, [](const IdentifiedImpact& i) { return i.is_hidden && !i.comes_to_rest; });
+    const auto sticks = sticking_phases(impacts).size();
+    const auto listed = std::ranges::count(impacts, false, &IdentifiedImpact::comes_to_rest);
     if (hidden > 0 || sticks > 0)
         warnings.push_back(fmt::format(
             "{} impact(s) and {} sticking phase(s) {} were inserted: a simulation of the "
@@ -281,20 +278,6 @@ System identified_system(const IdentifyRequest& r, const MeasurementResult& resu
     return used;
 }
 
-}  // namespace
-
-std::string words_of(IdentificationStage stage, int round) {
-    switch (stage) {
-        case IdentificationStage::spikes: return "looking for spikes";
-        case IdentificationStage::impacts:
-            return "refining the impacts" + (round > 0 ? fmt::format(", round {}", round) : "");
-        case IdentificationStage::exponents: break;
-    }
-    return "computing the exponents";
-}
-
-namespace {
-
 MeasurementResult watched_result(const IdentifyRequest& r, const IdentificationWatch& watch) {
     try {
         return evaluate_measurement(r.measurement, watch);
@@ -327,6 +310,16 @@ MeasurementResult watched_result(const IdentifyRequest& r, const IdentificationW
 
 }  // namespace
 
+std::string words_of(IdentificationStage stage, int round) {
+    switch (stage) {
+        case IdentificationStage::spikes: return "looking for spikes";
+        case IdentificationStage::impacts:
+            return "refining the impacts" + (round > 0 ? fmt::format(", round {}", round) : "");
+        case IdentificationStage::exponents: break;
+    }
+    return "computing the exponents";
+}
+
 Json identify_answer(const IdentifyRequest& r, const IdentificationWatch& watch) {
     const Measurement& m = r.measurement;
     const MeasurementResult result = watched_result(r, watch);
@@ -341,7 +334,6 @@ Json identify_answer(const IdentifyRequest& r, const IdentificationWatch& watch)
     const IdentifiedExponents& judged = result.judged;
     Json answer = {{"version", version()}, {"parameters", describe_system(used)}};
     make_room(answer, most_parts);
-    answer["parameters"]["derived"] = describe_derived(used);
     if (result.refined) {
         answer["signal"] = describe_signal(m, result, r.system.si->omega0());
         answer["signal"]["forcing"] =

@@ -5,11 +5,18 @@
 #include <string_view>
 
 #include "api/cancellation.hpp"
-#include "api/measured_forcing.hpp"
 #include "api/request.hpp"
 #include "core/measurement/measurement.hpp"
 
 namespace vines::api {
+
+/// The forcing measured by a channel of the record: the acceleration of the base, or a force on m1.
+struct MeasuredForcing {
+    bool is_force;
+    double f;  ///< Hz
+    /// Coefficients of sin(2 pi f t) and cos(2 pi f t), in m/s^2 or N.
+    double sin, cos;
+};
 
 struct IdentifyRequest {
     System system;  ///< R is valid only if given
@@ -29,14 +36,6 @@ IdentifyRequest read_identify_request(Json object, const ReadLimits& limits = {}
 /// Reads a CSV file and the other fields. Also Problem 413 beyond `limits`.
 IdentifyRequest read_identify_request(
     const Json& fields, std::string_view csv, const ReadLimits& limits = {});
-
-/// True if a list has the phase of the forcing at its impacts; otherwise the forcing is fitted.
-bool has_phase(const Json& impacts);
-
-/// Reads columns of impacts into the request's measurement; notes report fitted values. Problem 422
-/// for invalid columns, Problem 413 for more than `most` impacts; throws Cancelled.
-void read_impact_list(
-    IdentifyRequest& request, Json impacts, std::size_t most, CancelCheck& cancel);
 
 /// Problem 422 if the record shows no impacts; Problem 413 naming the stage if `watch` stops it.
 Json identify_answer(const IdentifyRequest& request, const IdentificationWatch& watch = {});

@@ -1,13 +1,11 @@
-#include "api/identify.hpp"
-
 #include <fmt/format.h>
 
 #include <cmath>
 #include <cstdlib>
 #include <optional>
-#include <vector>
 
 #include "api/columns.hpp"
+#include "api/identify_parts.hpp"
 #include "api/parse.hpp"
 #include "api/schema/check.hpp"
 #include "core/measurement/identified_impact.hpp"
@@ -168,9 +166,7 @@ bool has_phase(const Json& impacts) {
 
 void read_impact_list(IdentifyRequest& r, Json given, std::size_t most, CancelCheck& cancel) {
     if (!given.is_object())
-        refuse(
-            {{"/impacts", nullptr, nullptr,
-              "impacts is an object of columns, as in the answer of /v1/simulate"}});
+        refuse("/impacts", "impacts is an object of columns, as in the answer of /v1/simulate");
     ImpactColumnReader list(r, given, most, cancel);
     ListedColumns c = read_columns(list);
     given = nullptr;

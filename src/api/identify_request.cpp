@@ -1,14 +1,10 @@
-#include "api/identify.hpp"
-
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
 
-#include "api/cancellation.hpp"
-#include "api/fitted_unknowns.hpp"
+#include "api/identify_parts.hpp"
 #include "api/parse.hpp"
-#include "api/record_columns.hpp"
 #include "api/schema/check.hpp"
 
 namespace vines::api {
@@ -39,11 +35,10 @@ void check_times(const std::vector<double>& time, const std::vector<std::uint32_
 void note_flaws(const MeasuredRecord& r, double omega0, std::vector<std::string>& notes) {
     const std::vector<TimeGap> gaps = time_gaps(r);
     if (!gaps.empty())
-        notes.push_back(
-            "the record has " + std::to_string(gaps.size()) + " gap(s), the first of " +
-            fmt::format("{:.4g}", (gaps[0].to - gaps[0].from) / omega0) + " s at " +
-            fmt::format("{:.6g}", gaps[0].from / omega0) +
-            " s: impacts inside a gap cannot be detected");
+        notes.push_back(fmt::format(
+            "the record has {} gap(s), the first of {:.4g} s at {:.6g} s: impacts inside a gap "
+            "cannot be detected",
+            gaps.size(), (gaps[0].to - gaps[0].from) / omega0, gaps[0].from / omega0));
     // A clipped signal repeats its extreme value.
     const auto warn_of_clipping = [&notes](
                                       const char* name, const std::vector<double>& column,
@@ -68,14 +63,12 @@ IdentifyRequest read_fields(const Json& given, bool with_record, bool forcing_fi
     r.system = read_system_alone(merged, forcing_fitted);
     r.forcing_fitted = forcing_fitted;
     r.notes = r.system.notes;
-    if (with_record && !r.system.si)
-        refuse(
-            {{"/m1", nullptr, nullptr,
-              "a record in seconds needs the oscillator's natural frequency: give m1, c1, k1, m2 "
-              "and f, or a preset"},
-             {"/k1", nullptr, nullptr,
-              "a record in seconds needs the oscillator's natural frequency: give m1, c1, k1, m2 "
-              "and f, or a preset"}});
+    if (with_record && !r.system.si) {
+        const std::string detail =
+            "a record in seconds needs the oscillator's natural frequency: give m1, c1, k1, m2 and "
+            "f, or a preset";
+        refuse({{"/m1", nullptr, nullptr, detail}, {"/k1", nullptr, nullptr, detail}});
+    }
     Measurement& m = r.measurement;
     m.parameters = r.system.parameters;
     m.R_given = given.contains("R") || (given.contains("R_plus") && given.contains("R_minus"));
@@ -83,8 +76,8 @@ IdentifyRequest read_fields(const Json& given, bool with_record, bool forcing_fi
     if (merged.has("impact_times_s")) {
         if (!with_record)
             refuse(
-                {{"/impact_times_s", nullptr, nullptr,
-                  "impact_times_s needs a record; a list of impacts has its own times"}});
+                "/impact_times_s",
+                "impact_times_s needs a record; a list of impacts has its own times");
         for (const Json& t : merged.fields["impact_times_s"])
             m.impact_times.push_back(t.get<double>() * r.system.si->omega0());
         std::sort(m.impact_times.begin(), m.impact_times.end());
@@ -193,13 +186,10 @@ void read_record(IdentifyRequest& r, const Json& fields, Csv csv, CancelCheck& c
 std::vector<CsvColumn> read_record_columns(Json record, CancelCheck& cancel) {
     std::vector<CsvColumn> columns;
     if (!record.is_object())
-        refuse(
-            {{"/record", nullptr, nullptr,
-              "record must be an object that maps column names to arrays of numbers"}});
+        refuse("/record", "record must be an object that maps column names to arrays of numbers");
     for (auto& [name, values] : record.get_ref<Json::object_t&>()) {
         CsvColumn column{name, {}, {}};
-        if (!values.is_array())
-            refuse({{"/record/" + name, nullptr, nullptr, "a column is an array of numbers"}});
+        if (!values.is_array()) refuse("/record/" + name, "a column is an array of numbers");
         column.values.reserve(entries_of(values));
         take_entries(values, [&](std::size_t i, double number, const Json& value) {
             cancel.step();
@@ -253,9 +243,9 @@ IdentifyRequest read_identify_request(Json fields, const ReadLimits& limits) {
     Json record = taken(fields, "record"), impacts = taken(fields, "impacts");
     if (has_record == has_impacts)
         refuse(
-            {{"/record", nullptr, nullptr,
-              "give either record: {time_s, displacement_m, acceleration_m_s2} or impacts, with "
-              "their states"}});
+            "/record",
+            "give either record: {time_s, displacement_m, acceleration_m_s2} or impacts, with "
+            "their states");
     if (has_impacts) {
         IdentifyRequest r = read_fields(fields, false, !has_phase(impacts));
         read_impact_list(r, std::move(impacts), limits.most_impacts, cancel);

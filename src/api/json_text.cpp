@@ -1,12 +1,7 @@
 #include "api/json_text.hpp"
 
 #include <algorithm>
-#include <array>
 #include <charconv>
-#include <cmath>
-#include <cstdint>
-#include <cstring>
-#include <utility>
 
 namespace vines::api {
 
@@ -45,6 +40,9 @@ char* write_fraction(char* to, double size) {
     return to + 2 + behind;
 }
 
+// "-9223372036854775808"
+constexpr std::size_t longest_integer = 20;
+
 }  // namespace
 
 char* write_number(char* to, double value) {
@@ -57,13 +55,6 @@ char* write_number(char* to, double value) {
     if (static_cast<double>(whole) != size) return write_fraction(to, size);
     return write_word(std::to_chars(to, to + room_for_number - 1, whole).ptr, ".0", 2);
 }
-
-namespace {
-
-// "-9223372036854775808"
-constexpr std::size_t longest_integer = 20;
-
-}  // namespace
 
 bool needs_no_escape(std::string_view text) {
     return std::all_of(text.begin(), text.end(), [](char c) {
@@ -150,26 +141,10 @@ void JsonText::put_entry(char before, const std::array<Entry, 4>& entry) {
     put(']');
 }
 
-template <class Entry>
-void JsonText::put_list(std::span<const std::uint8_t> list) {
-    char before = '[';
-    for (std::size_t at = 0; at < list.size(); at += sizeof(Entry)) {
-        Entry entry;
-        std::memcpy(&entry, list.data() + at, sizeof entry);
-        put_entry(std::exchange(before, ','), entry);
-    }
-    put(std::string_view(list.empty() ? "[]" : "]"));
-}
-
 void JsonText::put_list(const PackedList& list) {
-    switch (list.packing) {
-        case Packed::numbers: return put_list<double>(list.bytes);
-        case Packed::quadruples: return put_list<Quadruple>(list.bytes);
-        case Packed::matrices: return put_list<MatrixByRows>(list.bytes);
-        case Packed::integers: return put_list<int>(list.bytes);
-        case Packed::flags: return put_list<bool>(list.bytes);
-        case Packed::no: return;
-    }
+    char before = '[';
+    for_each_entry(list, [&](const auto& entry) { put_entry(std::exchange(before, ','), entry); });
+    put(std::string_view(list.bytes.empty() ? "[]" : "]"));
 }
 
 void JsonText::write(Json& json) {

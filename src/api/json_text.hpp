@@ -1,11 +1,8 @@
 // Writes an answer as JSON text. Packed lists (answer_json.hpp) are written directly from memory.
 #pragma once
 
-#include <array>
 #include <cstddef>
-#include <cstdint>
 #include <functional>
-#include <span>
 #include <string>
 #include <string_view>
 
@@ -21,6 +18,25 @@ struct PackedList {
 
 /// The list of a packed value.
 PackedList list_in_memory(const Json& value);
+
+/// Calls take(entry) for each entry of a list, in its type.
+template <class Take>
+void for_each_entry(const PackedList& list, Take take) {
+    const auto take_all = [&]<class Entry>(Entry entry) {
+        for (std::size_t at = 0; at < list.bytes.size(); at += sizeof entry) {
+            std::memcpy(&entry, list.bytes.data() + at, sizeof entry);
+            take(std::as_const(entry));
+        }
+    };
+    switch (list.packing) {
+        case Packed::numbers: return take_all(double());
+        case Packed::quadruples: return take_all(Quadruple());
+        case Packed::matrices: return take_all(MatrixByRows());
+        case Packed::integers: return take_all(int());
+        case Packed::flags: return take_all(bool());
+        case Packed::no: return;
+    }
+}
 
 /// Writes JSON text in pieces of up to 16 kB.
 class JsonText {
@@ -54,8 +70,6 @@ private:
     void put_entry(char before, bool entry);
     template <class Entry>
     void put_entry(char before, const std::array<Entry, 4>& entry);
-    template <class Entry>
-    void put_list(std::span<const std::uint8_t> list);
     void put_list(const PackedList& list);
     /// Where `length` more characters fit.
     char* room(std::size_t length);

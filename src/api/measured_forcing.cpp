@@ -1,12 +1,9 @@
-#include "api/measured_forcing.hpp"
-
 #include <fmt/format.h>
 
 #include <cmath>
 #include <numbers>
 
-#include "api/problem.hpp"
-#include "api/record_columns.hpp"
+#include "api/identify_parts.hpp"
 #include "core/measurement/harmonic.hpp"
 #include "core/motion/elementary.hpp"
 
@@ -30,19 +27,19 @@ std::optional<MeasuredForcing> measured_forcing(
     if (!time.column || !channel.column) return std::nullopt;
     if (base.column && force.column)
         refuse(
-            {{"/record/" + shortened(force.column->name), nullptr, nullptr,
-              "the record has a channel of the base, " + shortened(base.column->name) +
-                  ", and one of a force: the model has one forcing"}});
+            "/record/" + shortened(force.column->name),
+            "the record has a channel of the base, " + shortened(base.column->name) +
+                ", and one of a force: the model has one forcing");
     std::vector<double> seconds;
     for (const double t : time.column->values) seconds.push_back(t * time.factor);
     const std::optional<Harmonic> h =
         harmonic_of(seconds, channel.column->values, [&] { cancel.step(seconds.size()); });
     if (!h)
         refuse(
-            {{"/record/" + shortened(channel.column->name), nullptr, nullptr,
-              "column " + shortened(channel.column->name) +
-                  " is not harmonic: one sine must explain three quarters of it, over five cycles "
-                  "or more"}});
+            "/record/" + shortened(channel.column->name),
+            "column " + shortened(channel.column->name) +
+                " is not harmonic: one sine must explain three quarters of it, over five cycles "
+                "or more");
     return MeasuredForcing{
         force.column != nullptr, h->omega / (2 * std::numbers::pi), h->sin * channel.factor,
         h->cos * channel.factor};

@@ -73,8 +73,7 @@ void check_alternatives(const Json& object, std::vector<FieldError>& errors) {
 }
 
 const Preset& preset_named(const std::string& name) {
-    const auto preset = std::find_if(
-        presets().begin(), presets().end(), [&](const Preset& p) { return p.name == name; });
+    const auto preset = std::ranges::find(presets(), name, &Preset::name);
     if (preset != presets().end()) return *preset;
     Json names = Json::array();
     for (const Preset& p : presets()) names.push_back(p.name);
@@ -141,6 +140,15 @@ Json drop_inapplicable_fields(Json& preset, const FieldTable& table, const Json&
     return dropped;
 }
 
+const Json& value_of(const MergedFields& l, const std::string& name) {
+    if (l.has(name)) return l.fields[name];
+    const Field* own = find(l.table, name);
+    return own && !own->fallback.is_null() ? own->fallback
+                                           : find(simulate_fields(), name)->fallback;
+}
+
+Interval interval_of(const Json& v) { return {v[0].get<double>(), v[1].get<double>()}; }
+
 }  // namespace
 
 std::string MergedFields::origin(const std::string& name) const {
@@ -162,19 +170,6 @@ MergedFields merge_with_preset(const FieldTable& table, const Json& given) {
     merged.erase("preset");
     return {table, given, std::move(merged), given["preset"], std::move(dropped)};
 }
-
-namespace {
-
-const Json& value_of(const MergedFields& l, const std::string& name) {
-    if (l.has(name)) return l.fields[name];
-    const Field* own = find(l.table, name);
-    return own && !own->fallback.is_null() ? own->fallback
-                                           : find(simulate_fields(), name)->fallback;
-}
-
-Interval interval_of(const Json& v) { return {v[0].get<double>(), v[1].get<double>()}; }
-
-}  // namespace
 
 double MergedFields::number(const std::string& name) const {
     return value_of(*this, name).get<double>();

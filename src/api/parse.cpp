@@ -6,17 +6,10 @@
 
 #include <algorithm>
 #include <charconv>
-#include <cstring>
 #include <iterator>
-#include <limits>
-#include <string>
 #include <unordered_set>
-#include <utility>
-#include <vector>
 
-#include "api/cancellation.hpp"
 #include "api/problem.hpp"
-#include "api/schema/field.hpp"
 #include "api/text_encoding.hpp"
 
 namespace vines::api {
@@ -41,6 +34,13 @@ constexpr std::size_t characters_between_polls = 8192;
     throw Problem(400, "the body is not valid JSON: " + what);
 }
 
+/// A problem if a text holds too many things; `has`: the subject and the verb.
+void limit(
+    std::size_t count, std::size_t most, const char* things, int status,
+    const char* has = "the JSON text holds") {
+    if (count > most) throw Problem(status, fmt::format("{} more than {} {}", has, most, things));
+}
+
 /// Input iterator for the library's parser that polls for cancellation and refuses long tokens.
 class Characters {
 public:
@@ -53,19 +53,16 @@ public:
     Characters(const char* at, const CancelCheck& cancel) : at_(at), cancel_(&cancel) {}
     reference operator*() const { return *at_; }
     Characters& operator++() {
-        limit(*at_++);
+        measure(*at_++);
         if (++steps_ % characters_between_polls == 0) cancel_->poll();
         return *this;
     }
     bool operator==(const Characters& other) const { return at_ == other.at_; }
 
 private:
-    void limit(char c) {
+    void measure(char c) {
         if (in_text_) {
-            if (++length_ > longest_string)
-                throw Problem(
-                    400, fmt::format(
-                             "the JSON text has a string of more than {} bytes", longest_string));
+            limit(++length_, longest_string, "bytes", 400, "the JSON text has a string of");
             if (c == '"' && !escaped_) in_text_ = false, length_ = 0;
             escaped_ = c == '\\' && !escaped_;
             return;
@@ -73,10 +70,7 @@ private:
         const bool is_of_number = (c >= '+' && c <= '9' && c != ',') || c == 'e' || c == 'E';
         length_ = is_of_number ? length_ + 1 : 0;
         in_text_ = c == '"';
-        if (length_ > longest_number)
-            throw Problem(
-                400, fmt::format(
-                         "the JSON text has a number of more than {} characters", longest_number));
+        limit(length_, longest_number, "characters", 400, "the JSON text has a number of");
     }
 
     const char* at_;
@@ -106,8 +100,7 @@ public:
     bool number_unsigned(Json::number_unsigned_t value) { return number(value); }
     bool number_float(Json::number_float_t value, const std::string&) { return number(value); }
     bool string(std::string& value) {
-        if (++texts_ > most_texts)
-            throw Problem(400, fmt::format("the JSON text has more than {} strings", most_texts));
+        limit(++texts_, most_texts, "strings", 400, "the JSON text has");
         count_text(value);
         count_value();
         place_other(std::move(value));
@@ -121,9 +114,7 @@ public:
 
     bool key(std::string& name) {
         std::unordered_set<std::string>& names = open_.back().names;
-        if (names.size() >= most_names)
-            throw Problem(
-                400, fmt::format("an object of the JSON text has more than {} names", most_names));
+        limit(names.size() + 1, most_names, "names", 400, "an object of the JSON text has");
         count_text(name);
         if (!names.insert(name).second)
             throw Problem(
@@ -154,23 +145,13 @@ private:
     bool in_column() const { return !open_.empty() && open_.back().holder == Holder::column; }
 
     void count_part() {
-        if (++parts_ > limits_.most_containers)
-            throw Problem(
-                413, fmt::format(
-                         "the JSON text holds more than {} arrays, objects and names",
-                         limits_.most_containers));
+        limit(++parts_, limits_.most_containers, "arrays, objects and names", 413);
     }
-    void count_value() {
-        if (++numbers_ > limits_.most_numbers)
-            throw Problem(
-                413, fmt::format("the JSON text holds more than {} numbers", limits_.most_numbers));
-    }
+    void count_value() { limit(++numbers_, limits_.most_numbers, "numbers", 413); }
     void count_text(const std::string& text) {
-        if ((text_bytes_ += text.size()) > most_text_bytes)
-            throw Problem(
-                400, fmt::format(
-                         "the strings and names of the JSON text have more than {} bytes",
-                         most_text_bytes));
+        limit(
+            text_bytes_ += text.size(), most_text_bytes, "bytes", 400,
+            "the strings and names of the JSON text have");
     }
 
     template <class Number>
@@ -264,6 +245,34 @@ private:
     std::size_t faults_ = 0;                        // values of the column that are no numbers
 };
 
+std::string decoded(std::string_view text) {
+    std::string out;
+    out.reserve(text.size());
+    for (std::size_t i = 0; i < text.size(); ++i) {
+        unsigned char byte = 0;
+        const char* const digits = text.data() + std::min(i + 1, text.size());
+        const char* const end = text.data() + std::min(i + 3, text.size());
+        if (text[i] == '%' && end - digits == 2 &&
+            std::from_chars(digits, end, byte, 16).ptr == end) {
+            out += static_cast<char>(byte);
+            i += 2;
+        } else {
+            out += text[i] == '+' ? ' ' : text[i];
+        }
+    }
+    return out;
+}
+
+/// Problem 400 if `whole`, the full name in the query, is repeated.
+void add_text(
+    Json& object, const std::string& whole, const FieldTable& table, const std::string& name,
+    const std::string& text) {
+    if (!object.is_object() || object.contains(name))
+        throw Problem(400, "the name \"" + whole + "\" comes twice in the query");
+    const Field* f = find(table, name);
+    object[name] = f ? value_of_text(f->type, text) : Json(text);
+}
+
 }  // namespace
 
 Json parse_object(std::string_view text, const ReadLimits& limits, Columns columns) {
@@ -291,28 +300,6 @@ std::size_t entries_of(const Json& list) {
     return all;
 }
 
-namespace {
-
-std::string decoded(std::string_view text) {
-    std::string out;
-    out.reserve(text.size());
-    for (std::size_t i = 0; i < text.size(); ++i) {
-        unsigned char byte = 0;
-        const char* const digits = text.data() + std::min(i + 1, text.size());
-        const char* const end = text.data() + std::min(i + 3, text.size());
-        if (text[i] == '%' && end - digits == 2 &&
-            std::from_chars(digits, end, byte, 16).ptr == end) {
-            out += static_cast<char>(byte);
-            i += 2;
-        } else {
-            out += text[i] == '+' ? ' ' : text[i];
-        }
-    }
-    return out;
-}
-
-}  // namespace
-
 Query parse_query(std::string_view text) {
     Query pairs;
     while (!text.empty()) {
@@ -326,20 +313,6 @@ Query parse_query(std::string_view text) {
     }
     return pairs;
 }
-
-namespace {
-
-/// Problem 400 if `whole`, the full name in the query, is repeated.
-void add_text(
-    Json& object, const std::string& whole, const FieldTable& table, const std::string& name,
-    const std::string& text) {
-    if (!object.is_object() || object.contains(name))
-        throw Problem(400, "the name \"" + whole + "\" comes twice in the query");
-    const Field* f = find(table, name);
-    object[name] = f ? value_of_text(f->type, text) : Json(text);
-}
-
-}  // namespace
 
 Json from_query(const FieldTable& table, const Query& query) {
     Json object = Json::object();

@@ -1,17 +1,11 @@
 // Parses the text of requests: JSON bodies from untrusted clients, and queries.
 #pragma once
 
-#include <cmath>
-#include <cstdint>
-#include <string>
 #include <string_view>
-#include <utility>
-#include <vector>
 
 #include "api/answer_json.hpp"
 #include "api/cancellation.hpp"
 #include "api/schema/field.hpp"
-#include "api/schema/json.hpp"
 
 namespace vines::api {
 

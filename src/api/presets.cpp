@@ -135,15 +135,14 @@ void add_table_3(std::vector<Preset>& list) {
 void add_experiments(std::vector<Preset>& list) {
     const std::string excitation =
         "Forced at resonance with G = 10 mm; the paper does not print its excitation.";
-    for (int figure = 15; figure <= 19; ++figure)
+    for (int figure = 15; figure <= 24; ++figure) {
+        const bool is_periodic = figure < 20;
         list.push_back(
             {"fig" + std::to_string(figure), "Fig. " + std::to_string(figure) + ", Table 4",
-             "experiment, b = 9 mm: two impacts per cycle", excitation, experiment(0.009, 100)});
-    for (int figure = 20; figure <= 24; ++figure)
-        list.push_back(
-            {"fig" + std::to_string(figure), "Fig. " + std::to_string(figure) + ", Table 4",
-             "experiment, b = 15 mm: chaotic strongly modulated response", excitation,
-             experiment(0.015, 170)});
+             is_periodic ? "experiment, b = 9 mm: two impacts per cycle"
+                         : "experiment, b = 15 mm: chaotic strongly modulated response",
+             excitation, is_periodic ? experiment(0.009, 100) : experiment(0.015, 170)});
+    }
     list.push_back(
         {"table4", "Table 4", "experimental parameters, with b = 15 mm", excitation,
          experiment(0.015, 170)});
@@ -156,6 +155,9 @@ std::vector<Preset> make_presets() {
     add_experiments(list);
     return list;
 }
+
+constexpr const char* example_preset = "fig20";
+constexpr double example_seconds = 20;
 
 }  // namespace
 
@@ -176,13 +178,6 @@ Json describe_presets() {
              {"parameters", p.parameters}});
     return {{"citation", citation}, {"doi", doi}, {"presets", std::move(list)}};
 }
-
-namespace {
-
-constexpr const char* example_preset = "fig20";
-constexpr double example_seconds = 20;
-
-}  // namespace
 
 std::string example_record() {
     const SimulateRequest request = read_simulate_request({{"preset", example_preset}});

@@ -1,9 +1,6 @@
 // Presets: one for each figure and table of the paper, with its parameters.
 #pragma once
 
-#include <string>
-#include <vector>
-
 #include "api/problem.hpp"
 
 namespace vines::api {

@@ -1,7 +1,5 @@
 #include "api/problem.hpp"
 
-#include "api/schema/check.hpp"
-
 namespace vines::api {
 
 namespace {
@@ -111,6 +109,10 @@ void refuse(std::vector<FieldError> errors) {
             ? "the first " + std::to_string(errors.size()) + " errors are listed"
             : std::to_string(errors.size()) + " fields are invalid";
     throw Problem(422, detail, std::move(errors));
+}
+
+void refuse(const std::string& pointer, const std::string& detail) {
+    refuse({{pointer, nullptr, nullptr, detail}});
 }
 
 }  // namespace vines::api

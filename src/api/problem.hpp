@@ -2,9 +2,7 @@
 #pragma once
 
 #include <stdexcept>
-#include <string>
 #include <string_view>
-#include <vector>
 
 #include "api/schema/check.hpp"
 
@@ -37,5 +35,7 @@ void add_errors(
 
 /// Throws a Problem 422 that lists the errors.
 [[noreturn]] void refuse(std::vector<FieldError> errors);
+/// The same with one error, without value and range.
+[[noreturn]] void refuse(const std::string& pointer, const std::string& detail);
 
 }  // namespace vines::api

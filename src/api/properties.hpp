@@ -3,7 +3,6 @@
 #pragma once
 
 #include <concepts>
-#include <optional>
 
 #include "api/columns.hpp"
 #include "api/schema/enum_names.hpp"

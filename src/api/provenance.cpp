@@ -3,18 +3,14 @@
 #include <openssl/evp.h>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
-#include <cstdint>
 #include <cstring>
 #include <limits>
 #include <map>
 #include <memory>
-#include <span>
 #include <stdexcept>
 #include <utility>
 
-#include "api/answer_json.hpp"
 #include "api/parse.hpp"
 #include "api/problem.hpp"
 #include "api/version.hpp"
@@ -145,31 +141,27 @@ private:
     std::optional<Sha256> hash_;
 };
 
-template <class Entry>
-std::string list_form(std::span<const std::uint8_t> bytes) {
-    ListForm form;
-    for (std::size_t at = 0; at < bytes.size(); at += sizeof(Entry)) {
-        Entry entry;
-        std::memcpy(&entry, bytes.data() + at, sizeof entry);
-        form.add(entry);
-    }
-    return form.end();
-}
-
 std::string list_form(const PackedList& list) {
-    switch (list.packing) {
-        case Packed::quadruples: return list_form<Quadruple>(list.bytes);
-        case Packed::matrices: return list_form<MatrixByRows>(list.bytes);
-        case Packed::integers: return list_form<int>(list.bytes);
-        case Packed::flags: return list_form<bool>(list.bytes);
-        default: return list_form<double>(list.bytes);
-    }
+    ListForm form;
+    for_each_entry(list, [&form](const auto& entry) { form.add(entry); });
+    return form.end();
 }
 
 std::string list_form(const Json& list) {
     ListForm form;
     for (const Json& entry : list) form.add(entry);
     return form.end();
+}
+
+void add_lists(const Json& value, ContentHash& hash) {
+    if (value.is_binary()) hash.add(list_in_memory(value));
+    if (value.is_structured())
+        for (const Json& part : value) add_lists(part, hash);
+}
+
+/// The hash of provenances of early 0.2.0: of the text before the provenance, followed by }.
+std::string text_sha256(std::string_view sealed) {
+    return sha256(std::string(sealed.substr(0, sealed.rfind(before_provenance))) + "}");
 }
 
 }  // namespace
@@ -265,16 +257,6 @@ std::string sha256(std::string_view text) {
     return hash.end();
 }
 
-namespace {
-
-void add_lists(const Json& value, ContentHash& hash) {
-    if (value.is_binary()) hash.add(list_in_memory(value));
-    if (value.is_structured())
-        for (const Json& part : value) add_lists(part, hash);
-}
-
-}  // namespace
-
 std::string content_sha256(const Json& answer) {
     ContentHash hash(answer);
     add_lists(answer, hash);
@@ -311,15 +293,6 @@ std::string write_sealed(
     take("\n");
     return hashed;
 }
-
-namespace {
-
-/// The hash of provenances of early 0.2.0: of the text before the provenance, followed by }.
-std::string text_sha256(std::string_view sealed) {
-    return sha256(std::string(sealed.substr(0, sealed.rfind(before_provenance))) + "}");
-}
-
-}  // namespace
 
 std::optional<Unsealed> unsealed(std::string_view sealed) {
     Unsealed parts{.answer = parse_object(sealed)};

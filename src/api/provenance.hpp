@@ -1,10 +1,7 @@
 // Provenance of an answer: the inputs from which anyone can reproduce it, as a part of the answer.
 #pragma once
 
-#include <cstddef>
 #include <optional>
-#include <string>
-#include <string_view>
 #include <vector>
 
 #include "api/json_text.hpp"

@@ -1,12 +1,9 @@
-#include "api/record_columns.hpp"
-
+// Finds the column of a record that holds a channel, and its unit.
 #include <algorithm>
 #include <cctype>
 #include <optional>
 
-#include "api/csv.hpp"
-#include "api/problem.hpp"
-#include "api/schema/field.hpp"
+#include "api/identify_parts.hpp"
 
 namespace vines::api {
 
@@ -100,9 +97,7 @@ double unit_factor(const Channel& q, const Json& fields, const CsvColumn& column
     const std::string field = q.name + "_unit";
     const Unit* requested = nullptr;
     if (fields.contains(field))
-        requested = &*std::find_if(
-            q.units.begin(), q.units.end(),
-            [name = fields[field].get<std::string>()](const Unit& u) { return u.name == name; });
+        requested = &*std::ranges::find(q.units, fields[field].get<std::string>(), &Unit::name);
     const Unit* named = unit_of_name(q, column, fields.contains(q.name + "_column"));
     const Unit* in_row = unit_of_row(q, column);
     if (named && in_row && named != in_row)

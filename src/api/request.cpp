@@ -2,8 +2,6 @@
 
 #include <algorithm>
 
-#include "api/perturbation.hpp"
-
 namespace vines::api {
 
 namespace {
@@ -35,19 +33,18 @@ double read_tau_end(const MergedFields& l, double cycle, std::vector<FieldError>
 }
 
 Parts parts_of(const std::set<std::string>& include) {
-    auto includes = [&](const char* part) { return include.contains(part); };
     return {
-        .series = includes("series"),
-        .impacts = includes("impacts"),
-        .exponents = includes("exponents"),
-        .moduli = includes("eigenvalues"),
-        .matrices = includes("matrices"),
-        .section = includes("section"),
-        .energy = includes("energy"),
-        .unattached = includes("energy"),
-        .regime = includes("regime"),
+        .series = include.contains("series"),
+        .impacts = include.contains("impacts"),
+        .exponents = include.contains("exponents"),
+        .moduli = include.contains("eigenvalues"),
+        .matrices = include.contains("matrices"),
+        .section = include.contains("section"),
+        .energy = include.contains("energy"),
+        .unattached = include.contains("energy"),
+        .regime = include.contains("regime"),
         .before_capture = true,
-        .manifold = includes("manifold")};
+        .manifold = include.contains("manifold")};
 }
 
 /// True if the answer reports the field among its parameters. The other fields of a run and its
@@ -64,6 +61,81 @@ void add_origins(std::map<std::string, std::string>& origin, const MergedFields&
         if (is_reported(f)) origin[f.name] = l.origin(f.name);
     if (l.has("cycles")) origin["tau_end"] = "follows from cycles";
     else origin["cycles"] = "follows from tau_end";
+}
+
+/// A component of the perturbation and the start field that it is added to.
+struct Component {
+    const char *name, *of_start;
+    double State::* value;
+};
+constexpr Component perturbed_components[] = {
+    {"x", "x0", &State::x},
+    {"x_dot", "x_dot0", &State::x_dot},
+    {"y", "y0", &State::y},
+    {"y_dot", "y_dot0", &State::y_dot},
+};
+
+const std::string at_perturbation = "/perturbation/";
+
+/// Maps an invalid field of the perturbed start to the field of the perturbation. |x - y| <= b is
+/// reported for y, or for x if only that is given; a random perturbation is reported by its size.
+FieldError error_of(
+    const Fault& fault, const Json& given, const Parameters& p, const State& start,
+    const State& perturbed) {
+    const std::string detail = "the perturbed start is invalid: " + fault.message;
+    if (given.contains("size")) return {at_perturbation + "size", given["size"], nullptr, detail};
+    const bool by_x = fault.field == "y0" && !given.contains("y");
+    const Component& c = *std::find_if(
+        std::begin(perturbed_components), std::end(perturbed_components), [&](const Component& of) {
+            return by_x ? of.value == &State::x : of.of_start == fault.field;
+        });
+    const double from = start.*c.value, low = by_x ? perturbed.y - p.b : fault.minimum,
+                 high = by_x ? perturbed.y + p.b : fault.maximum;
+    return {
+        at_perturbation + c.name, given.value(c.name, 0.0), Json::array({low - from, high - from}),
+        detail};
+}
+
+/// The perturbation of the initial state; nullopt if not given or invalid, which adds to `errors`.
+/// The unperturbed start must be valid.
+std::optional<State> read_perturbation(
+    const MergedFields& l, const Parameters& p, const State& start,
+    std::vector<FieldError>& errors) {
+    if (!l.has("perturbation")) return std::nullopt;
+    const Json& given = l.fields["perturbation"];
+    const auto own = present(given, {"x", "x_dot", "y", "y_dot"}),
+               random = present(given, {"seed", "size"});
+    if (!own.empty() && !random.empty()) {
+        for (const auto& some : {own, random})
+            for (const std::string& name : some)
+                errors.push_back(
+                    {at_perturbation + name, given[name], nullptr,
+                     "a perturbation is either x, x_dot, y, y_dot or seed and size"});
+        return std::nullopt;
+    }
+    if (!random.empty() && !given.contains("size")) {
+        errors.push_back(
+            {at_perturbation + "size", nullptr, nullptr,
+             "size, the length of the perturbation, is missing"});
+        return std::nullopt;
+    }
+    State difference;
+    for (const Component& c : perturbed_components) difference.*c.value = given.value(c.name, 0.0);
+    if (!random.empty()) {
+        const double seed = given.value(
+            "seed", find(find(l.table, "perturbation")->fields, "seed")->fallback.get<double>());
+        difference =
+            random_difference(static_cast<std::uint64_t>(seed), given["size"].get<double>());
+    }
+    const State perturbed = displaced(start, difference);
+    if (length_of(difference_of(perturbed, start)) == 0)
+        errors.push_back(
+            {"/perturbation", given, nullptr,
+             "the perturbed start equals the start: the perturbation must not be zero, nor below "
+             "the rounding of the start"});
+    for (const Fault& fault : validate(p, perturbed))
+        errors.push_back(error_of(fault, given, p, start, perturbed));
+    return difference;
 }
 
 }  // namespace

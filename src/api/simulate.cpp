@@ -5,9 +5,8 @@
 #include <algorithm>
 #include <utility>
 
-#include "api/answer_json.hpp"
 #include "api/describe.hpp"
-#include "api/perturbation.hpp"
+#include "api/properties.hpp"
 #include "api/schema/field.hpp"
 #include "api/version.hpp"
 
@@ -77,25 +76,21 @@ void fit_answer(SimulateRequest& r, std::size_t bytes, Warnings& warnings) {
 
 Json describe_parameters(const SimulateRequest& r) {
     const AnalysisRequest& w = r.wanted;
-    Json j = describe_system(r.system);
+    Json run = describe(properties::start, w.start);
     append(
-        j, {{"x0", w.start.x},
-            {"x_dot0", w.start.x_dot},
-            {"y0", w.start.y},
-            {"y_dot0", w.start.y_dot},
-            {"tau_end", w.tau_end},
-            {"cycles", w.tau_end / w.parameters.cycle()},
-            {"window", {w.window.from, w.window.to}},
-            {"settle_cycles", w.settle_cycles},
-            {"samples_per_cycle", w.samples_per_cycle},
-            {"section_phase", w.section_phase},
-            {"max_points", w.most_points},
-            {"max_impacts", w.max_impacts}});
+        run, {{"tau_end", w.tau_end},
+              {"cycles", w.tau_end / w.parameters.cycle()},
+              {"window", {w.window.from, w.window.to}},
+              {"settle_cycles", w.settle_cycles},
+              {"samples_per_cycle", w.samples_per_cycle},
+              {"section_phase", w.section_phase},
+              {"max_points", w.most_points},
+              {"max_impacts", w.max_impacts}});
+    Json j = describe_system(r.system, run);
     if (r.system.si)
         append(
             j["si"], {{"x_velocity0", w.start.x_dot * r.system.si->omega0()},
                       {"y_velocity0", w.start.y_dot * r.system.si->omega0()}});
-    append(j, {{"derived", describe_derived(r.system)}});
     return j;
 }
 
@@ -148,115 +143,44 @@ bool mentions_limit(const Warnings& warnings, std::size_t most_bytes) {
     });
 }
 
-/// Adds the parts of an answer with their SI counterparts, as long as there is time.
-class AnswerParts {
-public:
-    AnswerParts(const SimulateRequest& r, const Stop& stop, Json& answer)
-        : r_(r),
-          stop_(stop),
-          answer_(answer) {}
-
-    void describe(Analysis& a) {
-        const ExponentOptions& shown = r_.wanted.estimators;
-        part("series", [&] { return api::describe(series_columns, *taken(a.series)); });
-        part("impacts", [&] {
-            if (a.unkept_impacts) return streamed_impacts(r_.system.si);
-            return describe_impacts(taken(a.impacts), scales_of(r_, a));
-        });
-        add("sticking", api::describe(sticking_columns, a.sticks));
-        if (!a.touches.empty()) add("touches", api::describe(touch_columns, a.touches));
-        part("exponents", [&] { return describe_exponents(*a.exponents, shown, *a.regime, true); });
-        if (!a.windows.empty())
-            add("windows", describe_windows(a.windows, shown, *a.regime, a.outcome.tau));
-        part("eigenvalues", [&] { return api::describe(moduli_columns, *taken(a.moduli)); });
-        part("matrices", [&] { return api::describe(matrix_columns, *taken(a.matrices)); });
-        part("section", [&] { return describe_sections(*taken(a.sections)); });
-        part("energy", [&] { return describe_energy(*a.energy); });
-        part("regime", [&] { return describe_regime(*a.regime); });
-        part("manifold", [&] { return describe_manifold(*a.manifold); });
-        if (a.perturbation)
-            put("perturbation", [&] { return describe_perturbation(*taken(a.perturbation)); });
-    }
-
-    /// Parts that are null for lack of time.
+/// Adds the parts of an answer with their SI counterparts, as long as there is time; returns the
+/// names of those that are null for lack of it.
+std::vector<std::string> add_parts(
+    Json& answer, const SimulateRequest& r, Analysis& a, const Stop& stop) {
     std::vector<std::string> left_out;
-
-private:
-    template <class Describe>
-    void part(const char* name, Describe describe) {
-        if (r_.includes(name)) put(name, describe);
-    }
-
-    template <class Describe>
-    void put(const char* name, Describe describe) {
-        if (stop_.late && stop_.late()) {
-            append(answer_, {{name, nullptr}});
-            left_out.push_back(name);
-            return;
-        }
-        add(name, describe());
-    }
-
-    void add(const char* name, Json part) {
-        if (r_.system.si) add_si(part, *r_.system.si);
-        append(answer_, {{name, std::move(part)}});
-    }
-
-    const SimulateRequest& r_;
-    const Stop& stop_;
-    Json& answer_;
-};
-
-}  // namespace
-
-Answer simulate_in_parts(
-    SimulateRequest r, const Stop& stop, std::size_t most_bytes, std::size_t most_kept) {
-    Warnings warnings = r.system.notes;
-    fit_answer(r, most_bytes, warnings);
-    r.wanted.most_kept = most_kept;
-    Analysis analysis = analyse(r.wanted, {.run = stop.requested, .late = stop.analysis_late});
-    Json answer = object(
-        {{"version", version()},
-         {"parameters", describe_parameters(r)},
-         {"status", describe_status(analysis.outcome, r.wanted.max_impacts, stop)},
-         {"warnings", nullptr}});
-    if (analysis.outcome.reason != End::tau_end) warnings.push_back(answer["status"]["message"]);
-    for (const Warning& w : analysis.warnings) warnings.push_back(text_of(w, most_bytes));
-    AnswerParts parts(r, stop, answer);
-    parts.describe(analysis);
-    if (r.system.si) {
-        if (r.includes("energy") && answer["energy"].is_object())
-            add_joules(answer["energy"], *r.system.si);
-        answer["status"]["time_s"] = analysis.outcome.tau / r.system.si->omega0();
-        add_si(answer["parameters"], *r.system.si);
-    }
-    if (!parts.left_out.empty())
-        warnings.push_back(
-            "the time limit for one request ended before these parts were computed, which are "
-            "null: " +
-            joined(parts.left_out));
-    answer["warnings"] = warnings;
-    const bool is_fitted = mentions_limit(warnings, most_bytes);
-    if (!analysis.unkept_impacts || !answer.contains("impacts") || answer["impacts"].is_null())
-        return {std::move(answer), std::nullopt, analysis.outcome.impacts, is_fitted};
-    return {
-        std::move(answer), ListedRun{r.wanted, *analysis.unkept_impacts, scales_of(r, analysis)},
-        analysis.outcome.impacts, is_fitted};
+    const auto add = [&](const char* name, Json part) {
+        if (r.system.si) add_si(part, *r.system.si);
+        append(answer, {{name, std::move(part)}});
+    };
+    const auto add_in_time = [&](const char* name, auto describe_part) {
+        const bool late = stop.late && stop.late();
+        if (late) left_out.push_back(name);
+        add(name, late ? Json(nullptr) : describe_part());
+    };
+    const auto part = [&](const char* name, auto describe_part) {
+        if (r.includes(name)) add_in_time(name, describe_part);
+    };
+    const ExponentOptions& shown = r.wanted.estimators;
+    part("series", [&] { return describe(series_columns, *taken(a.series)); });
+    part("impacts", [&] {
+        if (a.unkept_impacts) return streamed_impacts(r.system.si);
+        return describe_impacts(taken(a.impacts), scales_of(r, a));
+    });
+    add("sticking", describe(sticking_columns, a.sticks));
+    if (!a.touches.empty()) add("touches", describe(touch_columns, a.touches));
+    part("exponents", [&] { return describe_exponents(*a.exponents, shown, *a.regime, true); });
+    if (!a.windows.empty())
+        add("windows", describe_windows(a.windows, shown, *a.regime, a.outcome.tau));
+    part("eigenvalues", [&] { return describe(moduli_columns, *taken(a.moduli)); });
+    part("matrices", [&] { return describe(matrix_columns, *taken(a.matrices)); });
+    part("section", [&] { return describe_sections(*taken(a.sections)); });
+    part("energy", [&] { return describe_energy(*a.energy); });
+    part("regime", [&] { return describe_regime(*a.regime); });
+    part("manifold", [&] { return describe_manifold(*a.manifold); });
+    if (a.perturbation)
+        add_in_time("perturbation", [&] { return describe_perturbation(*taken(a.perturbation)); });
+    return left_out;
 }
-
-std::string write_answer(
-    Answer answer, RunControl& control, const JsonText::Take& take, std::size_t list_bytes) {
-    return write_sealed(
-        answer.json, answer.provenance, take,
-        answer.run ? list_generator(*answer.run, answer.json, control, list_bytes)
-                   : list_in_memory);
-}
-
-Json simulate_answer(SimulateRequest r, const Stop& stop, std::size_t most_bytes) {
-    return simulate_in_parts(std::move(r), stop, most_bytes, everything).json;
-}
-
-namespace {
 
 /// A recommended b above this fraction of the amplitude without absorber causes a warning.
 constexpr double near_free_amplitude = 0.9;
@@ -298,10 +222,53 @@ void add_manifold_warnings(
 
 }  // namespace
 
+Answer simulate_in_parts(
+    SimulateRequest r, const Stop& stop, std::size_t most_bytes, std::size_t most_kept) {
+    Warnings warnings = r.system.notes;
+    fit_answer(r, most_bytes, warnings);
+    r.wanted.most_kept = most_kept;
+    Analysis analysis = analyse(r.wanted, {.run = stop.requested, .late = stop.analysis_late});
+    Json answer = object(
+        {{"version", version()},
+         {"parameters", describe_parameters(r)},
+         {"status", describe_status(analysis.outcome, r.wanted.max_impacts, stop)},
+         {"warnings", nullptr}});
+    if (analysis.outcome.reason != End::tau_end) warnings.push_back(answer["status"]["message"]);
+    for (const Warning& w : analysis.warnings) warnings.push_back(text_of(w, most_bytes));
+    const std::vector<std::string> left_out = add_parts(answer, r, analysis, stop);
+    if (r.system.si) {
+        if (r.includes("energy") && answer["energy"].is_object())
+            add_joules(answer["energy"], *r.system.si);
+        answer["status"]["time_s"] = analysis.outcome.tau / r.system.si->omega0();
+        add_si(answer["parameters"], *r.system.si);
+    }
+    if (!left_out.empty())
+        warnings.push_back(
+            "the time limit for one request ended before these parts were computed, which are "
+            "null: " +
+            joined(left_out));
+    answer["warnings"] = warnings;
+    const bool is_fitted = mentions_limit(warnings, most_bytes);
+    std::optional<ListedRun> run;
+    if (analysis.unkept_impacts && answer.contains("impacts") && !answer["impacts"].is_null())
+        run = ListedRun{r.wanted, *analysis.unkept_impacts, scales_of(r, analysis)};
+    return {std::move(answer), std::move(run), analysis.outcome.impacts, is_fitted};
+}
+
+std::string write_answer(
+    Answer answer, RunControl& control, const JsonText::Take& take, std::size_t list_bytes) {
+    return write_sealed(
+        answer.json, answer.provenance, take,
+        answer.run ? list_generator(*answer.run, answer.json, control, list_bytes)
+                   : list_in_memory);
+}
+
+Json simulate_answer(SimulateRequest r, const Stop& stop, std::size_t most_bytes) {
+    return simulate_in_parts(std::move(r), stop, most_bytes, everything).json;
+}
+
 Json manifold_answer(const ManifoldRequest& r, const Stop& stop) {
     const Parameters& p = r.system.parameters;
-    Json parameters = describe_system(r.system);
-    parameters["derived"] = describe_derived(r.system);
     const Manifold manifold = manifold_of(p, r.V_max, r.points);
     bool late = false;  // stop.requested() has returned true
     const Recommendations recommended =
@@ -309,12 +276,12 @@ Json manifold_answer(const ManifoldRequest& r, const Stop& stop) {
     Warnings warnings = r.system.notes;
     add_manifold_warnings(manifold, r.V_max, recommended, late, warnings);
     Json described = describe_manifold(manifold);
-    described["recommended"] = describe_recommendation(recommended.best);
-    described["robust"] = describe_recommendation(recommended.robust);
+    described["recommended"] = describe(properties::recommendation, recommended.best);
+    described["robust"] = describe(properties::recommendation, recommended.robust);
     if (r.system.si) add_si(described, *r.system.si);
     return {
         {"version", version()},
-        {"parameters", std::move(parameters)},
+        {"parameters", describe_system(r.system)},
         {"warnings", warnings},
         {"manifold", std::move(described)}};
 }

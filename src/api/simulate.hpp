@@ -1,12 +1,11 @@
 // Answers of /v1/simulate and /v1/manifold.
 #pragma once
 
-#include <functional>
-
+#include "api/columns.hpp"
 #include "api/provenance.hpp"
 #include "api/request.hpp"
-#include "api/streamed_impacts.hpp"
 #include "api/warning_text.hpp"
+#include "core/sweep/sweep.hpp"
 
 namespace vines::api {
 
@@ -22,6 +21,13 @@ struct Stop {
     std::function<bool()> analysis_late = {};
     /// Polled while the answer is assembled; once true, the remaining parts are null.
     std::function<bool()> late = {};
+};
+
+/// A run and the range of its listed impacts.
+struct ListedRun {
+    AnalysisRequest wanted;
+    ImpactRange listed;
+    ImpactScales scales;
 };
 
 /// An answer. Impact lists too long for memory are placeholders, generated from `run` while it is
@@ -51,6 +57,17 @@ Answer simulate_in_parts(
 std::string write_answer(
     Answer answer, RunControl& control, const JsonText::Take& take,
     std::size_t list_bytes = most_listed_bytes);
+
+// Long lists of impacts (streamed_impacts.cpp).
+
+/// The columns of describe_impacts() and their SI counterparts as placeholders.
+Json streamed_impacts(const std::optional<SiParameters>& si);
+
+/// A function for JsonText that generates the placeholder lists of `answer`, in their order. Each
+/// repetition of the run fills as many columns as fit into `most_bytes`, at least one, between
+/// control.begin() and control.end(). The function throws Cancelled if `control` stops a run.
+JsonText::ListOf list_generator(
+    const ListedRun& run, const Json& answer, RunControl& control, std::size_t most_bytes);
 
 /// The answer with all lists in memory.
 Json simulate_answer(SimulateRequest request, const Stop& stop, std::size_t most_bytes = any_size);

@@ -1,10 +1,15 @@
-#include "api/streamed_impacts.hpp"
-
+// Impact lists that are generated while an answer is sent.
+//
+// An answer can list more impacts than are kept in memory. Its part `impacts` then holds a
+// placeholder for each column. While the answer is written, the run is repeated, which yields the
+// same bits, for a few columns at a time.
 #include <algorithm>
 #include <cstring>
 #include <memory>
 #include <utility>
-#include <vector>
+
+#include "api/cancellation.hpp"
+#include "api/simulate.hpp"
 
 namespace vines::api {
 

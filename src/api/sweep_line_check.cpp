@@ -1,9 +1,8 @@
-#include "api/sweep_line_check.hpp"
-
+// Checks whether a line can belong to a sweep, without computing it: compares it with sample lines,
+// described for made-up results with every possible set of fields.
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <optional>
 #include <string_view>
 
 #include "api/json_text.hpp"

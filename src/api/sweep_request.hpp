@@ -2,11 +2,7 @@
 #pragma once
 
 #include <memory>
-#include <optional>
-#include <string>
-#include <vector>
 
-#include "api/problem.hpp"
 #include "api/request.hpp"
 #include "api/system_fields.hpp"
 #include "core/sweep/sweep.hpp"
@@ -18,11 +14,6 @@ struct Axis {
     std::string parameter;
     std::vector<double> values;
 };
-
-/// Reads {parameter, from, to, count, scale} or {parameter, values} with at most `most` values.
-/// Errors are added to `errors`, with `where` before their pointers; the axis is then empty.
-Axis read_axis(
-    const Json& given, const std::string& where, std::size_t most, std::vector<FieldError>& errors);
 
 /// The systems of a sweep's points, by arithmetic alone: the request is read once.
 class SweepSystems {
@@ -55,8 +46,6 @@ struct SweepRequest {
     std::vector<Json> starts;  ///< at least one; {} for the default start
     SweepPlan plan;
     std::shared_ptr<const SweepSystems> systems;  ///< used by the plan
-
-    const Axis& reduced_axis() const { return axes[*plan.grid.reduced]; }
 };
 
 /// The fields of a point: base, overridden by its start, then by its values.

@@ -3,7 +3,6 @@
 #pragma once
 
 #include <optional>
-#include <string>
 
 #include "api/problem.hpp"
 #include "core/motion/parameters.hpp"

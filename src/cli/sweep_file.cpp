@@ -7,7 +7,6 @@
 
 #include "api/problem.hpp"
 #include "api/sweep.hpp"
-#include "api/sweep_line_check.hpp"
 #include "cli/json_values.hpp"
 
 namespace vines::cli {

@@ -24,17 +24,6 @@ std::vector<std::uint8_t> doubles_of(const Json& array) {
     return bytes;
 }
 
-void visit_below(
-    const Json& value, const std::string& path,
-    const std::function<void(const std::string&, const AnswerList&)>& visit) {
-    if (value.is_object()) {
-        for (const auto& [name, part] : value.items())
-            visit_below(part, path.empty() ? name : path + "." + name, visit);
-    } else if (const std::optional<AnswerList> list = AnswerList::of(value)) {
-        visit(path, *list);
-    }
-}
-
 }  // namespace
 
 std::optional<AnswerList> AnswerList::of(const Json& value) {
@@ -77,11 +66,6 @@ void nan_for_null(std::span<std::uint8_t> doubles) {
     change_numbers(doubles, [](double number) {
         return std::isfinite(number) ? number : std::numeric_limits<double>::quiet_NaN();
     });
-}
-
-void visit_lists(
-    const Json& answer, const std::function<void(const std::string&, const AnswerList&)>& visit) {
-    visit_below(answer, "", visit);
 }
 
 }  // namespace vines::api

@@ -1,12 +1,7 @@
 // Lists of an answer, packed or not, as input of tables and array files.
 #pragma once
 
-#include <cstdint>
-#include <functional>
-#include <optional>
-#include <span>
 #include <string>
-#include <vector>
 
 #include "api/answer_json.hpp"
 
@@ -35,11 +30,6 @@ private:
     std::vector<std::uint8_t> own_;
     std::vector<std::string> words_;
 };
-
-/// Calls visit(path, list) for each list of an answer, in order; a path joins names with points.
-/// Lists of objects are skipped.
-void visit_lists(
-    const Json& answer, const std::function<void(const std::string&, const AnswerList&)>& visit);
 
 /// Replaces infinities, which stand for null, by NaN.
 void nan_for_null(std::span<std::uint8_t> doubles);

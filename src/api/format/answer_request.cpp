@@ -1,15 +1,11 @@
 #include "api/format/answer_request.hpp"
 
 #include <algorithm>
-#include <array>
 #include <map>
-#include <span>
-#include <string_view>
 #include <utility>
 
 #include "api/problem.hpp"
 #include "api/schema/check.hpp"
-#include "api/schema/field.hpp"
 #include "api/schema/tables.hpp"
 
 namespace vines::api {
@@ -90,48 +86,6 @@ Json included(const std::vector<std::string>& fields, const Field& include) {
     return parts;
 }
 
-}  // namespace
-
-AnswerForm take_form(Json& fields, const FieldTable& table) {
-    Json form = Json::object();
-    for (const Field& f : form_fields()) {
-        if (!fields.contains(f.name)) continue;
-        Json& value = fields[f.name];
-        // A value of a query is text.
-        if (value.is_string() && value.get_ref<const std::string&>().size() > longest_text)
-            refuse(
-                {{"/" + f.name, value, nullptr,
-                  f.name + " has at most " + std::to_string(longest_text) + " bytes"}});
-        form[f.name] = value.is_string() ? value_of_text(f.type, value) : std::move(value);
-        fields.erase(f.name);
-    }
-    std::vector<FieldError> errors = check(form_fields(), form);
-    if (errors.empty() && form.contains("fields")) errors = check_fields(form["fields"]);
-    if (!errors.empty()) refuse(std::move(errors));
-    AnswerForm result;
-    for (const FormatName& name : format_names)
-        if (form.value("format", "") == name.word) result.format = name.format;
-    if (form.contains("fields")) result.fields = form["fields"].get<std::vector<std::string>>();
-    const Field* const include = find(table, "include");
-    if (include && !result.fields.empty() && !fields.contains("include"))
-        fields["include"] = included(result.fields, *include);
-    return result;
-}
-
-void keep_fields(Json& answer, const std::vector<std::string>& fields) {
-    if (fields.empty()) return;
-    Selection selection;
-    for (const char* name : always_kept) selection.add(name);
-    for (const std::string& field : fields) {
-        selection.add(field);
-        if (field != "provenance" && !has(answer, split(field, '.')))
-            answer["warnings"].push_back("fields: there is no " + field + " in this answer");
-    }
-    select(answer, selection);
-}
-
-namespace {
-
 /// The request's fields without the measurement.
 Json without_record(const Json& fields) {
     Json others = Json::object();
@@ -201,6 +155,44 @@ Answer computed(const IdentifyRequest& request, const AnswerForm&, const Compute
 }
 
 }  // namespace
+
+AnswerForm take_form(Json& fields, const FieldTable& table) {
+    Json form = Json::object();
+    for (const Field& f : form_fields()) {
+        if (!fields.contains(f.name)) continue;
+        Json& value = fields[f.name];
+        // A value of a query is text.
+        if (value.is_string() && value.get_ref<const std::string&>().size() > longest_text)
+            refuse(
+                {{"/" + f.name, value, nullptr,
+                  f.name + " has at most " + std::to_string(longest_text) + " bytes"}});
+        form[f.name] = value.is_string() ? value_of_text(f.type, value) : std::move(value);
+        fields.erase(f.name);
+    }
+    std::vector<FieldError> errors = check(form_fields(), form);
+    if (errors.empty() && form.contains("fields")) errors = check_fields(form["fields"]);
+    if (!errors.empty()) refuse(std::move(errors));
+    AnswerForm result;
+    for (const FormatName& name : format_names)
+        if (form.value("format", "") == name.word) result.format = name.format;
+    if (form.contains("fields")) result.fields = form["fields"].get<std::vector<std::string>>();
+    const Field* const include = find(table, "include");
+    if (include && !result.fields.empty() && !fields.contains("include"))
+        fields["include"] = included(result.fields, *include);
+    return result;
+}
+
+void keep_fields(Json& answer, const std::vector<std::string>& fields) {
+    if (fields.empty()) return;
+    Selection selection;
+    for (const char* name : always_kept) selection.add(name);
+    for (const std::string& field : fields) {
+        selection.add(field);
+        if (field != "provenance" && !has(answer, split(field, '.')))
+            answer["warnings"].push_back("fields: there is no " + field + " in this answer");
+    }
+    select(answer, selection);
+}
 
 AnswerRequest read_answer_request(
     const std::string& route, Json fields, const MeasurementBody& body, const ReadLimits& limits) {

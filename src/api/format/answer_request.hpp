@@ -3,16 +3,10 @@
 // functions.
 #pragma once
 
-#include <functional>
-#include <optional>
-#include <string>
-#include <string_view>
 #include <variant>
-#include <vector>
 
 #include "api/format/encode.hpp"
 #include "api/identify.hpp"
-#include "api/provenance.hpp"
 #include "api/schema/field.hpp"
 #include "api/simulate.hpp"
 

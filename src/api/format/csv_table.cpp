@@ -1,18 +1,13 @@
 // CSV: the table of an answer.
-
 #include <fmt/format.h>
 
-#include <array>
 #include <cmath>
 #include <cstring>
-#include <optional>
-#include <string>
 #include <utility>
 
 #include "api/cancellation.hpp"
 #include "api/format/answer_list.hpp"
 #include "api/format/encode.hpp"
-#include "api/json_text.hpp"
 #include "api/problem.hpp"
 #include "api/schema/field.hpp"
 

@@ -3,11 +3,8 @@
 
 #include <array>
 #include <functional>
-#include <string>
-#include <vector>
 
 #include "api/provenance.hpp"
-#include "api/schema/json.hpp"
 
 namespace vines::api {
 

@@ -9,7 +9,6 @@
 #include "api/cancellation.hpp"
 #include "api/format/answer_list.hpp"
 #include "api/format/encode.hpp"
-#include "api/json_text.hpp"
 
 namespace vines::api {
 
@@ -105,6 +104,18 @@ std::string npy_of(const AnswerList& list) {
             nan_for_null(doubles);
             return file("<f8", doubles);
         }
+    }
+}
+
+/// Calls visit(path, list) for each list of an answer, in order; a path joins names with points.
+/// Lists of objects are skipped.
+template <class Visit>
+void visit_lists(const Json& answer, const Visit& visit, const std::string& path = "") {
+    if (answer.is_object()) {
+        for (const auto& [name, part] : answer.items())
+            visit_lists(part, visit, path.empty() ? name : path + "." + name);
+    } else if (const std::optional<AnswerList> list = AnswerList::of(answer)) {
+        visit(path, *list);
     }
 }
 

@@ -3,14 +3,10 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <functional>
-#include <limits>
 #include <utility>
 
 #include "api/answer_json.hpp"
-#include "api/problem.hpp"
 #include "api/sweep.hpp"
-#include "api/sweep_line_check.hpp"
 
 namespace vines::api {
 

@@ -7,9 +7,6 @@
 #include <cstdint>
 #include <limits>
 #include <map>
-#include <optional>
-#include <string>
-#include <vector>
 
 #include "api/format/encode.hpp"
 #include "api/sweep_request.hpp"

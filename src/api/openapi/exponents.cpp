@@ -6,13 +6,11 @@ namespace vines::api::document {
 
 Json four_exponents() { return list_of(or_null(number()), 4); }
 
-Json four_statuses() { return list_of(enum_schema<Status>(), 4); }
-
 Keys final_keys() {
     return {
         {"final", four_exponents(),
          "four exponents at the end of the window, descending, per unit of tau"},
-        {"status", four_statuses(),
+        {"status", list_of(enum_schema<Status>(), 4),
          "for each exponent: ok, minus_infinity (a sticking phase or R = 0 reduced the rank), "
          "not_converged"}};
 }

@@ -85,8 +85,6 @@ Json regime_name() {
     return one_of(names);
 }
 
-Json side() { return {{"type", "integer"}, {"enum", {1, -1}}}; }
-
 namespace {
 
 Json schema_of(ValueType type) {
@@ -94,7 +92,7 @@ Json schema_of(ValueType type) {
         case ValueType::number: return number();
         case ValueType::number_or_null: return or_null(number());
         case ValueType::whole: return whole();
-        case ValueType::wall: return side();
+        case ValueType::wall: return {{"type", "integer"}, {"enum", {1, -1}}};
         case ValueType::flag: return flag();
         case ValueType::word: return text();
         case ValueType::component: return one_of({"x_dot", "x", "y_dot", "y"});

@@ -2,12 +2,9 @@
 #pragma once
 
 #include <algorithm>
-#include <string>
-#include <vector>
 
 #include "api/quantity.hpp"
 #include "api/schema/enum_names.hpp"
-#include "api/schema/json.hpp"
 
 namespace vines::api::document {
 
@@ -62,8 +59,6 @@ Json enum_schema() {
 
 /// I to VI, or none.
 Json regime_name();
-/// 1 or -1.
-Json side();
 
 /// The key of a quantity: with one value, or with a list, a column of a response.
 Key value_of(const Quantity& quantity);

@@ -1,9 +1,6 @@
 // The parts of the OpenAPI document, each made in a file of its own.
 #pragma once
 
-#include <string>
-#include <vector>
-
 #include "api/openapi/json_schema.hpp"
 #include "api/schema/tables.hpp"
 
@@ -14,7 +11,7 @@ namespace vines::api::document {
 void add_requests(Json& schemas);        // requests.cpp
 void add_systems(Json& schemas);         // systems.cpp: parameters and provenance
 void add_exponents(Json& schemas);       // exponents.cpp
-void add_manifolds(Json& schemas);       // manifolds.cpp: the part and the response
+void add_manifolds(Json& schemas);       // simulation.cpp: the part and the response
 void add_simulation(Json& schemas);      // simulation.cpp
 void add_sweep_lines(Json& schemas);     // sweep_lines.cpp
 void add_identification(Json& schemas);  // identification.cpp
@@ -32,17 +29,9 @@ Keys impact_section_keys();
 Keys stroboscopic_keys();
 /// Four numbers; null for minus infinity and for an exponent that is not converged.
 Json four_exponents();
-/// Four status names, which explain each null.
-Json four_statuses();
 /// `final` and `status`.
 Keys final_keys();
 
-// Paths.
-
-Json paths();
-Json tags();
-/// components/parameters.
-Json parameter_components();
 /// The fields as query parameters; `example`: values of some of them, which together are a valid
 /// request.
 Json query_of(const FieldTable& fields, const Json& example);

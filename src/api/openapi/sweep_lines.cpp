@@ -27,10 +27,6 @@ Key state_key(const std::string& description) {
     return optional({"state", object_of(values_of(properties::start)), description});
 }
 
-Key start_of_list() {
-    return optional({"start", whole(), "index of the start, from 0, if there are several"});
-}
-
 Key start_of_line() {
     const Json either = {{"anyOf", {whole(), text()}}};
     return optional(
@@ -90,7 +86,8 @@ Json measured_point() {
 
 Json faulty_point() {
     return object_of(
-        index_keys() + Keys{start_of_list()} +
+        index_keys() +
+        Keys{optional({"start", whole(), "index of the start, from 0, if there are several"})} +
         swept_keys(number(), "value at this point, if swept") +
         Keys{
             {"error", text(),

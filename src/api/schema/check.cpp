@@ -43,12 +43,12 @@ struct Checked {
     }
     bool is_choice(const Json& value) const {
         return value.is_string() &&
-               std::find(field.choices.begin(), field.choices.end(), value.get<std::string>()) !=
-                   field.choices.end();
+               std::ranges::count(field.choices, value.get_ref<const std::string&>()) > 0;
     }
-    /// Calls check(pointer relative to the field, element) for each element.
+    /// Calls check(pointer relative to the field, entry) for each entry of an array of this kind.
     template <class Check>
-    void each(const Json& array, Check check) const {
+    void each(const Json& array, const std::string& kind, Check check) const {
+        if (!array.is_array()) return fail("", array, "must be an array of " + kind);
         for (std::size_t i = 0; i < array.size() && errors.size() < most_errors; ++i)
             check(pointer(std::to_string(i)), array[i]);
     }
@@ -74,17 +74,6 @@ void check_choice(const Checked& c, const Json& value) {
         c.fail("", value, "must be one of " + joined(c.field.choices));
 }
 
-void check_choices(const Checked& c, const Json& value) {
-    if (!value.is_array()) return c.fail("", value, "must be an array of strings");
-    c.each(value, [&](const std::string& where, const Json& element) {
-        if (c.field.choices.empty()) {
-            if (!element.is_string()) c.fail(where, element, "must hold only strings");
-        } else if (!c.is_choice(element)) {
-            c.fail(where, element, "must hold only " + joined(c.field.choices));
-        }
-    });
-}
-
 void check_interval(const Checked& c, const std::string& where, const Json& v) {
     if (!v.is_array() || v.size() != 2 || !v[0].is_number() || !v[1].is_number())
         return c.fail(where, v, "must be two numbers, [from, to]");
@@ -93,29 +82,29 @@ void check_interval(const Checked& c, const std::string& where, const Json& v) {
 }
 
 void check_intervals(const Checked& c, const Json& value) {
-    if (!value.is_array())
-        return c.fail("", value, "must be an array of intervals, [[from, to], ...]");
-    if (value.size() > most_windows)
+    if (value.is_array() && value.size() > most_windows)
         return c.fail(
             "", value.size(), "must hold at most " + std::to_string(most_windows) + " intervals");
-    c.each(value, [&](const std::string& where, const Json& element) {
-        check_interval(c, where, element);
+    c.each(value, "intervals, [[from, to], ...]", [&](const std::string& where, const Json& entry) {
+        check_interval(c, where, entry);
     });
 }
 
-void check_integers(const Checked& c, const Json& value) {
-    if (!value.is_array()) return c.fail("", value, "must be an array of whole numbers");
-    c.each(value, [&](const std::string& where, const Json& element) {
-        if (!element.is_number_integer() || element < 0)
-            c.fail(where, element, "must hold only whole numbers >= 0");
+/// `is_valid`: of an entry; `what`: the valid entries.
+template <class IsValid>
+void check_list(
+    const Checked& c, const Json& value, const std::string& kind, const std::string& what,
+    IsValid is_valid) {
+    c.each(value, kind, [&](const std::string& where, const Json& entry) {
+        if (!is_valid(entry)) c.fail(where, entry, "must hold only " + what);
     });
 }
 
-void check_numbers(const Checked& c, const Json& value) {
-    if (!value.is_array()) return c.fail("", value, "must be an array of numbers");
-    c.each(value, [&](const std::string& where, const Json& element) {
-        if (!element.is_number()) c.fail(where, element, "must hold only numbers");
-    });
+void check_choices(const Checked& c, const Json& value) {
+    const bool any = c.field.choices.empty();
+    check_list(
+        c, value, "strings", any ? "strings" : joined(c.field.choices),
+        [&](const Json& entry) { return any ? entry.is_string() : c.is_choice(entry); });
 }
 
 /// The reader of the request checks the objects themselves, with their own table.
@@ -145,8 +134,14 @@ void check_field(const Checked& c, const Json& value) {
         case FieldType::choices: return check_choices(c, value);
         case FieldType::interval: return check_interval(c, "", value);
         case FieldType::intervals: return check_intervals(c, value);
-        case FieldType::integers: return check_integers(c, value);
-        case FieldType::numbers: return check_numbers(c, value);
+        case FieldType::integers:
+            return check_list(
+                c, value, "whole numbers", "whole numbers >= 0",
+                [](const Json& entry) { return entry.is_number_integer() && entry >= 0; });
+        case FieldType::numbers:
+            return check_list(c, value, "numbers", "numbers", [](const Json& entry) {
+                return entry.is_number();
+            });
         case FieldType::object: return check_object(c, value);
         case FieldType::objects: return check_objects(c, value);
     }

@@ -2,11 +2,8 @@
 #pragma once
 
 #include <cstddef>
-#include <string>
-#include <vector>
 
 #include "api/schema/field.hpp"
-#include "api/schema/json.hpp"
 
 namespace vines::api {
 

@@ -3,9 +3,7 @@
 
 #include <array>
 #include <stdexcept>
-#include <string>
 #include <string_view>
-#include <vector>
 
 #include "api/schema/field.hpp"
 #include "core/measurement/unknowns.hpp"

@@ -11,6 +11,29 @@
 
 namespace vines::api {
 
+Field integer(
+    const char* name, const char* description, Range range, Json fallback, const char* unit) {
+    return {
+        .name = name,
+        .type = FieldType::integer,
+        .unit = unit,
+        .description = description,
+        .fallback = std::move(fallback),
+        .range = range};
+}
+
+Field choice(
+    const std::string& name, const std::string& description, std::vector<std::string> choices,
+    Json fallback, const std::string& fallback_note) {
+    return {
+        .name = name,
+        .type = FieldType::choice,
+        .description = description,
+        .fallback = std::move(fallback),
+        .fallback_note = fallback_note,
+        .choices = std::move(choices)};
+}
+
 FieldTable grouped(const char* group, FieldTable rows) {
     for (Field& row : rows) row.group = group;
     return rows;
@@ -22,8 +45,7 @@ FieldTable operator+(FieldTable table, const FieldTable& more) {
 }
 
 const Field* find(const FieldTable& table, const std::string& name) {
-    const auto field =
-        std::find_if(table.begin(), table.end(), [&](const Field& f) { return f.name == name; });
+    const auto field = std::ranges::find(table, name, &Field::name);
     return field == table.end() ? nullptr : &*field;
 }
 
@@ -48,26 +70,6 @@ std::size_t distance(const std::string& a, const std::string& b) {
     return row.back();
 }
 
-}  // namespace
-
-std::string nearest_name(std::span<const std::string> names, const std::string& name) {
-    if (name.size() > max_compared_length) return "";
-    const auto nearest = std::min_element(
-        names.begin(), names.end(),
-        [&](const auto& a, const auto& b) { return distance(name, a) < distance(name, b); });
-    // Allows one typing error per three letters, at least one.
-    const std::size_t errors = std::max<std::size_t>(1, name.size() / 3);
-    return distance(name, *nearest) <= errors ? *nearest : "";
-}
-
-std::string nearest_name(const FieldTable& table, const std::string& name) {
-    std::vector<std::string> names;
-    for (const Field& field : table) names.push_back(field.name);
-    return nearest_name(names, name);
-}
-
-namespace {
-
 /// The text as a number if all of it is one finite number; otherwise the text, which check()
 /// reports.
 Json number_or_text(const std::string& text) {
@@ -85,6 +87,22 @@ Json numbers_of(const std::string& text) {
 }
 
 }  // namespace
+
+std::string nearest_name(std::span<const std::string> names, const std::string& name) {
+    if (name.size() > max_compared_length) return "";
+    const auto nearest = std::min_element(
+        names.begin(), names.end(),
+        [&](const auto& a, const auto& b) { return distance(name, a) < distance(name, b); });
+    // Allows one typing error per three letters, at least one.
+    const std::size_t errors = std::max<std::size_t>(1, name.size() / 3);
+    return distance(name, *nearest) <= errors ? *nearest : "";
+}
+
+std::string nearest_name(const FieldTable& table, const std::string& name) {
+    std::vector<std::string> names;
+    for (const Field& field : table) names.push_back(field.name);
+    return nearest_name(names, name);
+}
 
 std::vector<std::string> split(const std::string& text, char separator) {
     std::vector<std::string> parts;

@@ -47,6 +47,14 @@ struct Field {
 
 using FieldTable = std::vector<Field>;
 
+/// A row of type integer.
+Field integer(
+    const char* name, const char* description, Range range, Json fallback, const char* unit = "");
+/// A row of type choice; empty `choices` permit any string.
+Field choice(
+    const std::string& name, const std::string& description, std::vector<std::string> choices,
+    Json fallback, const std::string& fallback_note = "");
+
 /// The rows as one group.
 FieldTable grouped(const char* group, FieldTable rows);
 FieldTable operator+(FieldTable table, const FieldTable& more);

@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
-#include "api/schema/channels.hpp"
 #include "api/schema/enum_names.hpp"
 #include "api/schema/tables.hpp"
 
@@ -14,6 +13,91 @@ namespace {
 // g is the standard gravity.
 const std::vector<Unit> acceleration_units = {
     {"m/s2", 1, {"m/s2", "m_s2", "ms-2", "m/s/s"}}, {"g", 9.80665, {"g"}}};
+
+/// Adapts a field of /v1/simulate to a record: some of the system is measured, not given.
+void adapt_to_record(Field& f) {
+    if (f.name == "F" || f.name == "G") f.description += "; fitted if there is a record";
+    if (f.name == "R") {
+        f.fallback = nullptr;
+        f.fallback_note = "estimated for each wall from its impacts";
+    }
+    if (f.name == "m1" || f.name == "k1")
+        f.fallback_note = "required for a record, unless a preset gives it: omega0 scales the time";
+}
+
+Field column_row(const Channel& c) {
+    return choice(
+        c.name + "_column", "name of the column of " + (c.forcing.empty() ? c.quantity : c.forcing),
+        {}, nullptr,
+        fmt::format(
+            "{}, or the first name that begins with {}{}", c.column,
+            fmt::join(c.beginnings, " or "), c.forcing.empty() ? "" : "; optional"));
+}
+
+Field unit_row(const Channel& c) {
+    return choice(
+        c.name + "_unit",
+        "unit of " + c.quantity + ", unless the column's name or a row of units gives one",
+        unit_names(c), c.units[0].name);
+}
+
+std::vector<std::string> fixable() {
+    std::vector<std::string> names = enum_choices<Unknown>();
+    names.insert(names.begin() + 1, {"F", "phase"});
+    return names;
+}
+
+FieldTable record_rows() {
+    FieldTable rows = {
+        {.name = "fixed",
+         .type = FieldType::choices,
+         .description = "quantities that are not fitted to the record: f, F, phase, omega0, zeta, "
+                        "b and R keep "
+                        "the values of the other fields, a sensor counts as free of errors",
+         .fallback = Json::array(),
+         .choices = fixable()},
+        {.name = "phase",
+         .unit = "rad",
+         .description =
+             "phase of the base, which moves by F sin(2 pi f t + phase), t as in the record; used "
+             "if fixed contains phase",
+         .fallback_note = "fitted; if fixed, the phase of the forcing channel",
+         .range = Range{-7, 7}}};
+    const std::vector<const Channel*> channels = {
+        &time_channel, &displacement_channel, &acceleration_channel, &base_channel, &force_channel};
+    for (const Channel* channel : channels) rows.push_back(column_row(*channel));
+    for (const Channel* channel : channels) rows.push_back(unit_row(*channel));
+    rows.push_back(
+        {.name = "threshold",
+         .unit = "standard deviations of the noise",
+         .description = "smallest height at which a spike of the acceleration can be an impact",
+         .fallback = 6,
+         .range = Range{3, 1000}});
+    rows.push_back(
+        {.name = "impact_times_s",
+         .type = FieldType::numbers,
+         .unit = "s",
+         .description =
+             "times of the impacts, for example an edited list; replaces their detection",
+         .fallback_note = "detected in the record"});
+    return rows;
+}
+
+FieldTable make_identify_fields() {
+    FieldTable table = simulate_fields_where([](const Field& f) {
+        return is_of_system(f) || f.name == "exponents" || f.name == "max_points";
+    });
+    for (Field& field : table) adapt_to_record(field);
+    const Field include = {
+        .name = "include",
+        .type = FieldType::choices,
+        .description =
+            "additional parts of the response for a record: motion, the fitted motion at the "
+            "samples; direct_exponents, exponents with histories by the direct method of the paper",
+        .fallback = Json::array(),
+        .choices = {"motion", "direct_exponents"}};
+    return table + grouped("output", {include}) + grouped("record", record_rows());
+}
 
 }  // namespace
 
@@ -55,113 +139,6 @@ std::vector<std::string> unit_names(const Channel& channel) {
     for (const Unit& unit : channel.units) names.push_back(unit.name);
     return names;
 }
-
-namespace {
-
-/// Adapts a field of /v1/simulate to a record: some of the system is measured, not given.
-void adapt_to_record(Field& f) {
-    if (f.name == "F" || f.name == "G") f.description += "; fitted if there is a record";
-    if (f.name == "R") {
-        f.fallback = nullptr;
-        f.fallback_note = "estimated for each wall from its impacts";
-    }
-    if (f.name == "m1" || f.name == "k1")
-        f.fallback_note = "required for a record, unless a preset gives it: omega0 scales the time";
-}
-
-Field column_row(const Channel& c) {
-    return {
-        .name = c.name + "_column",
-        .type = FieldType::choice,
-        .description = "name of the column of " + (c.forcing.empty() ? c.quantity : c.forcing),
-        .fallback_note = fmt::format(
-            "{}, or the first name that begins with {}{}", c.column,
-            fmt::join(c.beginnings, " or "), c.forcing.empty() ? "" : "; optional")};
-}
-
-Field unit_row(const Channel& c) {
-    return {
-        .name = c.name + "_unit",
-        .type = FieldType::choice,
-        .description =
-            "unit of " + c.quantity + ", unless the column's name or a row of units gives one",
-        .fallback = c.units[0].name,
-        .choices = unit_names(c)};
-}
-
-FieldTable impact_rows() {
-    return {
-        {.name = "threshold",
-         .unit = "standard deviations of the noise",
-         .description = "smallest height at which a spike of the acceleration can be an impact",
-         .fallback = 6,
-         .range = Range{3, 1000}},
-        {.name = "impact_times_s",
-         .type = FieldType::numbers,
-         .unit = "s",
-         .description =
-             "times of the impacts, for example an edited list; replaces their detection",
-         .fallback_note = "detected in the record"},
-    };
-}
-
-std::vector<std::string> fixable() {
-    std::vector<std::string> names = enum_choices<Unknown>();
-    names.insert(names.begin() + 1, {"F", "phase"});
-    return names;
-}
-
-Field phase_row() {
-    return {
-        .name = "phase",
-        .unit = "rad",
-        .description =
-            "phase of the base, which moves by F sin(2 pi f t + phase), t as in the record; used "
-            "if fixed contains phase",
-        .fallback_note = "fitted; if fixed, the phase of the forcing channel",
-        .range = Range{-7, 7}};
-}
-
-Field fixed_row() {
-    return {
-        .name = "fixed",
-        .type = FieldType::choices,
-        .description =
-            "quantities that are not fitted to the record: f, F, phase, omega0, zeta, b and R keep "
-            "the values of the other fields, a sensor counts as free of errors",
-        .fallback = Json::array(),
-        .choices = fixable()};
-}
-
-Field include_row() {
-    return {
-        .name = "include",
-        .type = FieldType::choices,
-        .description =
-            "additional parts of the response for a record: motion, the fitted motion at the "
-            "samples; direct_exponents, exponents with histories by the direct method of the paper",
-        .fallback = Json::array(),
-        .choices = {"motion", "direct_exponents"}};
-}
-
-FieldTable record_rows() {
-    FieldTable rows = {fixed_row(), phase_row()};
-    const std::vector<const Channel*> channels = {
-        &time_channel, &displacement_channel, &acceleration_channel, &base_channel, &force_channel};
-    for (const Channel* channel : channels) rows.push_back(column_row(*channel));
-    for (const Channel* channel : channels) rows.push_back(unit_row(*channel));
-    return rows + impact_rows();
-}
-
-FieldTable make_identify_fields() {
-    FieldTable table = simulate_fields_where([](const Field& f) {
-        return is_of_system(f) || f.name == "exponents" || f.name == "max_points";
-    });
-    for (Field& field : table) adapt_to_record(field);
-    return table + grouped("output", {include_row()}) + grouped("record", record_rows());
-}
-
-}  // namespace
 
 const FieldTable& identify_fields() {
     static const FieldTable table = make_identify_fields();

@@ -49,13 +49,12 @@ Field number(
 FieldTable system_rows() {
     const Parameters table_1;  // the defaults
     return {
-        {.name = "preset",
-         // Any string: the reader of the request reports an unknown preset with the list of
-         // presets.
-         .type = FieldType::choice,
-         .description = "figure or table of the paper (GET /v1/presets); each other field that is "
-                        "given replaces one value of the preset",
-         .fallback_note = "none"},
+        // The reader of the request reports an unknown preset with the list of presets.
+        choice(
+            "preset",
+            "figure or table of the paper (GET /v1/presets); each other field that is given "
+            "replaces one value of the preset",
+            {}, nullptr, "none"),
         number(
             "b", "m", "b", "clearance: half-width of the cavity in which the ball moves",
             table_1.b),
@@ -138,45 +137,35 @@ FieldTable start_rows() {
 }
 
 FieldTable perturbation_rows() {
-    const auto component = [](const char* name, const char* unit, const char* of_start) {
-        return Field{
-            .name = name,
-            .unit = unit,
-            .description = std::string("difference added to ") + of_start,
-            .fallback = 0,
-            .range = core_range(of_start)};
+    const auto component = [](const char* name, const char* unit, const std::string& of_start) {
+        const std::string description = "difference added to " + of_start;
+        return number(name, unit, "", description.c_str(), 0, "", core_range(of_start));
     };
     return {
         component("x", "m", "x0"),
         component("x_dot", speed, "x_dot0"),
         component("y", "m", "y0"),
         component("y_dot", speed, "y_dot0"),
-        {.name = "seed",
-         .type = FieldType::integer,
-         .description = "seed of a random direction in (x', x, y', y), the same on every computer; "
-                        "only with size",
-         .fallback = 1,
-         .range = Range{0, 9007199254740992}},  // 2^53: doubles hold every whole number up to it
-        {.name = "size",
-         .description = "Euclidean length of the random difference",
-         .fallback_note = "none",
-         .range = Range{1e-18, 1e3}},
+        integer(
+            "seed",
+            "seed of a random direction in (x', x, y', y), the same on every computer; only with "
+            "size",
+            {0, 9007199254740992}, 1),  // 2^53: doubles hold every whole number up to it
+        number(
+            "size", "", "", "Euclidean length of the random difference", nullptr, "none",
+            Range{1e-18, 1e3}),
     };
 }
 
 FieldTable run_rows() {
     return {
-        {.name = "tau_end",
-         .unit = dimensionless,
-         .symbol = "tau",
-         .description = "length of the run; not together with cycles",
-         .fallback = 1709,  // beyond the end of the first window of Table 2
-         .range = Range{1e-6, longest_run}},
-        {.name = "cycles",
-         .unit = dimensionless,
-         .description = "length of the run in forcing cycles of 2 pi/Omega",
-         .fallback_note = "from tau_end",
-         .range = Range{1e-6, 1e6}},
+        number(
+            "tau_end", dimensionless, "tau", "length of the run; not together with cycles",
+            1709,  // beyond the end of the first window of Table 2
+            "", Range{1e-6, longest_run}),
+        number(
+            "cycles", dimensionless, "", "length of the run in forcing cycles of 2 pi/Omega",
+            nullptr, "from tau_end", Range{1e-6, 1e6}),
         {.name = "window",
          .type = FieldType::interval,
          .unit = dimensionless,
@@ -218,62 +207,42 @@ FieldTable output_rows() {
                         "raw_product ((33) unscaled in double precision, as in the paper)",
          .fallback = estimators,
          .choices = estimators},
-        {.name = "settle_cycles",
-         .type = FieldType::integer,
-         .unit = dimensionless,
-         .description = "with regime: further cycles, at most, for which a chaotic run is "
-                        "continued to find out whether a periodic orbit captures it",
-         .fallback = 0,
-         .range = Range{0, 1e6}},
-        {.name = "samples_per_cycle",
-         .unit = dimensionless,
-         .description = "samples of the series per forcing cycle",
-         .fallback = 32,
-         .range = Range{1, 10000}},
-        {.name = "section_phase",
-         .unit = "rad",
-         .description =
-             "value of Omega tau, modulo 2 pi, at which the stroboscopic section samples the state",
-         .fallback = 0,
-         .range = Range{0, 2 * std::numbers::pi}},
-        {.name = "max_points",
-         .type = FieldType::integer,
-         .description = "maximum length of series and histories; longer series get a larger step, "
-                        "longer histories are thinned",
-         .fallback = 20000,
-         .range = Range{256, 1000000}},
-        {.name = "max_impacts",
-         .type = FieldType::integer,
-         .description = "number of impacts after which the run ends",
-         .fallback = 100000,
-         .range = Range{1, 2000000}},
+        integer(
+            "settle_cycles",
+            "with regime: further cycles, at most, for which a chaotic run is continued to find "
+            "out whether a periodic orbit captures it",
+            {0, 1e6}, 0, dimensionless),
+        number(
+            "samples_per_cycle", dimensionless, "", "samples of the series per forcing cycle", 32,
+            "", Range{1, 10000}),
+        section_phase_row(),
+        integer(
+            "max_points",
+            "maximum length of series and histories; longer series get a larger step, longer "
+            "histories are thinned",
+            {256, 1000000}, 20000),
+        integer("max_impacts", "number of impacts after which the run ends", {1, 2000000}, 100000),
     };
 }
 
 FieldTable manifold_rows() {
     return {
-        {.name = "V_max",
-         .unit = speed,
-         .symbol = "V",
-         .description = "largest speed of the ball on the branch beyond the symmetry breaking; the "
-                        "branch ends earlier if the motion does",
-         .fallback_note = "twice the speed at the symmetry breaking",
-         .range = Range{1e-12, 1e6}},
-        {.name = "points",
-         .type = FieldType::integer,
-         .description = "points on each branch",
-         .fallback = 200,
-         .range = Range{2, 100000}}};
+        number(
+            "V_max", speed, "V",
+            "largest speed of the ball on the branch beyond the symmetry breaking; the branch ends "
+            "earlier if the motion does",
+            nullptr, "twice the speed at the symmetry breaking", Range{1e-12, 1e6}),
+        integer("points", "points on each branch", {2, 100000}, 200)};
 }
 
 FieldTable form_rows() {
     return {
-        {.name = "format",
-         .type = FieldType::choice,
-         .description = "format of the response: json; csv: one table; cbor: with typed arrays "
-                        "(RFC 8746); npz: arrays for numpy.load",
-         .fallback_note = "the format that the header Accept requests, otherwise json",
-         .choices = {"json", "csv", "cbor", "npz"}},
+        choice(
+            "format",
+            "format of the response: json; csv: one table; cbor: with typed arrays (RFC 8746); "
+            "npz: arrays for numpy.load",
+            {"json", "csv", "cbor", "npz"}, nullptr,
+            "the format that the header Accept requests, otherwise json"),
         {.name = "fields",
          .type = FieldType::choices,
          .description =
@@ -284,6 +253,13 @@ FieldTable form_rows() {
 }
 
 }  // namespace
+
+Field section_phase_row() {
+    return number(
+        "section_phase", "rad", "",
+        "value of Omega tau, modulo 2 pi, at which the stroboscopic section samples the state", 0,
+        "", Range{0, 2 * std::numbers::pi});
+}
 
 const FieldTable& simulate_fields() {
     static const FieldTable table = grouped("system", system_rows()) +

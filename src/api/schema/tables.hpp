@@ -28,11 +28,38 @@ const FieldTable& start_fields();
 /// Fields of /v1/identify, without the record itself.
 const FieldTable& identify_fields();
 
+// The channels of a record, from which the fields of their columns and units follow.
+
+/// A unit: its name in the fields, and its unit_spelling()s.
+struct Unit {
+    std::string name;
+    double factor;  ///< to SI
+    std::vector<std::string> spellings;
+};
+
+/// A channel of a record.
+struct Channel {
+    std::string name;                     ///< of the fields <name>_column, <name>_unit
+    std::string column;                   ///< default column name; case is ignored
+    std::vector<std::string> beginnings;  ///< beginnings of other accepted column names
+    std::vector<Unit> units;              ///< the first one is the default
+    std::string quantity;                 ///< as in "unit of the force"
+    std::string forcing = {};             ///< meaning of a channel of the forcing, optional
+};
+/// The names of its units.
+std::vector<std::string> unit_names(const Channel& channel);
+
+extern const Channel time_channel, displacement_channel, acceleration_channel, base_channel,
+    force_channel;
+
 /// Fields of /v1/manifold.
 const FieldTable& manifold_fields();
 
 /// Format of the response: additional fields of /v1/simulate, /v1/manifold and /v1/identify.
 const FieldTable& form_fields();
+
+/// The row `section_phase` of /v1/simulate and /v1/sweep.
+Field section_phase_row();
 
 /// True for a field of /v1/simulate that defines the system: group system, reduced or SI.
 bool is_of_system(const Field& field);
