@@ -66,7 +66,7 @@ double line_at(const Signal& signal, double frequency) {
     const std::complex<double> step = turned(-frequency);
     std::complex<double> sum = 0;
     for (std::size_t k = signal.size(); k > 0; --k) sum = sum * step + signal[k - 1];
-    return std::abs(sum);
+    return elementary::modulus(sum);
 }
 
 /// Fast Fourier transform of a power of two of values: X_n = sum of x_k exp(-2 pi i n k/N).
@@ -115,8 +115,8 @@ std::vector<double> strongest_lines(const Signal& signal) {
     transform(spectrum, roots);
     std::vector<std::pair<double, std::size_t>> maxima;
     for (std::size_t k = 0; k < n; ++k) {
-        const double here = std::abs(spectrum[k]);
-        if (here > std::abs(spectrum[(k + 1) % n]) && here >= std::abs(spectrum[(k + n - 1) % n]))
+        const double here = elementary::modulus(spectrum[k]);
+        if (here > elementary::modulus(spectrum[(k + 1) % n]) && here >= elementary::modulus(spectrum[(k + n - 1) % n]))
             maxima.emplace_back(-here, k);
     }
     std::ranges::sort(maxima);
