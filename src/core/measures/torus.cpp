@@ -116,7 +116,8 @@ std::vector<double> strongest_lines(const Signal& signal) {
     std::vector<std::pair<double, std::size_t>> maxima;
     for (std::size_t k = 0; k < n; ++k) {
         const double here = elementary::modulus(spectrum[k]);
-        if (here > elementary::modulus(spectrum[(k + 1) % n]) && here >= elementary::modulus(spectrum[(k + n - 1) % n]))
+        if (here > elementary::modulus(spectrum[(k + 1) % n]) &&
+            here >= elementary::modulus(spectrum[(k + n - 1) % n]))
             maxima.emplace_back(-here, k);
     }
     std::ranges::sort(maxima);
