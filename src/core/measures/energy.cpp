@@ -176,6 +176,17 @@ std::optional<double> free_amplitude(const Parameters& p) {
     return p.epsilon * p.A() / std::sqrt(D);
 }
 
+std::optional<State> free_steady_state(const Parameters& p) {
+    const auto amplitude = free_amplitude(p);
+    if (!amplitude) return std::nullopt;
+    // At theta = phi: x = C sin(theta - delta), tan(delta) = 2 zeta Omega/(1 - Omega^2).
+    const double delta = elementary::atan2(2 * p.zeta() * p.Omega, (1 - p.Omega) * (1 + p.Omega)),
+                 theta = p.phi() - delta;
+    return State{
+        .x_dot = *amplitude * p.Omega * elementary::cos(theta),
+        .x = *amplitude * elementary::sin(theta)};
+}
+
 Unattached unattached(const Parameters& p, const State& start, double tau_start, double tau_end) {
     const auto table = Flow::shared_free(p);
     const Flow& flow = *table;

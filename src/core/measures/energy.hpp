@@ -120,6 +120,8 @@ Unattached unattached(
     const Parameters& parameters, const State& start, double tau_start, double tau_end);
 /// Unattached::amplitude for these parameters.
 std::optional<double> free_amplitude(const Parameters& parameters);
+/// Steady motion without absorber at tau = 0: x and x', y = y' = 0; empty at undamped resonance.
+std::optional<State> free_steady_state(const Parameters& parameters);
 
 /// Observer of the times at which the energy of a free decay (G = 0) first falls to given fractions
 /// of its value at tau_start.

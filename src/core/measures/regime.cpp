@@ -332,14 +332,10 @@ Regime::Untouched untouched_end(
     const Parameters& p, const State& at_whole_cycle, double tau,
     const std::function<bool()>& stop) {
     Regime::Untouched end{false, at_whole_cycle.y_dot, std::nullopt};
-    if (const auto amplitude = free_amplitude(p); amplitude && at_whole_cycle.y_dot == 0) {
-        const double delta =
-                         elementary::atan2(2 * p.zeta() * p.Omega, (1 - p.Omega) * (1 + p.Omega)),
-                     theta = p.phi() - delta;
-        const double deviation = elementary::hypot(
-            at_whole_cycle.x - *amplitude * elementary::sin(theta),
-            at_whole_cycle.x_dot - *amplitude * p.Omega * elementary::cos(theta));
-        end.for_ever = *amplitude + deviation + std::abs(at_whole_cycle.y) < p.b;
+    if (const auto steady = free_steady_state(p); steady && at_whole_cycle.y_dot == 0) {
+        const double deviation =
+            elementary::hypot(at_whole_cycle.x - steady->x, at_whole_cycle.x_dot - steady->x_dot);
+        end.for_ever = *free_amplitude(p) + deviation + std::abs(at_whole_cycle.y) < p.b;
     }
     if (end.for_ever) return end;
     const Limits limits{.tau_end = longest_flight * p.cycle(), .max_impacts = 1, .stop = stop};

@@ -83,7 +83,7 @@ struct RegimeEvidence {
     double tau_start, tau_end;  ///< the window; tau_end lies within the run
     /// If chaotic, a run that is not periodic yet is not continued.
     Verdict by_exponents = Verdict::not_decided;
-    /// By the exponents the motion can be quasi-periodic (can_be_quasi_periodic()).
+    /// The exponents permit a quasi-periodic motion (can_be_quasi_periodic()).
     bool neutral = false;
     double settle_cycles =
         0;  ///< longest continuation of a chaotic run, to find out where it settles

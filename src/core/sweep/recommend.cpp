@@ -187,7 +187,7 @@ Recommendations recommendations(Search& s, const std::vector<double>& row) {
         if (const auto C = free_amplitude(p)) rows.push_back({*C, s.tried(p, row)});
     }
     auto tolerance_of = [&](const Try& t) { return tolerance_ratio(t.b, rows); };
-    // Of the row, those from which F_tolerance does not lead out of it.
+    // The b of the row that stay within it when changed by the factor F_tolerance.
     const std::span<const Try> candidates(
         s.tries.data() + steps_above, row.size() - steps_above - 2);
     const Try& robust = *std::ranges::min_element(candidates, {}, tolerance_of);
