@@ -107,6 +107,18 @@ Json describe_capture(const Capture& c) {
          {"exponents_after", describe_final(c.after)}});
 }
 
+/// `untouched`: Regime::untouched.
+std::string reason_of_no_impacts(const std::optional<Regime::Untouched>& untouched) {
+    if (!untouched) return "there are no impacts in this window";
+    return "there are no impacts in this window, but " +
+           (untouched->y_dot == 0
+                ? std::string("the oscillator has not reached its steady motion")
+                : fmt::format("the ball flies with y' = {:.3g} m", untouched->y_dot)) +
+           (untouched->next_contact
+                ? fmt::format(": the next contact is due at tau = {:.6g}", *untouched->next_contact)
+                : ": no contact within the next 10,000 cycles");
+}
+
 std::string reason_of(const Judgement& judgement, const Growth& g, const Regime& r) {
     const std::string sigmas = fmt::format(
         "lambda1 = {:.3g} lies {:.1f} standard errors {} zero", g.lambda1,
@@ -132,16 +144,7 @@ std::string reason_of(const Judgement& judgement, const Growth& g, const Regime&
                 "the motion is quasi-periodic: its section is a smooth closed curve, on which it "
                 "makes {:.6g} turns per cycle",
                 r.quasi_periodic->rotation_number);
-        case VerdictReason::next_contact:
-            if (!r.untouched) return "there are no impacts in this window";
-            return "there are no impacts in this window, but " +
-                   (r.untouched->y_dot == 0
-                        ? std::string("the oscillator has not reached its steady motion")
-                        : fmt::format("the ball flies with y' = {:.3g} m", r.untouched->y_dot)) +
-                   (r.untouched->next_contact ? fmt::format(
-                                                    ": the next contact is due at tau = {:.6g}",
-                                                    *r.untouched->next_contact)
-                                              : ": no contact within the next 10,000 cycles");
+        case VerdictReason::next_contact: return reason_of_no_impacts(r.untouched);
         case VerdictReason::free_decay:
             return "without forcing (G = 0) the motion dies out and has no long-term exponents";
         case VerdictReason::untouched:
