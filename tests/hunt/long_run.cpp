@@ -149,16 +149,16 @@ int LongRun::period_at(int at) const {
     };
     // The return of a shorter period can be spoilt by rounding in a chatter, or still be
     // converging, with the slower of two multipliers.
-    const auto returns_in_the_end = [&](int period) {
+    const auto returns_in_the_end = [&](int period, int multiple) {
         if (returns(period, 100 * returned)) return true;
-        const int before = at - at / 4;
+        const int before = at - at / 4 / multiple * multiple;  // the same phase of the longer one
         return before > period && miss(at, period) < 1e-4 &&
                miss(at, period) < 0.98 * miss(before, period);
     };
     for (int period = 1; period <= std::min(longest_period, at / 3); ++period) {
         if (!returns(period, returned)) continue;
         for (int shorter = 1; shorter < period; ++shorter)
-            if (period % shorter == 0 && returns_in_the_end(shorter)) return shorter;
+            if (period % shorter == 0 && returns_in_the_end(shorter, period)) return shorter;
         return period;
     }
     return 0;

@@ -31,6 +31,8 @@ constexpr double captured_within = 0.1;
 constexpr double settled_within = 1e-3;
 // Cycles for which a run that ends near the orbit is followed, and those between two looks.
 constexpr int longest_departure = 4096, cycles_of_look = 64;
+// Growth on the way, as a logarithm, by which rounding reaches 1e-5 of the motion.
+constexpr double most_growth_of_rounding = 25;
 // Length of the history in which a chaotic transient is searched.
 constexpr std::size_t transient_history = 4096;
 // A chaotic run is continued in rounds of this many cycles.
@@ -203,26 +205,38 @@ private:
     const long before_;
 };
 
-/// True if the motion leaves the neighbourhood of the orbit, with which it is compared at cycle k,
-/// once more before it follows the orbit. An orbit of a long period can attract a motion only after
-/// several passages.
-bool leaves_again(
+/// How a motion that ends near an orbit arrives on it.
+enum class Approach {
+    direct,
+    later,     ///< it leaves the neighbourhood once more, as it can with a long period
+    not_known  ///< rounding grows too much on the way: another orbit may attract the motion
+};
+/// Approach of a motion that is compared with the orbit at cycle k.
+Approach approach_of(
     const Parameters& p, const State& state, long k, const OrbitComparison& comparison,
     const std::function<bool()>& stop) {
     State s = state;
+    Approach approach = Approach::direct;
+    const double look = cycles_of_look * p.cycle();
+    double growth = 0, least = 0;
     for (int done = 0; done < longest_departure; done += cycles_of_look) {
         StroboscopicRecord on(p);
-        Observer* const observers[] = {&on};
-        if (!follow(p, s, 0, cycles_of_look * p.cycle() * (1 + past_last_cycle), stop, observers))
-            return false;
+        Lyapunov lyapunov(p, 0, look, {.qr = true});
+        Observer* const observers[] = {&on, &lyapunov};
+        if (!follow(p, s, 0, look * (1 + past_last_cycle), stop, observers)) return approach;
+        const TransferProduct& product = lyapunov.product();
+        if (product.impacts() > 1)
+            growth += product.qr()[0] * (product.end_tau() - product.start_tau());
+        least = std::min(least, growth);
+        if (growth - least > most_growth_of_rounding) return Approach::not_known;
         for (const State& next : std::span(on.states).subspan(1)) {
             ++k;
-            if (!comparison.is_near(k, next)) return true;
-            if (comparison.is_near(k, next, settled_within)) return false;
+            if (!comparison.is_near(k, next)) approach = Approach::later;
+            if (comparison.is_near(k, next, on_the_orbit)) return approach;
         }
         s = on.states.back();
     }
-    return false;
+    return approach;
 }
 
 /// Times of the first whole cycles from which on the run stays near the orbit, and follows it (not
@@ -230,7 +244,8 @@ bool leaves_again(
 struct Arrival {
     std::optional<double> captured, settled;
 };
-Arrival arrival_at(
+/// Empty if rounding decides whether the motion arrives on this orbit.
+std::optional<Arrival> arrival_at(
     const Parameters& p, const State& start, const PeriodicOrbit& orbit,
     std::span<const State> states, const State& scale, const RegimeEvidence& e) {
     const long first = e.stroboscopic.first(), end = first + static_cast<long>(states.size());
@@ -244,8 +259,11 @@ Arrival arrival_at(
     Arrival arrival;
     arrival.settled = extend(settled_within);
     arrival.captured = extend(captured_within);
-    if (from == end) return arrival;
-    if (!arrival.settled && leaves_again(p, states.back(), end - 1, comparison, e.stop)) return {};
+    if (!comparison.is_near(end - 1, states.back(), on_the_orbit)) {
+        const Approach approach = approach_of(p, states.back(), end - 1, comparison, e.stop);
+        if (approach == Approach::not_known) return std::nullopt;
+        if (approach == Approach::later || from == end) return Arrival{};
+    }
     // The first kept state is already near: a second run examines the states before it. If that run
     // is interrupted, the time of the first kept state stands.
     if (from == first && first > 0) {
@@ -376,15 +394,17 @@ Regime regime_of(
         const State scale = scale_of(p, states.last(std::min(states.size(), longest_period)));
         r.orbit = orbit_of(p, states, scale, e);
         r.search_stopped = !r.orbit && e.stop && e.stop();
-        double settled = e.tau_end;
-        if (r.orbit) {
-            const Arrival arrival = arrival_at(p, start, *r.orbit, states, scale, e);
-            settled = arrival.settled.value_or(e.tau_end);
+        const auto arrival =
+            r.orbit ? arrival_at(p, start, *r.orbit, states, scale, e) : std::nullopt;
+        if (arrival) {
             r.capture = {
-                arrival.captured, {nan, nan, nan, nan}, r.orbit->exponents(p), std::nullopt};
-        } else if (e.by_exponents == Verdict::chaotic) settle_later(p, states, scale, e, r);
-        else if (e.neutral) r.quasi_periodic = quasi_periodic(in_window(e, states), scale);
+                arrival->captured, {nan, nan, nan, nan}, r.orbit->exponents(p), std::nullopt};
+        } else r.orbit.reset();
+        if (!r.orbit && e.by_exponents == Verdict::chaotic) settle_later(p, states, scale, e, r);
+        else if (!r.orbit && e.neutral)
+            r.quasi_periodic = quasi_periodic(in_window(e, states), scale);
         if (r.orbit) r.z = static_cast<double>(r.orbit->contacts) / r.orbit->cycles;
+        const double settled = arrival ? arrival->settled.value_or(e.tau_end) : e.tau_end;
         if (r.capture && exponents_before) examine_before(p, start, e, settled, *r.capture);
         if (r.contacts == 0 && !r.orbit)
             r.untouched =

@@ -281,14 +281,19 @@ std::optional<QuasiPeriodic> quasi_periodic(std::span<const State> states, const
     for (int curves = 1; curves <= most_curves; ++curves) {
         const auto apart = static_cast<std::size_t>(curves);
         if (states.size() / apart < fewest_points_of_torus) break;
-        std::vector<State> points, others;
-        for (std::size_t k = states.size() % apart; k < states.size(); k += apart) {
+        std::vector<State> points;
+        for (std::size_t k = states.size() % apart; k < states.size(); k += apart)
             points.push_back(states[k]);
-            if (curves > 1) others.push_back(states[k + 1]);
-        }
         auto found = on_one_curve(points, scale);
         if (!found) continue;
-        if (curves > 1 && !lie_apart(points, others, scale)) return std::nullopt;
+        // Fewer curves than assumed: points of each of them are found as several.
+        for (std::size_t later = 1; later < apart; ++later) {
+            if (apart % later != 0) continue;
+            std::vector<State> others;
+            for (std::size_t k = states.size() % apart + later; k < states.size(); k += apart)
+                others.push_back(states[k]);
+            if (!lie_apart(points, others, scale)) return std::nullopt;
+        }
         found->curves = curves;
         found->rotation_number /= curves;
         found->error /= curves;
