@@ -33,6 +33,13 @@ KEYWORDS = [
     ("IdentifyFields", "IdentifyRequest", "Fields of an identification."),
 ]
 OBJECTS = ["SweepBase", "Axis", "Start"]
+# Fields that are objects, and their types.
+NESTED = {
+    "perturbation": "Perturbation",
+    "restitution": "RestitutionTable",
+    "restitution_plus": "RestitutionTable",
+    "restitution_minus": "RestitutionTable",
+}
 
 # Not passed by the user: the client chooses the format, and identify has arguments for the others.
 NOT_FIELDS = {"format", "record", "impacts"}
@@ -51,8 +58,10 @@ def main() -> None:
 
 
 def module(schemas: dict[str, Any]) -> str:
-    perturbation = schemas["SimulateRequest"]["properties"]["perturbation"]
-    objects = [("Perturbation", perturbation), *((name, schemas[name]) for name in OBJECTS)]
+    fields = schemas["SimulateRequest"]["properties"]
+    objects = [(name, fields[field]) for field, name in NESTED.items() if field in fields]
+    objects += [(name, schemas[name]) for name in OBJECTS]
+    objects = [pair for k, pair in enumerate(objects) if pair[0] not in dict(objects[:k])]
     parts = [HEAD, number_lists(schemas)]
     parts += [functional(name, schema) for name, schema in objects]
     parts += [declared(name, schemas[schema], what) for name, schema, what in KEYWORDS]
@@ -84,8 +93,8 @@ def own_name(key: str) -> str:
 
 
 def typed(key: str, schema: dict[str, Any]) -> str:
-    if key == "perturbation":
-        return "Perturbation"
+    if key in NESTED:
+        return NESTED[key]
     if "$ref" in schema:
         return str(schema["$ref"]).rsplit("/", 1)[1]
     if "anyOf" in schema:

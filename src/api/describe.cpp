@@ -12,6 +12,11 @@ namespace vines::api {
 Json describe_system(const System& system, const Json& of_run) {
     Json j = describe(properties::reduced, system.parameters),
          derived = describe(properties::derived, system.parameters);
+    const auto add_table = [&j](const char* name, const auto& table) {
+        if (table) j[name] = {{"speed", column(table->speed)}, {"R", column(table->R)}};
+    };
+    add_table("restitution_plus", system.parameters.table_plus);
+    add_table("restitution_minus", system.parameters.table_minus);
     j["origin"] = system.origin;
     if (system.si) {
         j["si"] = describe(properties::si, *system.si);

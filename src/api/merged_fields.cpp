@@ -47,6 +47,19 @@ const std::vector<Alternative>& alternatives() {
         {{"R"},
          {"R_plus", "R_minus"},
          "R stands for both walls and cannot be mixed with R_plus or R_minus"},
+        {{"R", "R_plus", "R_minus", "restitution_plus", "restitution_minus"},
+         {"restitution"},
+         "restitution is R of both walls as a function of the speed; give no other R"},
+        {{"R", "R_plus"}, {"restitution_plus"}, "R_plus and restitution_plus are of the same wall"},
+        {{"R", "R_minus"},
+         {"restitution_minus"},
+         "R_minus and restitution_minus are of the same wall"},
+        {{"gravity"},
+         {"inclination"},
+         "inclination stands for gravity = g sin(inclination)/omega0^2; give one of them"},
+        {{"friction"},
+         {"mu"},
+         "mu stands for friction = mu g cos(inclination)/omega0^2; give one of them"},
         {{"tau_end"}, {"cycles"}, "tau_end and cycles both say how long to run; give one of them"},
         {{"k1"}, {"f0"}, "f0 stands for k1 = m1 (2 pi f0)^2; give one of them"},
         {{"c1"},
@@ -107,11 +120,28 @@ void restate_system(Json& preset, const Json& given) {
     }
 }
 
-/// Splits a preset's R into R_plus and R_minus if the request gives one of them.
+/// Splits a preset's R into R_plus and R_minus if the request says something about one wall, and
+/// drops the laws that the request replaces.
 void restate_walls(Json& preset, const Json& given) {
-    if (!preset.contains("R") || present(given, {"R_plus", "R_minus"}).empty()) return;
-    preset["R_plus"] = preset["R_minus"] = preset["R"];
-    preset.erase("R");
+    const auto drop = [&](const std::vector<std::string>& names,
+                          const std::vector<std::string>& by) {
+        if (!present(given, by).empty())
+            for (const std::string& name : names) preset.erase(name);
+    };
+    const std::vector<std::string> one_wall = {
+        "R_plus", "R_minus", "restitution_plus", "restitution_minus"};
+    if (!present(given, one_wall).empty())
+        for (const char* law : {"R", "restitution"})
+            if (preset.contains(law)) {
+                const std::string of = std::string(law) + "_";
+                preset[of + "plus"] = preset[of + "minus"] = preset[law];
+                preset.erase(law);
+            }
+    drop({"R_plus", "restitution_plus"}, {"R", "restitution", "R_plus", "restitution_plus"});
+    drop({"R_minus", "restitution_minus"}, {"R", "restitution", "R_minus", "restitution_minus"});
+    drop({"R", "restitution"}, {"R", "restitution"});
+    drop({"gravity", "inclination"}, {"gravity", "inclination"});
+    drop({"friction", "mu"}, {"friction", "mu"});
 }
 
 /// Removes from a preset the fields that do not apply to another system or run, and returns them.
@@ -128,8 +158,8 @@ Json drop_inapplicable_fields(Json& preset, const FieldTable& table, const Json&
     const bool another_system =
         std::any_of(oscillator_fields.begin(), oscillator_fields.end(), replaced);
     const bool another_run = std::any_of(table.begin(), table.end(), [&](const Field& f) {
-        const bool of_the_motion =
-            is_of_system(f) || f.group == "start" || f.name == "tau_end" || f.name == "cycles";
+        const bool of_the_motion = is_of_system(f) || f.group == "laws" || f.group == "start" ||
+                                   f.name == "tau_end" || f.name == "cycles";
         return of_the_motion && f.name != "preset" && replaced(f.name);
     });
     if (another_system) drop("damping");

@@ -46,6 +46,9 @@ inline constexpr Property<Parameters> reduced[] = {
     {{"R_plus", "restitution coefficient of the wall at x - y = b"}, at<&Parameters::R_plus>},
     {{"R_minus", "restitution coefficient of the wall at x - y = -b"}, at<&Parameters::R_minus>},
     {{"b", "clearance: half-width of the cavity, m"}, at<&Parameters::b>},
+    {{"gravity", "acceleration of the free ball along +x over omega0^2, m"},
+     at<&Parameters::gravity>},
+    {{"friction", "deceleration of the sliding ball over omega0^2, m"}, at<&Parameters::friction>},
     {{"damping", "whether zeta is epsilon lambda/2 or epsilon lambda", damping},
      at<&Parameters::damping>},
 };
@@ -87,6 +90,7 @@ inline constexpr Property<EnergyBalance> balance[] = {
     {energies.input, at<&EnergyBalance::input>},
     {energies.damper, at<&EnergyBalance::damper>},
     {energies.impacts, at<&EnergyBalance::impacts>},
+    {energies.friction, at<&EnergyBalance::friction>},
     {energies.stored, at<&EnergyBalance::stored>},
     {energies.residual, at<&EnergyBalance::residual>},
     {{"share_impacts", "fraction of the dissipated energy; null if none is dissipated",

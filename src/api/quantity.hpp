@@ -124,6 +124,8 @@ struct Energies {
     Quantity damper{"damper", "energy dissipated by the damper, 2 zeta x'", number, "damper_J", 2,
                     true};
     Quantity impacts{"impacts", "energy dissipated in impacts", number, "impacts_J", 2, true};
+    Quantity friction{
+        "friction", "energy dissipated by friction of the ball", number, "friction_J", 2, true};
     Quantity stored{
         "stored", "stored energy at the end minus that at the start", number, "stored_J", 2, true};
     Quantity residual{"residual", "error of the balance", number, "residual_J", 2, true};

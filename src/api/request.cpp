@@ -102,6 +102,12 @@ std::optional<State> read_perturbation(
     const MergedFields& l, const Parameters& p, const State& start,
     std::vector<FieldError>& errors) {
     if (!l.has("perturbation")) return std::nullopt;
+    if (!p.has_straight_flights()) {
+        errors.push_back(
+            {"/perturbation", l.fields["perturbation"], nullptr,
+             "the distance of two runs is computed for a ball without gravity and friction"});
+        return std::nullopt;
+    }
     const Json& given = l.fields["perturbation"];
     const auto own = present(given, {"x", "x_dot", "y", "y_dot"}),
                random = present(given, {"seed", "size"});

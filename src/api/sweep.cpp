@@ -98,9 +98,11 @@ std::string scale_warning(const SweepRequest& r) {
     };
     const std::string amplitude = has_axis("G") ? "G" : "F";
     if (!has_axis("b") || !has_axis(amplitude)) return "";
-    for (const Field& f : start_fields())
+    // Lengths and velocities that do not scale with them.
+    const FieldTable others = simulate_fields_where(
+        [](const Field& f) { return f.group == "start" || f.group == "laws"; });
+    for (const Field& f : others)
         for (std::size_t s = 0; s < r.starts.size(); ++s) {
-            // A length or a velocity that does not scale with them.
             const Json fields = fields_of(r, {s, std::vector<std::size_t>(r.axes.size(), 0)});
             if (has_axis(f.name) || (fields.contains(f.name) && fields[f.name] != 0)) return "";
         }

@@ -9,12 +9,14 @@ namespace vines::api {
 
 namespace {
 
+constexpr std::size_t most_table_points = 1000;
+
 /// The fields from which each field of the core follows if it is not given. The first field of a
 /// group in si_groups stands for the whole group.
 const std::map<std::string, std::vector<std::string>> sources = {
-    {"epsilon", {"m2", "m1"}},   {"lambda", {"c1", "k1", "m1", "m2"}},
-    {"G", {"F", "m1", "m2"}},    {"Omega", {"f", "k1", "m1"}},
-    {"x_dot0", {"x_velocity0"}}, {"y_dot0", {"y_velocity0"}}};
+    {"epsilon", {"m2", "m1"}},    {"lambda", {"c1", "k1", "m1", "m2"}}, {"G", {"F", "m1", "m2"}},
+    {"Omega", {"f", "k1", "m1"}}, {"gravity", {"inclination"}},         {"friction", {"mu"}},
+    {"x_dot0", {"x_velocity0"}},  {"y_dot0", {"y_velocity0"}}};
 
 /// A field and its alternative.
 std::vector<std::string> group_with(const std::string& name) {
@@ -49,6 +51,77 @@ void check_si_is_whole(const MergedFields& l, bool forcing_fitted) {
     if (!errors.empty()) refuse(std::move(errors));
 }
 
+/// Errors of a table of R.
+void check_restitution(const MergedFields& l, const std::string& name, bool si) {
+    if (!l.has(name)) return;
+    const Json& table = l.fields[name];
+    std::vector<FieldError> errors;
+    const auto fail = [&](const std::string& where, const Json& value, const Json& range,
+                          const std::string& detail) {
+        errors.push_back({"/" + name + where, value, range, name + " " + detail});
+    };
+    if (table.contains("speed") == table.contains("speed_m_s"))
+        fail("", nullptr, nullptr, "needs either speed or speed_m_s");
+    if (!table.contains("R")) fail("/R", nullptr, nullptr, "needs R");
+    if (!errors.empty()) refuse(std::move(errors));
+    const std::string column = table.contains("speed") ? "speed" : "speed_m_s";
+    const Json &speed = table[column], &R = table["R"];
+    if (column == "speed_m_s" && !si)
+        fail("/speed_m_s", nullptr, nullptr, "in m/s needs a system in SI (m1, k1 or f0, ...)");
+    if (speed.empty() || speed.size() > most_table_points)
+        fail(
+            "/" + column, speed.size(), Json::array({1, most_table_points}),
+            "has too few or too many points");
+    if (speed.size() != R.size())
+        fail("/R", R.size(), speed.size(), "needs as many values of R as speeds");
+    for (std::size_t i = 0; i < speed.size() && errors.empty(); ++i) {
+        const double w = speed[i].get<double>();
+        if (!(w >= 0) || (i > 0 && !(w > speed[i - 1].get<double>())))
+            fail(
+                "/" + column + "/" + std::to_string(i), speed[i], nullptr,
+                "needs speeds >= 0 in ascending order");
+    }
+    for (std::size_t i = 0; i < R.size() && errors.empty(); ++i)
+        if (const double r = R[i].get<double>(); !(r >= 0 && r <= 1))
+            fail("/R/" + std::to_string(i), R[i], Json::array({0, 1}), "needs R in [0, 1]");
+    if (!errors.empty()) refuse(std::move(errors));
+}
+
+/// Checks the laws of the ball and of its walls as far as the core does not.
+void check_laws(const MergedFields& l, bool si) {
+    std::vector<FieldError> errors;
+    for (const auto& [name, reduced] :
+         {std::pair{"inclination", "gravity"}, std::pair{"mu", "friction"}})
+        if (l.has(name) && !si)
+            errors.push_back(
+                {std::string("/") + name, l.fields[name], nullptr,
+                 std::string(name) +
+                     " needs a system in SI (m1, k1 or f0, ...); without one give " + reduced +
+                     ", in m"});
+    if (!errors.empty()) refuse(std::move(errors));
+    for (const char* name : {"restitution", "restitution_plus", "restitution_minus"})
+        check_restitution(l, name, si);
+}
+
+/// A note if R w falls with the speed w: a faster impact then leaves more slowly.
+void note_falling_restitution(const Parameters& p, std::vector<std::string>& notes) {
+    for (const auto& [table, wall] :
+         {std::pair{p.table_plus, "plus"}, std::pair{p.table_minus, "minus"}}) {
+        if (!table) continue;
+        for (std::size_t i = 1; i < table->speed.size(); ++i) {
+            const double before = table->speed[i - 1], w = table->speed[i];
+            // d(R w)/dw is linear between two points.
+            const double slope = (table->R[i] - table->R[i - 1]) / (w - before);
+            if (std::min(table->R[i - 1] + before * slope, table->R[i] + w * slope) >= 0) continue;
+            notes.push_back(
+                std::string("R times the speed falls between two speeds of the wall ") + wall +
+                ", " + Json(before).dump() + " and " + Json(w).dump() +
+                " m per unit of tau: a faster impact leaves more slowly there");
+            break;
+        }
+    }
+}
+
 /// The origin of each value of a system.
 std::map<std::string, std::string> origins_of(const MergedFields& l, const System& s) {
     std::map<std::string, std::string> origin;
@@ -58,8 +131,15 @@ std::map<std::string, std::string> origins_of(const MergedFields& l, const Syste
     for (const std::string& name : reduced_names)
         origin[name] = s.si && !l.fields.contains(name) ? follows(name) : l.origin(name);
     for (const char* name : {"b", "damping"}) origin[name] = l.origin(name);
-    for (const char* name : {"R_plus", "R_minus"})
-        origin[name] = l.origin(l.fields.contains(name) ? name : "R");
+    for (const std::string name : {"R_plus", "R_minus"}) {
+        const std::string table = "restitution" + name.substr(1);
+        const auto own = present(l.fields, {name, table, "restitution", "R"});
+        origin[name] = own.empty()        ? l.origin("R")
+                       : own[0][0] == 'r' ? "follows from " + own[0]
+                                          : l.origin(own[0]);
+    }
+    for (const char* name : {"gravity", "friction"})
+        origin[name] = present(l.fields, sources.at(name)).empty() ? l.origin(name) : follows(name);
     if (!s.si) return origin;
     const bool reduced = !present(l.fields, reduced_names).empty();
     for (const auto& group : si_groups) {
@@ -86,6 +166,7 @@ std::vector<std::string> notes_on(const MergedFields& l, const System& s) {
         notes.push_back(
             "the system is not that of preset " + l.preset + ": its damping is " +
             l.word("damping") + ", not the preset's " + l.dropped["damping"].get<std::string>());
+    note_falling_restitution(p, notes);
     if (!s.si || present(l.given, si_names).empty()) return notes;
     std::vector<std::string> taken, assumed;
     const Json si = describe(properties::si, *s.si);
@@ -98,8 +179,10 @@ std::vector<std::string> notes_on(const MergedFields& l, const System& s) {
             (present(l.fields, names).empty() ? assumed : taken).push_back(text);
     };
     cavity("b = " + Json(p.b).dump(), {"b"});
+    const bool tables =
+        !present(l.given, {"restitution", "restitution_plus", "restitution_minus"}).empty();
     // An identification estimates R.
-    if (!find(l.table, "R")->fallback.is_null())
+    if (!tables && !find(l.table, "R")->fallback.is_null())
         cavity("R = " + Json(p.R_plus).dump(), {"R", "R_plus", "R_minus"});
     if (!taken.empty() && !l.preset.empty())
         notes.push_back("not given, and taken from preset " + l.preset + ": " + joined(taken));
@@ -136,6 +219,7 @@ std::vector<FieldError> field_errors(const std::vector<Fault>& faults, const Mer
 System read_system(const MergedFields& l, bool forcing_fitted) {
     const SystemFields fields = system_fields(l.fields);
     if (fields.is_in_si() && !fields.is_reduced()) check_si_is_whole(l, forcing_fitted);
+    check_laws(l, fields.is_in_si());
     const ResolvedSystem resolved = resolve(fields);
     System system{resolved.parameters, resolved.si, {}, {}};
     system.origin = origins_of(l, system);

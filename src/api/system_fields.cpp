@@ -4,6 +4,7 @@
 #include <numbers>
 
 #include "api/schema/enum_names.hpp"
+#include "core/motion/elementary.hpp"
 
 namespace vines::api {
 
@@ -28,6 +29,10 @@ const std::map<std::string, SystemNumber> numbers = {
     {"mass_ratio", &S::mass_ratio},
     {"F", &S::F},
     {"f", &S::f},
+    {"gravity", &S::gravity},
+    {"inclination", &S::inclination},
+    {"friction", &S::friction},
+    {"mu", &S::mu},
     {"x0", &S::x0},
     {"x_dot0", &S::x_dot0},
     {"x_velocity0", &S::x_velocity0},
@@ -35,6 +40,41 @@ const std::map<std::string, SystemNumber> numbers = {
     {"y_dot0", &S::y_dot0},
     {"y_velocity0", &S::y_velocity0},
 };
+
+constexpr double standard_gravity = 9.80665;  // m/s^2
+
+/// Nullopt if not given.
+std::optional<RestitutionField> restitution_field(const Json& fields, const char* name) {
+    if (!fields.contains(name)) return std::nullopt;
+    const Json& f = fields[name];
+    const bool in_si = f.contains("speed_m_s");
+    return RestitutionField{
+        {f[in_si ? "speed_m_s" : "speed"].get<std::vector<double>>(),
+         f["R"].get<std::vector<double>>()},
+        in_si};
+}
+
+/// Gravity and friction of the ball, and its walls.
+void resolve_laws(const SystemFields& s, ResolvedSystem& system) {
+    Parameters& p = system.parameters;
+    const double omega0 = system.si ? system.si->omega0() : nan,
+                 g = standard_gravity / (omega0 * omega0);
+    p.gravity = s.gravity.value_or(s.inclination ? g * elementary::sin(*s.inclination) : 0);
+    p.friction =
+        s.friction.value_or(s.mu ? *s.mu * g * elementary::cos(s.inclination.value_or(0)) : 0);
+    const auto wall = [&](const std::optional<RestitutionField>& own, double& R) {
+        const auto& given = own ? own : s.restitution;
+        if (!given) return std::shared_ptr<const RestitutionTable>();
+        RestitutionTable table = given->table;
+        if (given->in_si)
+            for (double& w : table.speed) w /= omega0;
+        R = table.at(0);
+        return std::make_shared<const RestitutionTable>(std::move(table));
+    };
+    p.table_plus = wall(s.restitution_plus, p.R_plus);
+    p.table_minus = wall(s.restitution_minus, p.R_minus);
+    if (s.restitution) p.table_minus = p.table_plus;
+}
 
 }  // namespace
 
@@ -47,6 +87,9 @@ SystemFields system_fields(const Json& fields) {
     SystemFields s;
     for (const auto& [name, value] : fields.items())
         if (const SystemNumber number = system_number(name)) s.*number = value.get<double>();
+    s.restitution = restitution_field(fields, "restitution");
+    s.restitution_plus = restitution_field(fields, "restitution_plus");
+    s.restitution_minus = restitution_field(fields, "restitution_minus");
     if (fields.contains("damping"))
         s.damping = enum_value<Damping>(fields["damping"].get<std::string>());
     return s;
@@ -86,6 +129,7 @@ ResolvedSystem resolve(const SystemFields& s) {
     p.R_plus = s.R_plus.value_or(R);
     p.R_minus = s.R_minus.value_or(R);
     p.damping = s.damping;
+    resolve_laws(s, system);
     return system;
 }
 

@@ -9,11 +9,19 @@
 
 namespace vines::api {
 
+/// A table of R: the field restitution, restitution_plus or restitution_minus.
+struct RestitutionField {
+    RestitutionTable table;
+    bool in_si = false;  ///< its speeds are in m/s
+};
+
 /// Named as the request's fields; nullopt if not given.
 struct SystemFields {
     std::optional<double> b, R, R_plus, R_minus;
     std::optional<double> epsilon, lambda, G, Omega;
     std::optional<double> m1, k1, f0, c1, damping_ratio, m2, mass_ratio, F, f;
+    std::optional<double> gravity, inclination, friction, mu;
+    std::optional<RestitutionField> restitution, restitution_plus, restitution_minus;
     std::optional<double> x0, x_dot0, x_velocity0, y0, y_dot0, y_velocity0;
     Damping damping = Damping::equation_of_motion;
 

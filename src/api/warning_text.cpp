@@ -50,8 +50,8 @@ struct Sentence {
     std::string operator()(const RankLost& w) const {
         return w.rank == 2 ? "a sticking phase lies in the window: only deviations of the centre "
                              "of mass survive it, lambda3 and lambda4 are minus infinity"
-                           : "R = 0 removes every deviation of x - y at its impacts: lambda4 is "
-                             "minus infinity";
+                           : "an impact with R = 0, or a rest of the ball inside the cavity, "
+                             "removes a deviation for good: lambda4 is minus infinity";
     }
     std::string operator()(const NearlyTangent& w) const {
         return fmt::format(
@@ -101,8 +101,8 @@ struct Sentence {
         return text;
     }
     std::string operator()(const NoManifold&) const {
-        return "the manifold of two symmetric impacts needs one constant R at both walls: only the "
-               "run's points are given";
+        return "the manifold of two symmetric impacts needs one constant R at both walls, and no "
+               "gravity or friction of the ball: only the run's points are given";
     }
     std::string operator()(const PerturbedRunCut& w) const {
         return fmt::format(

@@ -25,6 +25,15 @@ export const simulations = [
   {...platform, F: 0, x0: 0.01, y0: 0.02, tau_end: 400, include: everything},
   // Tangent contacts: the oscillator swings by the width of the cavity, in units where omega0 = 1.
   {m1: 1, k1: 1, c1: 0, m2: 0.0084, F: 0, b: 0.01, R: 0.6, x0: 0.01 - 3e-17, y0: 0, tau_end: 21},
+  // The laws of the ball and of its walls.
+  {
+    ...platform,
+    R: undefined,
+    inclination: 0.01,
+    mu: 0.01,
+    restitution: {speed_m_s: [0, 1], R: [0.8, 0.5]},
+    cycles: 50,
+  },
   // Quasi-periodic.
   {b: 0.019898, cycles: 2000, include: ["regime", "exponents"], max_points: 300},
 ];

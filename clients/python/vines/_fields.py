@@ -10,13 +10,13 @@ NUMBER_LISTS = frozenset({
     "contacts", "cycles_with", "distance", "final", "high", "im", "impact_speed", "impacts",
     "impulse", "impulse_N_s", "lambda", "lambda1", "lambda2", "lambda3", "lambda4", "low",
     "margin_F", "margin_f", "modulus", "momentum_error", "phase", "pulse_spoils_s", "re",
-    "relative_speed", "relative_speed_ratio", "rounding_floor", "side", "standard_error",
-    "tau", "tau_end", "tau_start", "time_difference", "time_difference_s", "time_end_s",
-    "time_s", "time_start_s", "values", "window", "window_s", "x", "x_acceleration",
-    "x_acceleration_before", "x_ddot", "x_ddot_before", "x_dot", "x_dot_after",
-    "x_dot_before", "x_velocity", "x_velocity_after", "x_velocity_before", "y", "y_dot",
-    "y_dot_after", "y_dot_before", "y_velocity", "y_velocity_after", "y_velocity_before",
-    "z",
+    "relative_speed", "relative_speed_ratio", "rounding_floor", "side", "speed",
+    "speed_m_s", "standard_error", "tau", "tau_end", "tau_start", "time_difference",
+    "time_difference_s", "time_end_s", "time_s", "time_start_s", "values", "window",
+    "window_s", "x", "x_acceleration", "x_acceleration_before", "x_ddot", "x_ddot_before",
+    "x_dot", "x_dot_after", "x_dot_before", "x_velocity", "x_velocity_after",
+    "x_velocity_before", "y", "y_dot", "y_dot_after", "y_dot_before", "y_velocity",
+    "y_velocity_after", "y_velocity_before", "z",
 })
 
 Perturbation = TypedDict(
@@ -42,6 +42,22 @@ seed: seed of a random direction in (x', x, y', y), the same on every computer; 
 size: Euclidean length of the random difference; default: none; 1e-18 to 1000
 """
 
+RestitutionTable = TypedDict(
+    "RestitutionTable",
+    {
+        "speed": Iterable[float],
+        "speed_m_s": Iterable[float],
+        "R": Iterable[float],
+    },
+    total=False,
+)
+RestitutionTable.__doc__ = """Keys of the object:
+
+speed: speeds |x' - y'| before the impact, ascending (m per unit of tau)
+speed_m_s: the same in m/s, for a system in SI (m/s)
+R: restitution coefficient at each speed (dimensionless)
+"""
+
 SweepBase = TypedDict(
     "SweepBase",
     {
@@ -64,6 +80,13 @@ SweepBase = TypedDict(
         "m2": float,
         "F": float,
         "f": float,
+        "gravity": float,
+        "inclination": float,
+        "friction": float,
+        "mu": float,
+        "restitution": RestitutionTable,
+        "restitution_plus": RestitutionTable,
+        "restitution_minus": RestitutionTable,
         "x0": float,
         "x_dot0": float,
         "x_velocity0": float,
@@ -115,6 +138,19 @@ F: amplitude of the base, which moves by F sin(2 pi f t) (m, F); default: none: 
     fields, or a preset for the rest; 0 to 1000
 f: forcing frequency (Hz, f); default: none: give all SI fields, or a preset for the rest;
     1e-09 to 1e+09
+gravity: acceleration of the free ball along its track, g sin(inclination)/omega0^2,
+    positive along +x; x is measured from the oscillator's rest without ball (m, g'); -1000
+    to 1000; default: 0
+inclination: inclination of the track, for a system in SI; pi/2: the ball falls along +x
+    (rad); default: from gravity; -1.5708 to 1.5708
+friction: deceleration of the sliding ball, mu g cos(inclination)/omega0^2 (m, f'); 0 to
+    1000; default: 0
+mu: friction coefficient of the ball, for a system in SI (dimensionless, mu); default: from
+    friction; 0 to 100
+restitution: R of both walls as a function of the speed: {speed or speed_m_s, R}, linear
+    between the points, constant outside; instead of R; default: none: a constant R
+restitution_plus: the same for the wall at x - y = +b; default: none: a constant R
+restitution_minus: the same for the wall at x - y = -b; default: none: a constant R
 x0: displacement of the linear oscillator at tau = 0 (m, x(0)); -1000 to 1000; default: 0
 x_dot0: velocity of the linear oscillator at tau = 0 (m per unit of tau, x'(0)); -1000 to
     1000; default: 0
@@ -221,6 +257,19 @@ class SimulateFields(TypedDict, total=False):
         fields, or a preset for the rest; 0 to 1000
     f: forcing frequency (Hz, f); default: none: give all SI fields, or a preset for the rest;
         1e-09 to 1e+09
+    gravity: acceleration of the free ball along its track, g sin(inclination)/omega0^2,
+        positive along +x; x is measured from the oscillator's rest without ball (m, g'); -1000
+        to 1000; default: 0
+    inclination: inclination of the track, for a system in SI; pi/2: the ball falls along +x
+        (rad); default: from gravity; -1.5708 to 1.5708
+    friction: deceleration of the sliding ball, mu g cos(inclination)/omega0^2 (m, f'); 0 to
+        1000; default: 0
+    mu: friction coefficient of the ball, for a system in SI (dimensionless, mu); default: from
+        friction; 0 to 100
+    restitution: R of both walls as a function of the speed: {speed or speed_m_s, R}, linear
+        between the points, constant outside; instead of R; default: none: a constant R
+    restitution_plus: the same for the wall at x - y = +b; default: none: a constant R
+    restitution_minus: the same for the wall at x - y = -b; default: none: a constant R
     x0: displacement of the linear oscillator at tau = 0 (m, x(0)); -1000 to 1000; default: 0
     x_dot0: velocity of the linear oscillator at tau = 0 (m per unit of tau, x'(0)); -1000 to
         1000; default: 0
@@ -281,6 +330,13 @@ class SimulateFields(TypedDict, total=False):
     m2: float
     F: float
     f: float
+    gravity: float
+    inclination: float
+    friction: float
+    mu: float
+    restitution: RestitutionTable
+    restitution_plus: RestitutionTable
+    restitution_minus: RestitutionTable
     x0: float
     x_dot0: float
     x_velocity0: float

@@ -8,7 +8,14 @@ namespace {
 
 Keys system_keys() {
     return values_of(properties::reduced) +
-           Keys{{"origin", map_of(text()), "source of each value"}};
+           Keys{
+               optional(
+                   {"restitution_plus", reference("RestitutionTable"),
+                    "R of the wall at x - y = b as a function of the speed, if it is not "
+                    "constant"}),
+               optional(
+                   {"restitution_minus", reference("RestitutionTable"), "the same at x - y = -b"}),
+               {"origin", map_of(text()), "source of each value"}};
 }
 
 Key si_system(const Keys& keys) {
@@ -62,6 +69,9 @@ Json provenance() {
 }  // namespace
 
 void add_systems(Json& schemas) {
+    schemas["RestitutionTable"] = object_of(
+        {{"speed", numbers(), "|x' - y'| before the impact, m per unit of tau"},
+         {"R", numbers(), "restitution coefficient at each speed, linear in between"}});
     schemas["System"] =
         object_of(system_keys() + Keys{si_system(values_of(properties::si)), derived()});
     schemas["SimulationParameters"] = simulation_parameters();

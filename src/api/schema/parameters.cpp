@@ -33,7 +33,9 @@ Json describe_model() {
           "while |x - y| < b, derivatives in t (s)",
           "x'' + 2 zeta x' + x = epsilon G sin(Omega tau) + epsilon^2 lambda G Omega cos(Omega "
           "tau), y'' = 0 while |x - y| < b, derivatives in tau = omega0 t",
-          "at |x - y| = b: x' + epsilon y' is conserved, x' - y' is reversed and multiplied by R"}},
+          "at |x - y| = b: x' + epsilon y' is conserved, x' - y' is reversed and multiplied by R",
+          "with gravity and friction: y'' = gravity - friction sgn(y' - x'), and x'' gains epsilon "
+          "friction sgn(y' - x')"}},
         {"symbols",
          {{"x",
            "absolute displacement of the linear oscillator (mass m1) from rest, in a frame that "

@@ -119,6 +119,49 @@ FieldTable si_rows() {
     };
 }
 
+/// Laws of the ball and of the walls beyond the paper.
+FieldTable law_rows() {
+    const auto table = [](const char* name, const char* description) {
+        const auto list = [](const char* column, const char* unit, const char* text) {
+            return Field{
+                .name = column, .type = FieldType::numbers, .unit = unit, .description = text};
+        };
+        return Field{
+            .name = name,
+            .type = FieldType::object,
+            .symbol = "R(w)",
+            .description = description,
+            .fallback_note = "none: a constant R",
+            .fields = {
+                list("speed", speed, "speeds |x' - y'| before the impact, ascending"),
+                list("speed_m_s", "m/s", "the same in m/s, for a system in SI"),
+                list("R", dimensionless, "restitution coefficient at each speed")}};
+    };
+    return {
+        number(
+            "gravity", "m", "g'",
+            "acceleration of the free ball along its track, g sin(inclination)/omega0^2, positive "
+            "along +x; x is measured from the oscillator's rest without ball",
+            0),
+        number(
+            "inclination", "rad", "",
+            "inclination of the track, for a system in SI; pi/2: the ball falls along +x", nullptr,
+            "from gravity", Range{-std::numbers::pi / 2, std::numbers::pi / 2}),
+        number(
+            "friction", "m", "f'",
+            "deceleration of the sliding ball, mu g cos(inclination)/omega0^2", 0),
+        number(
+            "mu", dimensionless, "mu", "friction coefficient of the ball, for a system in SI",
+            nullptr, "from friction", Range{0, 100}),
+        table(
+            "restitution",
+            "R of both walls as a function of the speed: {speed or speed_m_s, R}, linear between "
+            "the points, constant outside; instead of R"),
+        table("restitution_plus", "the same for the wall at x - y = +b"),
+        table("restitution_minus", "the same for the wall at x - y = -b"),
+    };
+}
+
 FieldTable start_rows() {
     return {
         number("x0", "m", "x(0)", "displacement of the linear oscillator at tau = 0", 0),
@@ -264,8 +307,8 @@ Field section_phase_row() {
 const FieldTable& simulate_fields() {
     static const FieldTable table = grouped("system", system_rows()) +
                                     grouped("reduced", reduced_rows()) + grouped("SI", si_rows()) +
-                                    grouped("start", start_rows()) + grouped("run", run_rows()) +
-                                    grouped("output", output_rows());
+                                    grouped("laws", law_rows()) + grouped("start", start_rows()) +
+                                    grouped("run", run_rows()) + grouped("output", output_rows());
     return table;
 }
 

@@ -364,7 +364,8 @@ struct AnalysisRun::Conclusion {
 
     void manifold() {
         ManifoldResult& m = a.manifold.emplace();
-        if (w.parameters.has_constant_R() && w.parameters.has_equal_walls())
+        if (w.parameters.has_straight_flights() && w.parameters.has_constant_R() &&
+            w.parameters.has_equal_walls())
             m.manifold = manifold_of(w.parameters, 0, manifold_points);
         else warn(warning::NoManifold{});
         trim_to_last(o.half_cycles.tau, w.most_points);

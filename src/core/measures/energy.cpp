@@ -17,7 +17,8 @@ constexpr double time_rounding = 1e-15;
 }  // namespace
 
 double energy_of(const Parameters& p, const State& s) {
-    return 0.5 * (s.x_dot * s.x_dot + s.x * s.x + p.epsilon * s.y_dot * s.y_dot);
+    return 0.5 * (s.x_dot * s.x_dot + s.x * s.x + p.epsilon * s.y_dot * s.y_dot) -
+           p.epsilon * p.gravity * s.y;
 }
 
 Energy::Law::Law(std::shared_ptr<const Flow> f)
@@ -37,6 +38,7 @@ void Energy::on_stretch(const Stretch& stretch) {
     const double from = std::max(0.0, tau_start_ - stretch.tau),
                  to = std::min(stretch.duration, tau_end_ - stretch.tau);
     if (!(from < to)) return;
+    if (!parameters_.has_straight_flights()) return add_curved(stretch, from, to);
     const bool is_stuck = stretch.sticking_side != 0;
     if (is_stuck && !sticking_) sticking_.emplace(Flow::shared_sticking(parameters_));
     const Law& law = is_stuck ? *sticking_ : free_;
@@ -57,6 +59,52 @@ void Energy::on_stretch(const Stretch& stretch) {
     duration_ += to - from;
 }
 
+/// The same where gravity or friction act on the ball: integrals by Gauss's rule with eight points,
+/// exact to rounding over two cells of the flow.
+void Energy::add_curved(const Stretch& stretch, double from, double to) {
+    constexpr double points[] = {
+        0.1834346424956498, 0.5255324099163290, 0.7966664774136267, 0.9602898564975363};
+    constexpr double weights[] = {
+        0.3626837833783620, 0.3137066458778873, 0.2223810344533745, 0.1012285362903763};
+    const double widest = 2 * stretch.flow.cell();
+    const auto add = [&](double begin, double end) {
+        const double half = 0.5 * (end - begin), middle = begin + half;
+        for (int k = 0; k < 8; ++k) {
+            const double s = middle + (k % 2 == 0 ? half : -half) * points[k / 2];
+            const Oscillation o = stretch.flow.after(stretch.start, s);
+            const State at = stretch.at(s, o);
+            const double weight = half * weights[k / 2];
+            sum_(x_squared) += weight * at.x * at.x;
+            sum_(x_dot_squared) += weight * at.x_dot * at.x_dot;
+            sum_(x_dot_sin) += weight * at.x_dot * o.sin_theta;
+        }
+    };
+    const auto slid = [&](double begin, double end) {
+        if (parameters_.friction == 0 || stretch.is_joint()) return 0.0;
+        const State a = stretch.at(begin), b = stretch.at(end);
+        return parameters_.epsilon * parameters_.friction * std::abs((b.x - b.y) - (a.x - a.y));
+    };
+    if (duration_ == 0) start_ = vines::energy_of(parameters_, stretch.at(from));
+    for (double s = from; s < to;) {
+        const double step_end = next_step_ - stretch.tau;
+        double next = std::min(to, s + widest);
+        const bool ends_step = step_end <= next + 1e-9;
+        if (ends_step) next = std::clamp(step_end, s, to);
+        add(s, next);
+        friction_ += slid(s, next);
+        if (ends_step) {
+            at_steps_.push_back({sum_(x_squared), sum_(x_dot_squared), impacts_, friction_});
+            next_step_ =
+                at_steps_.size() < steps_.count() ? steps_.end_of(at_steps_.size()) : infinity;
+            if (next == s && !(step_end < to)) break;
+        }
+        s = next;
+    }
+    peak_ = peak_beyond(peak_, stretch.flow, stretch.start, stretch.shift, from, to);
+    end_ = stretch.at(to);
+    duration_ += to - from;
+}
+
 /// Appends the sums at the ends of steps within the part of duration `duration` that begins at tau;
 /// sum_ does not yet contain the part.
 void Energy::add_steps(const Law& law, const Oscillation& begin, double tau, double duration) {
@@ -66,7 +114,7 @@ void Energy::add_steps(const Law& law, const Oscillation& begin, double tau, dou
             sum_ + (last_.in_closed_form ? law.antiderivative->over_time(part) +
                                                law.antiderivative->at(law.flow->after(begin, part))
                                          : law.quadrature->over(begin, part));
-        at_steps_.push_back({sum(x_squared), sum(x_dot_squared), impacts_});
+        at_steps_.push_back({sum(x_squared), sum(x_dot_squared), impacts_, 0});
         next_step_ = at_steps_.size() < steps_.count() ? steps_.end_of(at_steps_.size()) : infinity;
     } while (next_step_ <= tau + duration);
 }
@@ -79,9 +127,12 @@ void CyclePeaks::on_stretch(const Stretch& stretch) {
     const Flow& flow = stretch.flow;
     Oscillation o = from > 0 ? flow.after(stretch.start, from) : stretch.start;
     while (true) {
-        const double part = std::min(duration, end_ - tau);
-        peak_ = std::max(peak_, std::abs(o.x));
-        if (peak_ < least_ && part > 0) peak_ = peak_beyond(peak_, flow, o, part);
+        const double part = std::min(duration, end_ - tau), s = tau - stretch.tau;
+        peak_ = std::max(peak_, std::abs(o.x + stretch.shift.at(s)));
+        if (peak_ < least_ && part > 0)
+            peak_ = stretch.shift.is_zero()
+                        ? peak_beyond(peak_, flow, o, part)
+                        : peak_beyond(peak_, flow, stretch.start, stretch.shift, s, s + part);
         if (duration < end_ - tau) return;
         least_ = std::min(least_, peak_);
         peak_ = 0;
@@ -99,14 +150,16 @@ void Energy::on_impact(const Impact& i) {
     // before the window.
     if (i.tau <= tau_start_) {
         sum_.setZero();
-        duration_ = peak_ = 0;
+        duration_ = peak_ = friction_ = 0;
         at_steps_.clear();
-        start_ = energy_of(after, i.y_dot_after);
+        end_ = {i.x_dot_after, i.x, i.y_dot_after, i.x - i.side * parameters_.b};
+        start_ = vines::energy_of(parameters_, end_);
         last_ = {after, 0, i.y_dot_after, false, false};
         return;
     }
     const double w = i.relative_speed_before;
     impacts_ += (1 - i.R * i.R) * w * w * parameters_.epsilon / (2 * (1 + parameters_.epsilon));
+    end_.x_dot = i.x_dot_after, end_.y_dot = i.y_dot_after;
     if (last_.in_closed_form) sum_ += free_.antiderivative->across(after, i.x_dot_before);
     last_ = {after, 0, i.y_dot_after, false, last_.in_closed_form};
 }
@@ -132,9 +185,11 @@ EnergyBalance Energy::balance(const Interval& window) const {
     const Oscillation o = end();
     const double input = p.epsilon * p.A() * sum(x_dot_sin),
                  damper = 2 * p.zeta() * sum(x_dot_squared),
-                 at_end = energy_of(o, last_.is_stuck ? o.x_dot : last_.y_dot),
+                 at_end = p.has_straight_flights()
+                              ? energy_of(o, last_.is_stuck ? o.x_dot : last_.y_dot)
+                              : vines::energy_of(p, end_),
                  stored = at_end - start_;
-    const double total = impacts_ + damper, share = impacts_ / total,
+    const double total = impacts_ + friction_ + damper, share = impacts_ / total,
                  rms = duration_ > 0 ? std::sqrt(sum(x_squared) / duration_) : 0;
     // The errors of a root and of a ratio follow by the delta method.
     std::vector<double> squares, excess;
@@ -143,7 +198,8 @@ EnergyBalance Energy::balance(const Interval& window) const {
         squares.push_back(s.x_squared - before.x_squared);
         excess.push_back(
             (1 - share) * (s.impacts - before.impacts) -
-            share * 2 * p.zeta() * (s.x_dot_squared - before.x_dot_squared));
+            share * (2 * p.zeta() * (s.x_dot_squared - before.x_dot_squared) + s.friction -
+                     before.friction));
         before = s;
     }
     const double observed = steps_.duration() * static_cast<double>(at_steps_.size());
@@ -152,16 +208,17 @@ EnergyBalance Energy::balance(const Interval& window) const {
         .input = p.G == 0 ? 0 : input,
         .damper = damper,
         .impacts = impacts_,
+        .friction = friction_,
         .stored = stored,
-        .residual = input - damper - impacts_ - stored,
+        .residual = input - damper - impacts_ - friction_ - stored,
         .at_start = start_,
         .at_end = at_end,
-        .share_impacts = ratio(impacts_, impacts_ + damper),
+        .share_impacts = ratio(impacts_, total),
         .rms = rms,
         .peak = peak_,
         .rms_error = error_of_sum(squares) / observed / (2 * rms),
-        .share_impacts_error =
-            error_of_sum(excess) / (before.impacts + 2 * p.zeta() * before.x_dot_squared),
+        .share_impacts_error = error_of_sum(excess) / (before.impacts + before.friction +
+                                                       2 * p.zeta() * before.x_dot_squared),
         .difference_of_halves = difference_of_halves(squares)};
 }
 

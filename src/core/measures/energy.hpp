@@ -1,7 +1,7 @@
 // Energy balance (forcing, damper, impacts, stored energy) and amplitudes of the linear oscillator.
 //
 // Energies are divided by m1 omega0^2, in m^2 (time is dimensionless): E = x'^2/2 + x^2/2 + epsilon
-// y'^2/2.
+// (y'^2/2 - gravity y).
 #pragma once
 
 #include <memory>
@@ -23,6 +23,7 @@ struct EnergyBalance {
     /// Dissipated by impacts: epsilon (1 - R^2) v^2/(2 (1 + epsilon)) each, with v = x' - y' before
     /// the impact and R of its wall.
     double impacts;
+    double friction;  ///< epsilon friction times the path along which the ball slides
     double stored;    ///< at the end minus at the start
     double residual;  ///< error of the balance: zero up to rounding
     double at_start, at_end;
@@ -87,16 +88,18 @@ private:
         bool is_stuck, in_closed_form;
     };
     Last last_{};
-    double duration_ = 0, peak_ = 0, impacts_ = 0, start_ = 0;
-    /// Integrals of x^2 and x'^2 and the dissipation of impacts, from the window's start to the end
-    /// of each step.
+    double duration_ = 0, peak_ = 0, impacts_ = 0, friction_ = 0, start_ = 0;
+    State end_{};  // unless flights are straight
+    /// Integrals of x^2 and x'^2 and the dissipation of impacts and friction, from the window's
+    /// start to the end of each step.
     struct Sums {
-        double x_squared, x_dot_squared, impacts;
+        double x_squared, x_dot_squared, impacts, friction;
     };
     const WindowSteps steps_;
     std::vector<Sums> at_steps_;
     double next_step_;  ///< its end, in tau
 
+    void add_curved(const Stretch& stretch, double from, double to);
     Integrals integrals() const;
     void add_steps(const Law& law, const Oscillation& begin, double tau, double duration);
     Oscillation end() const;

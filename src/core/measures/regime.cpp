@@ -350,7 +350,8 @@ Regime::Untouched untouched_end(
     const Parameters& p, const State& at_whole_cycle, double tau,
     const std::function<bool()>& stop) {
     Regime::Untouched end{false, at_whole_cycle.y_dot, std::nullopt};
-    if (const auto steady = free_steady_state(p); steady && at_whole_cycle.y_dot == 0) {
+    const auto steady = free_steady_state(p);
+    if (steady && p.has_straight_flights() && at_whole_cycle.y_dot == 0) {
         const double deviation =
             elementary::hypot(at_whole_cycle.x - steady->x, at_whole_cycle.x_dot - steady->x_dot);
         end.for_ever = *free_amplitude(p) + deviation + std::abs(at_whole_cycle.y) < p.b;

@@ -32,6 +32,9 @@ constexpr double most_error = 0.01;
 // Largest relative difference of the line's amplitude between both halves: constant on a torus.
 constexpr double most_decay = 0.01;
 
+// Largest relative strength at half the frequency of a line, which leakage of the window reaches.
+constexpr double most_half = 1e-6;
+
 // Distance of two of the points, in units of the scale, that is a return: on a curve with 65,536
 // points the closest one is at about 1e-5.
 constexpr double is_return = 1e-8;
@@ -238,6 +241,12 @@ std::optional<QuasiPeriodic> on_one_curve(std::span<const State> points, const S
     const Signal signal = windowed(points);
     const auto first = points.first(points.size() / 2), last = points.last(points.size() / 2);
     for (const double line : strongest_lines(signal)) {
+        // A line at half the frequency: the curve closes after two turns of this one, whose strands
+        // can be closer to each other than neighbouring points.
+        const double strength = line_at(signal, line);
+        if (line_at(signal, 0.5 * line) > most_half * strength ||
+            line_at(signal, 0.5 * line + 0.5) > most_half * strength)
+            continue;
         const SortedPoints sorted(points, scale, line);
         const double largest_gap = sorted.largest_gap();
         const auto count = static_cast<double>(points.size());

@@ -5,11 +5,11 @@
 // searched by first_crossing(), whose bisection is itself a proof. There are four rules; eta is the
 // rounding error of g on the grid.
 //
-//   1. g differs from its chord over a cell of width h by at most M2 h^2/8, M2 >= |g''| = |x''| (y
-//      is linear). The cell is empty if |g| < b - M2 h^2/8 - eta at both ends.
+//   1. g differs from its chord over a cell of width h by at most M2 h^2/8, M2 >= |g''|, the bound
+//      of |x''| plus that of |y''|. The cell is empty if |g| < b - M2 h^2/8 - eta at both ends.
 //   2. If the flight has just left a wall, g = side b at s = 0 and the test of rule 1 always fails.
 //      Let phi(s) = (side g(s) - b)/s, the integral over t in (0,1) of side g'(ts). With M3 >=
-//      |g'''| = |x'''|, |phi''| <= M3/3 and phi differs from its chord by at most M3 h^2/24: there
+//      |g'''|, |phi''| <= M3/3 and phi differs from its chord by at most M3 h^2/24: there
 //      is no contact with this wall in (0, h] if phi(0) = side g'(0) and phi(h) are below
 //      -M3 h^2/24.
 //   3. Remaining cells are searched on the Taylor polynomial of g about the left end, which equals
@@ -39,6 +39,12 @@ struct FlightStart {
     double relative_speed = 0;
     /// Derivatives of side g - b that vanish, counting the 0th: 0 if side is 0, otherwise 1 to 3.
     int zeros = 0;
+    /// Coefficients of s^2 and s^3: y + y_dot s + y_2 s^2 + y_3 s^3 is the ball's position minus
+    /// the polynomial that a force adds to the flow's motion (Stretch::shift).
+    double y_2 = 0, y_3 = 0;
+
+    Cubic ball() const { return {y, y_dot, y_2, y_3}; }
+    bool is_straight() const { return y_2 == 0 && y_3 == 0; }
 };
 
 struct Contact {
@@ -74,10 +80,18 @@ std::optional<Contact> next_contact(
     const Flow& flow, const FlightStart& start, double b, double limit,
     std::vector<GrazingPoint>& grazing);
 
-/// The first s in (0, limit] where the sticking motion stops pressing the ball against its wall
-/// (side x'' > 0); limit <= flow.reach(). `zeros` is 1 if x'' = 0 at the start, otherwise 0.
+/// The first s in (0, limit] at which side (x'' - pull) falls to `least`, where x'' is the
+/// acceleration of the joint motion; limit <= flow.reach(). At a wall, `side` presses the ball
+/// against it until then; inside the cavity friction holds the ball up to side (x'' - pull) =
+/// least < 0. `zeros` is 1 if they are equal at the start, otherwise 0.
 std::optional<double> next_release(
-    const Flow& flow, const Oscillation& start, int side, int zeros, double limit);
+    const Flow& flow, const Oscillation& start, int side, int zeros, double limit, double pull = 0,
+    double least = 0);
+
+/// The first s in (0, limit] at which direction (x' - y') falls to zero; limit <= flow.reach().
+/// `zeros`: derivatives of x' - y' that vanish at the start, counting the 0th.
+std::optional<double> next_equal_velocity(
+    const Flow& flow, const FlightStart& start, int direction, int zeros, double limit);
 
 /// The first d in [0, h] at which the polynomial sum of c[n] d^n rises from below zero to zero or
 /// above. The first `zeros` coefficients are taken as zero and divided out, together with exact
@@ -86,8 +100,8 @@ std::optional<double> next_release(
 std::optional<double> first_crossing(
     std::span<const double> c, int zeros, double h, double noise, std::optional<double>& tangent);
 
-/// True for a flight that begins between the walls or leaves a wall with non-zero relative
-/// velocity.
+/// True for a ball that flies straight and begins between the walls or leaves a wall with non-zero
+/// relative velocity.
 bool has_simple_start(const FlightStart& start);
 
 /// The same contact as next_contact(), up to rounding, but faster for the flights that make up most

@@ -1,5 +1,6 @@
 // Peak displacement and path length of the linear oscillator between events.
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "core/motion/flow.hpp"
@@ -158,6 +159,34 @@ double peak_beyond(double known, const Flow& flow, Oscillation o, double duratio
         o = flow.at(o, Flow::cells);
     }
     return PeakSearch(known, flow, o, std::max(0.0, duration)).peak();
+}
+
+double peak_beyond(
+    double known, const Flow& flow, const Oscillation& start, const Cubic& shift, double from,
+    double to) {
+    const auto motion = [&](double s) {
+        const Oscillation o = flow.after(start, s);
+        return std::array{o.x + shift.at(s), o.x_dot + shift.rate(s)};
+    };
+    double s = from;
+    auto left = motion(s);
+    known = std::max(known, std::abs(left[0]));
+    while (s < to) {
+        const double next = std::min(to, s + flow.cell());
+        const auto right = motion(next);
+        known = std::max(known, std::abs(right[0]));
+        if (signs_differ(left[1], right[1])) {
+            // Bisection to a width at which x differs from its extremum by an ulp.
+            double low = s, high = next;
+            while (high - low > 1e-8 * flow.cell()) {
+                const double middle = 0.5 * (low + high);
+                (signs_differ(left[1], motion(middle)[1]) ? high : low) = middle;
+            }
+            known = std::max(known, std::abs(motion(low)[0]));
+        }
+        s = next, left = right;
+    }
+    return known;
 }
 
 double path_length(const Flow& flow, Oscillation o, double duration) {

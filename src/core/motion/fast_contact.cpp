@@ -185,7 +185,8 @@ struct FastSearch {
 }  // namespace
 
 bool has_simple_start(const FlightStart& start) {
-    return start.side == 0 || (start.zeros == 1 && start.side * start.relative_speed < 0);
+    return start.is_straight() &&
+           (start.side == 0 || (start.zeros == 1 && start.side * start.relative_speed < 0));
 }
 
 std::optional<Contact> fast_contact(

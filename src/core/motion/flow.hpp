@@ -26,6 +26,16 @@ struct Oscillation {
     double sin_theta, cos_theta;
 };
 
+/// A cubic polynomial of the time s.
+struct Cubic {
+    double c0 = 0, c1 = 0, c2 = 0, c3 = 0;
+
+    double at(double s) const { return c0 + s * (c1 + s * (c2 + s * c3)); }
+    double rate(double s) const { return c1 + s * (2 * c2 + s * (3 * c3)); }
+    double second(double s) const { return 2 * c2 + s * (6 * c3); }
+    bool is_zero() const { return c0 == 0 && c1 == 0 && c2 == 0 && c3 == 0; }
+};
+
 /// The 2x2 block [a11 a12; a21 a22] of the transfer matrix J (19), in the order (x', x).
 struct Transfer {
     double a11 = 1, a12 = 0, a21 = 0, a22 = 1;
@@ -88,6 +98,13 @@ public:
         };
         return from(of_x_.x) * o.x + from(of_x_dot_.x) * o.x_dot + from(of_sin_.x) * o.sin_theta +
                from(of_cos_.x) * o.cos_theta - (y0 + from(time_) * y_dot);
+    }
+    /// The same for a curved path of the ball.
+    Block relative_positions(const Oscillation& o, const Cubic& y, int k) const {
+        Block g = relative_positions(o, y.c0, y.c1, k);
+        if (y.c2 == 0 && y.c3 == 0) return g;
+        const auto time = Eigen::Map<const Block>(time_.data() + k);
+        return g - time * time * (y.c2 + time * y.c3);
     }
     /// The same at the ends of blocks j, j + 1, ... (from 0): at the grid times block (j + 1) h,
     /// block (j + 2) h, ... j <= cells/block.
@@ -212,6 +229,11 @@ SeriesValue value_at(const Flow::TaylorSeries& series, double d);
 /// max(known, max |x|) over 0 <= s <= duration, in m. Where a bound on |x| shows that `known` is
 /// not exceeded, no maximum is searched for: in a long run that is most of the time.
 double peak_beyond(double known, const Flow& flow, Oscillation start, double duration);
+
+/// The same of the motion of a flow plus a polynomial.
+double peak_beyond(
+    double known, const Flow& flow, const Oscillation& start, const Cubic& shift, double from,
+    double to);
 
 /// Total variation of x over 0 <= s <= duration, in m.
 double path_length(const Flow& flow, Oscillation start, double duration);

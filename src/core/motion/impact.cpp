@@ -13,7 +13,8 @@ double Impact::phase() const {
     return theta < 0 ? theta + 2 * std::numbers::pi : theta;
 }
 
-Impact impact_at(const Parameters& p, const Contact& contact, double x_ddot, double tau) {
+Impact impact_at(
+    const Parameters& p, const Contact& contact, double x_ddot, double tau, double y_ddot) {
     const double w = contact.relative_speed, R = p.restitution(contact.side, std::abs(w));
     Impact i;
     i.tau = tau;
@@ -29,9 +30,12 @@ Impact impact_at(const Parameters& p, const Contact& contact, double x_ddot, dou
     i.x_dot_after = i.x_dot_before - (1 + R) * p.epsilon / (1 + p.epsilon) * w;
     i.y_dot_after = i.x_dot_after - i.relative_speed_after;
     i.x_ddot_before = x_ddot;
+    i.y_ddot_before = y_ddot;
     i.R = R;
-    // At the contact side (x - y) is b + w s - |x''| s^2/2 if x'' reverses it: depth w^2/(2 |x''|).
-    i.grazing = contact.side * x_ddot < 0 && w * w < 2 * std::abs(x_ddot) * grazing_depth * p.b;
+    // At the contact side (x - y) is b + w s - |a| s^2/2 if a = x'' - y'' reverses it: depth w^2/(2
+    // |a|).
+    const double a = x_ddot - y_ddot;
+    i.grazing = contact.side * a < 0 && w * w < 2 * std::abs(a) * grazing_depth * p.b;
     return i;
 }
 
@@ -62,10 +66,11 @@ Saltation saltation(const Parameters& p, const Impact& i) {
                            : p.restitution_derivative(i.side, std::abs(i.relative_speed_before));
     const double jump_y = (1 + i.R) / (1 + p.epsilon), jump_x = p.epsilon * jump_y,
                  jump_y_dot = (1 + R_speed) / (1 + p.epsilon), jump_x_dot = p.epsilon * jump_y_dot;
-    const double kappa = i.x_ddot_before / i.relative_speed_before;
-    // r = (f+ - S f-)/(x'- - y'-) with f = (x'', x', 0, y'), eq. (27): a deviation shifts the
+    const double kappa = (i.x_ddot_before - i.y_ddot_before) / i.relative_speed_before;
+    // r = (f+ - S f-)/(x'- - y'-) with f = (x'', x', y'', y'), eq. (27): a deviation shifts the
     // impact in time. x'' jumps by -2 zeta (x'+ - x'-), velocities by jump_x, jump_y times (x'- -
-    // y'-).
+    // y'-). Friction reverses: y'' jumps by -2 friction side, x'' by -epsilon times that.
+    const double friction = 2 * p.friction * i.side / i.relative_speed_before;
     const double two_zeta = 2 * p.zeta();
     return {
         .R = i.R,
@@ -74,8 +79,22 @@ Saltation saltation(const Parameters& p, const Impact& i) {
         .jump_y = jump_y,
         .jump_x_dot = jump_x_dot,
         .jump_y_dot = jump_y_dot,
-        .r_x = jump_x_dot * (kappa + two_zeta) + (jump_x - jump_x_dot) * two_zeta,
-        .r_y = -jump_y_dot * kappa};
+        .r_x = jump_x_dot * (kappa + two_zeta) + (jump_x - jump_x_dot) * two_zeta +
+               p.epsilon * friction,
+        .r_y = -jump_y_dot * kappa - friction};
+}
+
+Saltation saltation(const Parameters& p, const Slip& slip) {
+    const double jump_y_dot = (1 - slip.ratio) / (1 + p.epsilon);
+    return {
+        .R = -1,
+        .R_speed = -slip.ratio,
+        .jump_x = 0,
+        .jump_y = 0,
+        .jump_x_dot = p.epsilon * jump_y_dot,
+        .jump_y_dot = jump_y_dot,
+        .r_x = 0,
+        .r_y = 0};
 }
 
 }  // namespace vines

@@ -25,12 +25,21 @@ struct Impact {
     double x_dot_before, x_dot_after, y_dot_before, y_dot_after;
     double relative_speed_before, relative_speed_after;
     double x_ddot_before;
-    double R;      ///< restitution coefficient of this side at this speed
-    bool grazing;  ///< nearly grazing: see grazing_depth
+    double y_ddot_before = 0;  ///< zero without gravity and friction
+    double R;                  ///< restitution coefficient of this side at this speed
+    bool grazing;              ///< nearly grazing: see grazing_depth
 
     double phase() const;  ///< theta in [0, 2 pi)
     /// Impulse on the ball divided by m1, m per unit of tau.
     double impulse(double epsilon) const { return epsilon * (y_dot_after - y_dot_before); }
+};
+
+/// The ball comes to rest relative to the oscillator while it slides.
+struct Slip {
+    double tau;
+    /// x'' - y'' after it over that before it, by which deviations of x' - y' change; 0 if the ball
+    /// then rests inside the cavity.
+    double ratio;
 };
 
 /// An impact counts as grazing if, without the wall, the ball would have passed the wall by less
@@ -38,7 +47,9 @@ struct Impact {
 inline constexpr double grazing_depth = 1e-9;
 
 /// The impact at a contact, eq. (4): conserves x' + epsilon y', reverses x' - y' with factor R.
-Impact impact_at(const Parameters& parameters, const Contact& contact, double x_ddot, double tau);
+Impact impact_at(
+    const Parameters& parameters, const Contact& contact, double x_ddot, double tau,
+    double y_ddot = 0);
 
 /// M = S + r g^T with g^T = [0 1 0 -1] (23) and r = (f+ - S f-)/(g^T f-), eq. (27), where S is the
 /// derivative of the impact law (25). Stored by its factors, because the entries of r grow without
@@ -76,6 +87,10 @@ struct Saltation {
 
 /// The vector g of eq. (23): d(x - y)/dPhi, normal to both walls in state space.
 Eigen::Vector4d wall_normal();
+
+/// Saltation matrix of a slip: multiplies deviations of x' - y' by `ratio`, and leaves those of the
+/// positions and of the centre of mass unchanged.
+Saltation saltation(const Parameters& parameters, const Slip& slip);
 
 /// Saltation matrix of an impact. M has eigenvalues of moduli 1, 1, R, R_speed.
 Saltation saltation(const Parameters& parameters, const Impact& impact);

@@ -27,6 +27,8 @@ constexpr ParameterRange ranges[] = {
     {"R_plus", &Parameters::R_plus, nullptr, 0, 1},
     {"R_minus", &Parameters::R_minus, nullptr, 0, 1},
     {"b", &Parameters::b, nullptr, 1e-9, 1e3},
+    {"gravity", &Parameters::gravity, nullptr, -1e3, 1e3},
+    {"friction", &Parameters::friction, nullptr, 0, 1e3},
     {"x0", nullptr, &State::x, -1e3, 1e3},
     {"x_dot0", nullptr, &State::x_dot, -1e3, 1e3},
     {"y0", nullptr, &State::y, -2e3, 2e3},
@@ -88,7 +90,8 @@ bool is_physical(const Parameters& p) {
     const auto is_restitution = [](double R) { return R >= 0 && R <= 1; };
     return is_positive(p.epsilon) && is_positive(p.Omega) && is_positive(p.b) && p.lambda >= 0 &&
            std::isfinite(p.lambda) && p.G >= 0 && std::isfinite(p.G) && is_restitution(p.R_plus) &&
-           is_restitution(p.R_minus);
+           is_restitution(p.R_minus) && std::isfinite(p.gravity) && p.friction >= 0 &&
+           std::isfinite(p.friction);
 }
 
 int wall_of(const State& s, double b) {

@@ -61,6 +61,11 @@ struct Parameters {
     Damping damping = Damping::equation_of_motion;
     /// Laws that replace R_plus and R_minus, which then are their values at zero speed.
     std::shared_ptr<const RestitutionTable> table_plus, table_minus;
+    /// Acceleration of the free ball along its track, positive along +x: g
+    /// sin(inclination)/omega0^2, m. x is measured from the oscillator's rest without ball.
+    double gravity = 0;
+    /// Deceleration of the sliding ball: mu g cos(inclination)/omega0^2, m.
+    double friction = 0;
 
     double zeta() const;  ///< damping ratio of x'' + 2 zeta x' + x = ...
     double A() const;     ///< forcing amplitude over epsilon, m, eq. (3)
@@ -79,6 +84,8 @@ struct Parameters {
         return table ? table->derivative(w) : side > 0 ? R_plus : R_minus;
     }
     bool has_constant_R() const { return !table_plus && !table_minus; }
+    /// True if the free ball moves at a constant velocity and exerts no force.
+    bool has_straight_flights() const { return gravity == 0 && friction == 0; }
     /// True if both walls obey the same law.
     bool has_equal_walls() const;
 };

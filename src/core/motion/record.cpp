@@ -84,12 +84,12 @@ void SeriesRecord::add(double at, const State& state, double acceleration) {
 }
 
 void SeriesRecord::on_stretch(const Stretch& stretch) {
-    SampledFlow& oscillator = stretch.sticking_side == 0 ? free_ : sticking_;
+    SampledFlow& oscillator = stretch.is_joint() ? sticking_ : free_;
     oscillator.begin(stretch.flow, stretch.start);
     for (double at = next_ * step_; at < stretch.tau + stretch.duration; at = ++next_ * step_) {
         const double s = std::max(0.0, at - stretch.tau);
         const Oscillation o = oscillator.at(s);
-        add(at, stretch.at(s, o), stretch.flow.acceleration(o));
+        add(at, stretch.at(s, o), stretch.x_ddot(s, o));
     }
     x_ddot_at_end_ = stretch.x_ddot(stretch.duration);
 }

@@ -16,12 +16,17 @@ namespace {
 // relative speed is near 1e-12 of a typical one, far above the effect of rounding
 // (contact_search.hpp, rule 3).
 constexpr double chatter_rest = 1e-9;
+// A ball that slides comes to rest within each bounce, which is then no longer than the rounding of
+// positions allows: the height of the last bounces is near 1e-14 of a typical distance.
+constexpr double sliding_chatter_rest = 1e-6;
 // The remaining duration is the sum of a geometric series for a constant acceleration, which
 // changes by less than this fraction.
 constexpr double chatter_drift = 1e-4;
 
 // Events between two calls of the stop function; a flight without a contact in its reach is one.
 constexpr long events_per_look = 64;
+
+int sign_of(double value) { return (value > 0) - (value < 0); }
 
 }  // namespace
 
@@ -44,7 +49,24 @@ Run::Run(
     relative_speed_ = start.x_dot - start.y_dot;
     assert(is_physical(p));
     assert(std::abs(start.x - start.y) <= p.b + position_rounding(free_.bounds(lo_), start.y, p.b));
+    begin_sliding(sign_of(relative_speed_));
     if (side_ != 0) meet_wall_at_start();
+    else if (p.friction > 0 && relative_speed_ == 0) stop_sliding(0);
+}
+
+/// The laws of the free ball that slides in this direction, sign of x' - y': y'' = gravity +
+/// friction direction, and the reaction -epsilon friction direction on the oscillator.
+void Run::begin_sliding(int direction) {
+    if (p_.has_straight_flights()) return;
+    direction_ = p_.friction > 0 ? direction : 0;
+    y_ddot_ = p_.gravity + p_.friction * direction_;
+    shift_ = {-p_.epsilon * p_.friction * direction_};
+}
+
+/// Both masses as one: gravity acts on the oscillator.
+void Run::begin_joint_motion() {
+    if (!sticking_) sticking_ = Flow::shared_sticking(p_);
+    shift_ = {p_.epsilon * p_.gravity};
 }
 
 Outcome Run::run_to_end() {
@@ -69,13 +91,17 @@ void Run::pass(const Flow& flow, double duration, int sticking_side, const Trans
     if (duration > 0)
         notify(
             &Observer::on_stretch,
-            {flow, clock_.tau(), duration, lo_, y_, y_dot_, sticking_side, over});
+            {flow, clock_.tau(), duration, of_flow(), y_, y_dot_, sticking_side, over, y_ddot_,
+             &flow != &free_ && sticking_side == 0, shift_});
     clock_.advance(duration);
 }
 
 void Run::meet_wall_at_start() {
     y_ = lo_.x - side_ * p_.b;
-    if (side_ * relative_speed_ > 0) strike({0, side_, lo_, relative_speed_});
+    if (side_ * relative_speed_ > 0)
+        strike(
+            {0, side_, lo_, relative_speed_}, free_.acceleration(of_flow()) + shift_.second(0),
+            y_ddot_);
     else leave_or_stick();
 }
 
@@ -87,28 +113,41 @@ double Run::flight_limit() const {
 
 void Run::fly() {
     grazing_.clear();
-    const auto contact = fast_contact(free_, flight(), p_.b, flight_limit(), grazing_);
+    const FlightStart start = flight();
+    const double limit = flight_limit();
+    const auto stop = direction_ != 0
+                          ? next_equal_velocity(free_, start, direction_, slip_zeros_, limit)
+                          : std::nullopt;
+    const auto contact = fast_contact(free_, start, p_.b, stop.value_or(limit), grazing_);
     for (const GrazingPoint& t : grazing_) graze(clock_.tau() + t.s, t.side);
-    fly_to(contact, nullptr);
+    if (stop && !contact) stop_sliding(*stop);
+    else fly_to(contact, nullptr);
 }
 
 void Run::fly_to(const std::optional<Contact>& contact, const Transfer* over) {
     const double rest = clock_.until(limits_.tau_end), limit = std::min(rest, free_.reach());
     pass(free_, contact ? contact->s : limit, 0, over);
     if (contact) {
-        lo_ = contact->lo;
+        const double x_ddot = free_.acceleration(contact->lo) + shift_.second(contact->s);
+        lo_ = with_shift(contact->lo, contact->s);
         y_ = lo_.x - contact->side * p_.b;
         side_ = contact->side;
-        if (contact->relative_speed != 0) return strike(*contact);
+        if (contact->relative_speed != 0)
+            return strike(
+                {contact->s, contact->side, lo_, contact->relative_speed}, x_ddot, y_ddot_);
         // Rounding has reduced the approach speed to zero: a grazing contact.
         graze(clock_.tau(), side_);
         relative_speed_ = 0;
         return leave_or_stick();
     }
     if (limit == rest) end_ = End::tau_end;
-    y_ += y_dot_ * limit;
-    lo_ = limit == free_.reach() ? free_.at(lo_, Flow::cells)
-                                 : free_.after(lo_, std::max(0.0, limit));
+    y_ += limit * (y_dot_ + 0.5 * y_ddot_ * limit);
+    y_dot_ += y_ddot_ * limit;
+    lo_ = with_shift(
+        limit == free_.reach() ? free_.at(of_flow(), Flow::cells)
+                               : free_.after(of_flow(), std::max(0.0, limit)),
+        limit);
+    slip_zeros_ = 0;
     side_ = 0;
     bounce_limit_ = 0;
 }
@@ -118,9 +157,40 @@ void Run::graze(double tau, int side) {
     notify(&Observer::on_grazing_contact, tau, side);
 }
 
-void Run::strike(const Contact& contact) {
-    const Impact i = impact_at(p_, contact, free_.acceleration(contact.lo), clock_.tau());
-    const bool pressed = i.side * i.x_ddot_before > 0 && contact.s < bounce_limit_;
+/// x'' - y'' of a joint motion if nothing but friction held the ball.
+double Run::pull_together() const {
+    const Cubic joint{p_.epsilon * p_.gravity};
+    const Oscillation o{lo_.x - joint.c0, lo_.x_dot, lo_.sin_theta, lo_.cos_theta};
+    return sticking_->acceleration(o) - p_.gravity;
+}
+
+/// Advances to the moment s at which the sliding ball has the oscillator's velocity, inside the
+/// cavity: friction holds it, or it slides on in the other direction.
+void Run::stop_sliding(double s) {
+    const double before =
+        free_.acceleration(free_.after(of_flow(), s)) + shift_.second(s) - y_ddot_;
+    pass(free_, s, 0, nullptr);
+    y_ += s * (y_dot_ + 0.5 * y_ddot_ * s);
+    lo_ = with_shift(free_.after(of_flow(), s), s);
+    y_dot_ = lo_.x_dot;
+    relative_speed_ = 0;
+    side_ = 0;
+    bounce_limit_ -= s;
+    if (!sticking_) sticking_ = Flow::shared_sticking(p_);
+    const double pull = pull_together();
+    if (std::abs(pull) <= p_.friction) {
+        notify(&Observer::on_slip, {clock_.tau(), 0});
+        return rest_inside();
+    }
+    begin_sliding(sign_of(pull));
+    slip_zeros_ = 1;
+    const double after = free_.acceleration(of_flow()) + shift_.second(0) - y_ddot_;
+    if (s > 0) notify(&Observer::on_slip, {clock_.tau(), after / before});
+}
+
+void Run::strike(const Contact& contact, double x_ddot, double y_ddot) {
+    const Impact i = impact_at(p_, contact, x_ddot, clock_.tau(), y_ddot);
+    const bool pressed = i.side * (x_ddot - y_ddot) > 0 && contact.s < bounce_limit_;
     chatter_ = i.side == last_side_ && pressed ? chatter_ + 1 : 1;
     last_side_ = i.side;
     ++impacts_;
@@ -134,14 +204,17 @@ void Run::strike(const Contact& contact) {
 /// At the wall side_ with a relative speed that is zero or points away from it: determines the
 /// leading derivative of the gap.
 void Run::leave_or_stick() {
-    const double press = side_ * free_.acceleration(lo_), press_rate = side_ * free_.jerk(lo_);
+    begin_sliding(relative_speed_ != 0 ? sign_of(relative_speed_) : -side_);
+    const Oscillation o = of_flow();
+    const double press = side_ * (free_.acceleration(o) + shift_.second(0) - y_ddot_),
+                 press_rate = side_ * (free_.jerk(o) + 6 * shift_.c3);
     bounce_limit_ = press > 0 ? longest_bounce_ : 0;
     if (relative_speed_ != 0) {
         zeros_ = 1;
+        slip_zeros_ = 0;
         const double R = p_.restitution(side_, std::abs(relative_speed_));
-        // Sum of the geometric series of 2 w/press.
-        const double rest = 2 * std::abs(relative_speed_) / (press * (1 - R));
-        if (press > 0 && R < 1 && rest < chatter_rest &&
+        const double rest = rest_of_chatter(std::abs(relative_speed_), press, R);
+        if (press > 0 && rest < (direction_ == 0 ? chatter_rest : sliding_chatter_rest) &&
             std::abs(press_rate) * rest < chatter_drift * press)
             stick(rest, 0);
         // All three zero: both masses stay at rest together.
@@ -149,14 +222,26 @@ void Run::leave_or_stick() {
         stick(0, press == 0);
     } else {
         zeros_ = press < 0 ? 2 : 3;
+        slip_zeros_ = zeros_ - 1;
     }
+}
+
+/// Duration of the remaining impacts after one that leaves the ball with the relative speed w while
+/// it is pressed with the relative acceleration `press`; infinite if they do not come to an end.
+double Run::rest_of_chatter(double w, double press, double R) const {
+    // Friction brakes the ball on its way back as well.
+    const double press_back = press - 2 * (1 + p_.epsilon) * p_.friction;
+    if (!(press_back > 0)) return infinity;
+    // Sums of geometric series.
+    if (p_.friction == 0) return R < 1 ? 2 * w / (press * (1 - R)) : infinity;
+    const double slower = std::sqrt(press_back / press);
+    return w / press * (1 + 1 / slower) / (1 - R * slower);
 }
 
 /// The sticking phase up to the release. The rest of the chatter counts as part of it: the centre
 /// of mass obeys the same law. `zeros` as in next_release().
 void Run::stick(double chatter_left, int zeros) {
     ++others_;
-    if (!sticking_) sticking_ = Flow::shared_sticking(p_);
     // The velocity of the centre of mass.
     lo_.x_dot -= p_.epsilon / (1 + p_.epsilon) * relative_speed_;
     notify(
@@ -164,24 +249,51 @@ void Run::stick(double chatter_left, int zeros) {
                               relative_speed_ == 0 && last_side_ != side_ ? 0 : chatter_});
     relative_speed_ = 0;
     last_side_ = 0;
+    y_ = lo_.x - side_ * p_.b;
+    follow_joint_motion(zeros);
+    begin_sliding(-side_);
+    zeros_ = 3;  // x'' = y'' at the release as well
+    slip_zeros_ = 2;
+    notify(&Observer::on_release, clock_.tau());
+}
+
+/// Friction holds the ball inside the cavity, until it slides again.
+void Run::rest_inside() {
+    ++others_;
+    side_ = 0;
+    follow_joint_motion(0);
+    begin_sliding(sign_of(pull_together()));
+    slip_zeros_ = 2;
+}
+
+/// Both masses as one, until the wall side_ or, inside the cavity, friction no longer holds the
+/// ball.
+void Run::follow_joint_motion(int zeros) {
+    begin_joint_motion();
+    const double apart = side_ != 0 ? side_ * p_.b : lo_.x - y_;
     for (bool released = false; !released && !end_;) {
-        y_ = lo_.x - side_ * p_.b;
+        y_ = lo_.x - apart;
         y_dot_ = lo_.x_dot;
         const double rest = clock_.until(limits_.tau_end),
                      limit = std::min(rest, sticking_->reach());
-        const auto release = next_release(*sticking_, lo_, side_, zeros, limit);
+        std::optional<double> release;
+        for (const int held_by : {1, -1})
+            if (held_by == side_ || side_ == 0) {
+                const auto end = next_release(
+                    *sticking_, of_flow(), held_by, zeros, release.value_or(limit), p_.gravity,
+                    -p_.friction);
+                if (end) release = end;
+            }
         const double s = release ? *release : limit;
         pass(*sticking_, s, side_, nullptr);
-        lo_ = sticking_->after(lo_, std::max(0.0, s));
+        lo_ = with_shift(sticking_->after(of_flow(), std::max(0.0, s)), s);
         released = release.has_value();
         zeros = 0;
         if (!released && limit == rest) end_ = End::tau_end;
         if (!released && limits_.stop && limits_.stop()) end_ = End::stopped;
     }
-    y_ = lo_.x - side_ * p_.b;
+    y_ = lo_.x - apart;
     y_dot_ = lo_.x_dot;
-    zeros_ = 3;  // x'' = 0 at the release as well
-    notify(&Observer::on_release, clock_.tau());
 }
 
 Outcome simulate(

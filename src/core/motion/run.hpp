@@ -42,7 +42,10 @@ public:
     // The next flight, and the time limit for its contact.
     const Flow& flow() const { return free_; }
     double b() const { return p_.b; }
-    FlightStart flight() const { return {lo_, y_, y_dot_, side_, relative_speed_, zeros_}; }
+    FlightStart flight() const {
+        return {of_flow(),       y_ - shift_.c0, y_dot_ - shift_.c1,        side_,
+                relative_speed_, zeros_,         0.5 * y_ddot_ - shift_.c2, -shift_.c3};
+    }
     double flight_limit() const;
     /// Finds the contact and advances past it.
     void fly();
@@ -59,9 +62,25 @@ private:
     }
     void pass(const Flow& flow, double duration, int sticking_side, const Transfer* over);
     void meet_wall_at_start();
+    /// The oscillator without shift_.
+    Oscillation of_flow() const {
+        return {lo_.x - shift_.c0, lo_.x_dot - shift_.c1, lo_.sin_theta, lo_.cos_theta};
+    }
+    /// The oscillator from a state of the flow at s.
+    Oscillation with_shift(Oscillation o, double s) const {
+        o.x += shift_.at(s), o.x_dot += shift_.rate(s);
+        return o;
+    }
+    void begin_sliding(int direction);
+    void begin_joint_motion();
+    void stop_sliding(double s);
+    double pull_together() const;
+    void rest_inside();
+    void follow_joint_motion(int zeros);
     void graze(double tau, int side);
-    void strike(const Contact& contact);
+    void strike(const Contact& contact, double x_ddot, double y_ddot);
     void leave_or_stick();
+    double rest_of_chatter(double w, double press, double R) const;
     void stick(double chatter_left, int zeros);
 
     const Parameters& p_;
@@ -77,6 +96,10 @@ private:
     int side_ = 0;               // the wall that the ball is at, 0 in flight
     double relative_speed_ = 0;  // x' - y' at that wall
     int zeros_ = 1;              // see FlightStart
+    int direction_ = 0;          // sign of x' - y' of a sliding ball; 0 without friction
+    int slip_zeros_ = 0;         // see next_equal_velocity()
+    double y_ddot_ = 0;
+    Cubic shift_;  // see Stretch
     // Side and length of the current sequence of impacts on one side, joined by the pressing wall.
     int last_side_ = 0, chatter_ = 0;
     // A flight that leaves a pressing wall and returns to it while it presses, within half a cycle

@@ -19,20 +19,31 @@ struct Stretch {
     /// law of motion of the linear oscillator (with the ball's mass while sticking)
     const Flow& flow;
     double tau, duration;
-    Oscillation start;
-    double y, y_dot;    ///< of the ball at the start; while sticking x - side b, x'
-    int sticking_side;  ///< wall on which the ball rests, 0 while it flies freely
+    Oscillation start;  ///< x and x' without `shift`
+    double y, y_dot;    ///< of the ball at the start; while it rests also those of its wall
+    int sticking_side;  ///< wall on which the ball rests, 0 in the cavity
     const Transfer* transfer = nullptr;  ///< flow.transfer(duration) if already known
+    double y_ddot = 0;                   ///< of a free ball, constant
+    bool rests_inside = false;           ///< friction holds the ball inside the cavity
+    /// What constant forces (friction, gravity of a resting ball) add to the flow's motion: x(s) =
+    /// flow's x(s) + shift(s).
+    Cubic shift = {};
 
+    /// True while both masses move as one.
+    bool is_joint() const { return sticking_side != 0 || rests_inside; }
     /// The state of both masses at 0 <= s <= duration.
     State at(double s) const { return at(s, flow.after(start, s)); }
-    /// The same, given the oscillator's state.
+    /// The same, given the flow's state.
     State at(double s, const Oscillation& o) const {
-        if (sticking_side != 0) return {o.x_dot, o.x, o.x_dot, o.x + (y - start.x)};
-        return {o.x_dot, o.x, y_dot, y + y_dot * s};
+        const double x = o.x + shift.at(s), x_dot = o.x_dot + shift.rate(s);
+        if (is_joint()) return {x_dot, x, x_dot, x + (y - (start.x + shift.c0))};
+        return {x_dot, x, y_dot + y_ddot * s, y + s * (y_dot + 0.5 * y_ddot * s)};
     }
     /// Acceleration of the linear oscillator, m per unit of tau squared.
-    double x_ddot(double s) const { return flow.acceleration(flow.after(start, s)); }
+    double x_ddot(double s) const { return x_ddot(s, flow.after(start, s)); }
+    double x_ddot(double s, const Oscillation& o) const {
+        return flow.acceleration(o) + shift.second(s);
+    }
 };
 
 /// Start of a sticking phase, after a chatter or a single impact with R = 0.
@@ -50,6 +61,7 @@ public:
     virtual void on_impact(const Impact&) {}
     /// Grazing contact: zero relative speed, no impact.
     virtual void on_grazing_contact(double /*tau*/, int /*side*/) {}
+    virtual void on_slip(const Slip&) {}
     virtual void on_stick(const StickStart&) {}
     /// Also called at the end of a run that ends while sticking.
     virtual void on_release(double /*tau*/) {}
@@ -58,7 +70,7 @@ public:
 /// Limits of a run. Reaching one is a result, not an error.
 struct Limits {
     double tau_end = 1709;      ///< contacts at tau_end itself belong to the run
-    long max_impacts = 100000;  ///< the same limit applies to sticking phases plus grazing contacts
+    long max_impacts = 100000;  ///< the same limit applies to phases of rest plus grazing contacts
     std::function<bool()> stop = {};  ///< called every few events; true ends the run
     double tau_start = 0;             ///< initial time; it sets the phase of the forcing
 };

@@ -27,9 +27,18 @@ Leg leg_of(const Flow& flow, double duration, bool sticking) {
 
 Leg leg_of(const Stretch& s) {
     const bool sticking = s.sticking_side != 0;
-    if (!s.transfer || parts_of(s.flow, s.duration) > 1)
-        return leg_of(s.flow, s.duration, sticking);
+    if (!s.transfer || parts_of(s.flow, s.duration) > 1) {
+        Leg leg = leg_of(s.flow, s.duration, sticking);
+        leg.resting = s.rests_inside;
+        return leg;
+    }
     return {*s.transfer, s.duration, -s.flow.damping() * s.duration, 1, sticking};
+}
+
+Saltation slip_of(const Leg& leg, double epsilon) {
+    Parameters p;
+    p.epsilon = epsilon;
+    return saltation(p, Slip{0, leg.slip});
 }
 
 namespace {
@@ -39,14 +48,14 @@ void carry_rows(Deviations& d, const Leg& leg, double epsilon) {
     const auto& [a11, a12, a21, a22] = leg.oscillator;
     using Row = Eigen::Matrix<double, 1, Deviations::ColsAtCompileTime>;
     Row x_dot = d.row(0), x = d.row(1);
-    if (leg.sticking) {
-        const double nu = 1 / (1 + epsilon), mu = epsilon * nu;
-        x_dot = nu * x_dot + mu * d.row(2);
-        x = nu * x + mu * d.row(3);
-    }
+    const Row gap = d.row(3) - d.row(1);
+    const double nu = 1 / (1 + epsilon), mu = epsilon * nu;
+    if (leg.sticking || leg.resting) x_dot = nu * x_dot + mu * d.row(2);
+    if (leg.sticking) x = nu * x + mu * d.row(3);
     d.row(0) = a11 * x_dot + a12 * x;
     d.row(1) = a21 * x_dot + a22 * x;
     if (leg.sticking) d.row(2) = d.row(0), d.row(3) = d.row(1);
+    else if (leg.resting) d.row(2) = d.row(0), d.row(3) = d.row(1) + gap;
     else d.row(3) += leg.duration * d.row(2);
 }
 
@@ -62,6 +71,7 @@ void carry(Eigen::Vector4d& deviation, const Leg& leg, double epsilon) {
 Matrix4 transfer_of(const Leg& leg, double epsilon) {
     Frame J = Frame::Identity();
     for (long k = 0; k < leg.parts; ++k) carry(J, leg, epsilon);
+    if (leg.slip != 1) J = slip_of(leg, epsilon).times(J);
     return J;
 }
 
@@ -90,6 +100,16 @@ Area carried(const Area& w, const Leg& leg, double epsilon) {
         out << area, 0, area, -area, 0, area;
         return out;
     }
+    if (leg.resting) {
+        // In the coordinates (x', x, z', z) with z = x - y, c = x' - mu z' and x move as one body,
+        // z' vanishes and z stays. The areas of c and x, c and z, x and z:
+        const double mu = epsilon / (1 + epsilon), cx = w(0) - mu * (w(0) + w(3)),
+                     cz = w(0) - w(2) - mu * (w(0) - w(2) + w(3) + w(5)), xz = -w(4);
+        const double x_dot_z = a11 * cz + a12 * xz;
+        out << det * cx, 0, det * cx - x_dot_z, -det * cx, -(a21 * cz + a22 * xz),
+            det * cx - x_dot_z;
+        return out;
+    }
     // J consists of the oscillator's block and the ball's block [1 0; s 1].
     const double s = leg.duration, w03 = w(2) + s * w(1), w13 = w(4) + s * w(3);
     out << det * w(0), a11 * w(1) + a12 * w(3), a11 * w03 + a12 * w13, a21 * w(1) + a22 * w(3),
@@ -97,12 +117,16 @@ Area carried(const Area& w, const Leg& leg, double epsilon) {
     return out;
 }
 
-Volume carried(const Volume& volume, const Leg& leg) {
+Volume carried(const Volume& volume, const Leg& leg, double epsilon) {
     if (leg.sticking) return {Eigen::Vector4d::Zero()};
     // det(J) J^-T n
     const auto& [a11, a12, a21, a22] = leg.oscillator;
     const Eigen::Vector4d& n = volume.normal;
     const double det = determinant_of(leg.oscillator);
+    if (leg.resting) {
+        const double nu = 1 / (1 + epsilon), size = det * (epsilon * nu * n(0) - nu * n(2));
+        return {{size, 0, -size, 0}};
+    }
     return {
         {a22 * n(0) - a21 * n(1), a11 * n(1) - a12 * n(0), det * (n(2) - leg.duration * n(3)),
          det * n(3)}};
@@ -153,8 +177,8 @@ Volume carried(const Volume& volume, const Saltation& M) {
 void Flag::pass(const Leg& leg, double epsilon) {
     carry(deviation, leg, epsilon);
     area = carried(area, leg, epsilon);
-    volume = carried(volume, leg);
-    determinant *= leg.sticking ? 0 : determinant_of(leg.oscillator);
+    volume = carried(volume, leg, epsilon);
+    determinant *= leg.sticking || leg.resting ? 0 : determinant_of(leg.oscillator);
 }
 
 void Flag::strike(const Saltation& M) {
@@ -197,6 +221,7 @@ double PowerProduct::Scaled<n>::log_radius() const {
 
 void PowerProduct::pass(const Leg& leg) {
     if (leg.sticking) rank_ = 2;
+    if (leg.resting) rank_ = std::min(rank_, 3);
     for (long count = 0; count < leg.parts; ++count) {
         Frame first = first_.matrix;
         carry(first, leg, epsilon_);
@@ -207,10 +232,11 @@ void PowerProduct::pass(const Leg& leg) {
         second_.rescale();
         if (rank_ < 3) continue;
         for (int k = 0; k < 4; ++k)
-            third_.matrix.col(k) = carried(Volume{third_.matrix.col(k)}, leg).normal;
+            third_.matrix.col(k) = carried(Volume{third_.matrix.col(k)}, leg, epsilon_).normal;
         third_.rescale();
         log_det_ += leg.log_det;
     }
+    if (leg.slip != 1) strike(slip_of(leg, epsilon_));
 }
 
 void PowerProduct::strike(const Saltation& M) {
@@ -223,7 +249,7 @@ void PowerProduct::strike(const Saltation& M) {
     for (int k = 0; k < 4; ++k)
         third_.matrix.col(k) = carried(Volume{third_.matrix.col(k)}, M).normal;
     third_.rescale();
-    log_det_ += elementary::log(M.R) + elementary::log(std::abs(M.R_speed));
+    log_det_ += elementary::log(std::abs(M.R)) + elementary::log(std::abs(M.R_speed));
 }
 
 Moduli PowerProduct::log_moduli() const {

@@ -19,14 +19,18 @@ namespace vines {
 /// step, so that the product of two neighbouring lengths keeps 14 digits.
 inline constexpr double most_contraction = 4;
 
-/// A free flight, or a sticking phase (both masses as one), divided into equal parts that contract
-/// by at most e^-most_contraction each.
+/// A free flight, or a phase with both masses as one (sticking at a wall, or resting inside the
+/// cavity), divided into equal parts that contract by at most e^-most_contraction each.
 struct Leg {
     Transfer oscillator;  ///< per part: block (x', x) of J, eq. (19)
     double duration;      ///< per part
     double log_det;       ///< ln det of `oscillator`
     long parts;
     bool sticking;
+    /// Friction holds the ball inside the cavity: deviations of x - y stay.
+    bool resting = false;
+    /// The slip that ends it: factor for deviations of x' - y'.
+    double slip = 1;
 };
 Leg leg_of(const Flow& flow, double duration, bool sticking);
 Leg leg_of(const Stretch& stretch);
@@ -42,14 +46,17 @@ Matrix4 transfer_of(std::span<const Leg> legs, double epsilon);
 
 /// Area spanned by two deviations: components 01, 02, 03, 12, 13, 23 in the order (x', x, y', y).
 using Area = Eigen::Matrix<double, 6, 1>;
+/// The slip that ends a leg, as a saltation matrix.
+Saltation slip_of(const Leg& leg, double epsilon);
+
 /// Volume spanned by three deviations, as its normal n: with a fourth deviation v it spans n.v.
 struct Volume {
     Eigen::Vector4d normal;
 };
 
 Area carried(const Area& area, const Leg& leg, double epsilon);  ///< over one part
-/// Over one part; zero after sticking.
-Volume carried(const Volume& volume, const Leg& leg);
+/// Over one part; zero after sticking, of rank 3 after a rest.
+Volume carried(const Volume& volume, const Leg& leg, double epsilon);
 Area carried(const Area& area, const Saltation& M);
 Volume carried(const Volume& volume, const Saltation& M);
 
@@ -85,7 +92,8 @@ public:
     void pass(const Leg& leg);
     void strike(const Saltation& M);
 
-    /// 4; 3 after an impact with R = 0; 2 after sticking (only the centre of mass deviates).
+    /// 4; 3 after an impact with R = 0 or a rest inside the cavity; 2 after sticking (only the
+    /// centre of mass deviates).
     int rank() const { return rank_; }
     /// ln|eigenvalues|, descending; -infinity beyond the rank, NaN if not found.
     Moduli log_moduli() const;

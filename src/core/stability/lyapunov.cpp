@@ -134,11 +134,12 @@ struct TransferProduct::Qr {
             log_det += leg.log_det;
             if (leg.parts > 1 || leg.sticking) rescale();
         }
+        if (leg.slip != 1) strike(slip_of(leg, epsilon));
     }
 
     void strike(const Saltation& M) {
         const double steepness = steepness_of(M);
-        if (std::min(M.R, std::abs(M.R_speed)) < 1e-3 || steepness > steep)
+        if (std::min(std::abs(M.R), std::abs(M.R_speed)) < 1e-3 || steepness > steep)
             return strike_magnified(M, steepness);
         // Within these limits an impact and a flight of one part let no size grow by more than 1e17
         // (for a flight of duration 1e10) or shrink by more than 1e10.
@@ -161,7 +162,7 @@ struct TransferProduct::Qr {
                 before[k] > 0
                     ? typical_rounding * (1 + (1 + steepness) * std::sqrt(before[k] / after[k]))
                     : 0;
-        log_determinants += elementary::log(M.R) + elementary::log(std::abs(M.R_speed));
+        log_determinants += elementary::log(std::abs(M.R)) + elementary::log(std::abs(M.R_speed));
         rescale();
     }
 
@@ -283,6 +284,7 @@ void TransferProduct::append(std::span<const Leg> legs, const Saltation& M, doub
     ++impacts_;
     for (const Leg& leg : legs) {
         if (leg.sticking) rank_ = 2;  // only the two deviations of the centre of mass remain
+        if (leg.resting || leg.slip == 0) rank_ = std::min(rank_, 3);
         if (qr_) qr_->pass(leg, epsilon_);
         if (powers_) powers_->product.pass(leg);
     }
@@ -356,6 +358,10 @@ void Lyapunov::on_stretch(const Stretch& stretch) {
     if (product_.impacts() > 0) since_impact_.extend(stretch);  // the window has started
 }
 
+void Lyapunov::on_slip(const Slip& slip) {
+    if (product_.impacts() > 0) since_impact_.slip(slip);
+}
+
 void Lyapunov::on_impact(const Impact& impact) {
     if (impact.tau < tau_start_ || impact.tau > tau_end_) return;
     if (product_.impacts() == 0) product_.start(impact.tau);
@@ -382,6 +388,10 @@ void WindowedExponents::add(double tau_start, double tau_end) {
 
 void WindowedExponents::on_stretch(const Stretch& stretch) {
     for (Window* w : open_) w->lyapunov.on_stretch(stretch);
+}
+
+void WindowedExponents::on_slip(const Slip& slip) {
+    for (Window* w : open_) w->lyapunov.on_slip(slip);
 }
 
 void WindowedExponents::on_impact(const Impact& impact) {

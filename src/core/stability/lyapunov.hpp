@@ -127,6 +127,7 @@ public:
         const ExponentOptions& options);
 
     void on_stretch(const Stretch&) override;
+    void on_slip(const Slip&) override;
     void on_impact(const Impact&) override;
 
     /// Call these after the run.
@@ -159,6 +160,7 @@ public:
     void add(double tau_start, double tau_end);
 
     void on_stretch(const Stretch&) override;
+    void on_slip(const Slip&) override;
     void on_impact(const Impact&) override;
 
     std::size_t size() const { return windows_.size(); }

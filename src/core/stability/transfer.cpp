@@ -10,13 +10,23 @@ namespace vines {
 
 void LegSequence::extend(const Stretch& stretch) {
     const bool sticking = stretch.sticking_side != 0;
-    if (legs_.empty() || legs_.back().sticking != sticking) {
+    const bool continues = !legs_.empty() && legs_.back().sticking == sticking &&
+                           legs_.back().resting == stretch.rests_inside && legs_.back().slip == 1;
+    if (!continues) {
         legs_.push_back(leg_of(stretch));
         return;
     }
     Leg& leg = legs_.back();
     leg = leg_of(
         stretch.flow, stretch.duration + leg.duration * static_cast<double>(leg.parts), sticking);
+    leg.resting = stretch.rests_inside;
+}
+
+void LegSequence::slip(const Slip& slip) {
+    if (legs_.empty())
+        legs_.push_back(
+            {.oscillator = {}, .duration = 0, .log_det = 0, .parts = 1, .sticking = false});
+    legs_.back().slip *= slip.ratio;
 }
 
 Moduli eigenvalue_moduli(const Matrix4& m) {
@@ -42,13 +52,18 @@ Moduli moduli_of(const ImpactTransfer& transfer, bool with_impact) {
 }  // namespace
 
 int ImpactTransfer::rank() const {
-    return std::ranges::any_of(legs, [](const Leg& leg) { return leg.sticking; }) ? 2 : 4;
+    int rank = 4;
+    for (const Leg& leg : legs)
+        rank = std::min(rank, leg.sticking ? 2 : leg.resting || leg.slip == 0 ? 3 : 4);
+    return rank;
 }
 
 Moduli ImpactTransfer::J_moduli() const {
     Moduli moduli = {1, 1, 1, 1};
     // Two blocks, eq. (19). The ball's, [1 0; s 1], is a Jordan block, which a solver would split.
-    if (rank() == 4) {
+    const bool blocks =
+        std::ranges::all_of(legs, [](const Leg& leg) { return !leg.sticking && leg.slip == 1; });
+    if (blocks) {
         for (const Leg& leg : legs) {
             const auto& [a11, a12, a21, a22] = leg.oscillator;
             const double n = static_cast<double>(leg.parts), half_trace = 0.5 * std::abs(a11 + a22);
@@ -65,7 +80,7 @@ Moduli ImpactTransfer::J_moduli() const {
 }
 
 Moduli ImpactTransfer::M_moduli() const {
-    Moduli moduli = {1, 1, M.R, std::abs(M.R_speed)};
+    Moduli moduli = {1, 1, std::abs(M.R), std::abs(M.R_speed)};
     std::ranges::sort(moduli, std::greater<>());
     return moduli;
 }

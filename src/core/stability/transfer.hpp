@@ -14,6 +14,7 @@ namespace vines {
 class LegSequence {
 public:
     void extend(const Stretch& stretch);
+    void slip(const Slip& slip);  ///< at the end of the last leg
     void reset() { legs_.clear(); }
     std::span<const Leg> legs() const { return legs_; }
 
@@ -31,7 +32,7 @@ struct ImpactTransfer {
     std::vector<Leg> legs;  ///< from the previous impact
 
     Matrix4 J() const { return transfer_of(legs, epsilon); }
-    int rank() const;  ///< of J: 4, or 2 after sticking
+    int rank() const;  ///< of J: 4, 3 after a rest inside the cavity, 2 after sticking
     Matrix4 T() const { return M.times(J()); }
     Moduli J_moduli() const;
     /// Exactly 1, 1, R, R (section 4): M is triangular for the centre of mass and x - y.
@@ -52,6 +53,7 @@ public:
           tau_start_(tau_start),
           tau_end_(tau_end) {}
     void on_stretch(const Stretch& stretch) override { passage_.extend(stretch); }
+    void on_slip(const Slip& slip) override { passage_.slip(slip); }
     void on_impact(const Impact& impact) override;
 
 private:

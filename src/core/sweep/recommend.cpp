@@ -201,7 +201,9 @@ Recommendations recommendations(Search& s, const std::vector<double>& row) {
 
 Recommendations recommended_b(const Parameters& p, const std::function<bool()>& stop) {
     const auto C = free_amplitude(p);
-    if (!p.has_constant_R() || !p.has_equal_walls() || p.R_plus == 1 || !C || *C == 0) return {};
+    if (!p.has_straight_flights() || !p.has_constant_R() || !p.has_equal_walls() || p.R_plus == 1 ||
+        !C || *C == 0)
+        return {};
     StoppedFromOutside control(stop);
     try {
         Search search{p, *C, control};

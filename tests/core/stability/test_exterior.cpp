@@ -55,13 +55,20 @@ Matrix4 volume_matrix(const Way&... way) {
 }
 
 /// A flight or a sticking phase of one part.
-Leg random_leg(std::mt19937_64& engine, const Parameters& p, bool sticking) {
-    return leg_of(sticking ? Flow::sticking(p) : Flow::free(p), uniform(engine, 0, 0.5), sticking);
+enum class Kind { flight, sticking, resting };
+
+Leg random_leg(std::mt19937_64& engine, const Parameters& p, Kind kind) {
+    Leg leg = leg_of(
+        kind == Kind::flight ? Flow::free(p) : Flow::sticking(p), uniform(engine, 0, 0.5),
+        kind == Kind::sticking);
+    leg.resting = kind == Kind::resting;
+    return leg;
 }
 
 Saltation random_strike(std::mt19937_64& engine, Parameters p) {
     if (p.R_plus > 0 && engine() % 2) p.table_plus = p.table_minus = random_table(engine, 0.5);
     const auto u = [&] { return uniform(engine, -1, 1); };
+    if (engine() % 3 == 0) return saltation(p, Slip{0, u()});
     const double angle = u();
     Contact c{0, u() < 0 ? -1 : 1, {u(), u(), std::sin(angle), std::cos(angle)}, 0};
     c.relative_speed = c.side * uniform(engine, 0.1, 1);
@@ -75,11 +82,12 @@ TEST_CASE("areas and volumes are transported by the minors of J and M") {
     std::mt19937_64 engine(6);
     for (int n = 0; n < 300; ++n) {
         const Parameters p = random_system(engine).parameters;
-        const Leg leg = random_leg(engine, p, n % 3 == 0);
+        const Leg leg = random_leg(engine, p, static_cast<Kind>(n % 3));
         Frame J = Frame::Identity();
         carry(J, leg, p.epsilon);
         CHECK((area_matrix(leg, p.epsilon) - second_minors(J)).norm() < 1e-12 * J.squaredNorm());
-        CHECK((volume_matrix(leg) - cofactors(J)).norm() < 1e-12 * std::pow(J.norm(), 3));
+        CHECK(
+            (volume_matrix(leg, p.epsilon) - cofactors(J)).norm() < 1e-12 * std::pow(J.norm(), 3));
         const Saltation M = random_strike(engine, p);
         const Matrix4 m = M.matrix();
         CHECK((area_matrix(M) - second_minors(m)).norm() < 1e-12 * m.squaredNorm());
@@ -100,8 +108,7 @@ TEST_CASE("areas and volumes are transported like the deviations that span them"
         c.relative_speed = c.side * uniform(engine, 0.1, 1);
         const Impact impact = impact_at(p, c, uniform(engine, -1, 1), 0);
         const Saltation M = saltation(p, impact);
-        const Leg leg =
-            leg_of(n % 3 ? Flow::free(p) : Flow::sticking(p), uniform(engine, 0, 0.5), n % 3 == 0);
+        const Leg leg = random_leg(engine, p, static_cast<Kind>(n % 3));
         Eigen::Matrix4d v;
         for (int i = 0; i < 16; ++i) v(i / 4, i % 4) = uniform(engine, -1, 1);
         auto area = [](const Eigen::Matrix4d& of) {
@@ -126,7 +133,7 @@ TEST_CASE("areas and volumes are transported like the deviations that span them"
             (carried(area(v), leg, p.epsilon) - area(after_leg)).norm() <
             1e-12 * (1 + after_leg.squaredNorm()));
         CHECK(
-            (carried(volume(v), leg).normal - volume(after_leg).normal).norm() <
+            (carried(volume(v), leg, p.epsilon).normal - volume(after_leg).normal).norm() <
             1e-12 * (1 + std::pow(after_leg.norm(), 3)));
         CHECK(
             (carried(area(v), M) - area(after_impact)).norm() <
@@ -146,7 +153,7 @@ TEST_CASE("the sizes of a flag are those of a QR factorisation at every impact")
         std::array<double, 4> sizes = {1, 1, 1, 1};
         double impacts = 1;
         for (int n = 0; n < 30; ++n) {
-            const Leg leg = random_leg(engine, p, false);
+            const Leg leg = random_leg(engine, p, Kind::flight);
             const Saltation M = random_strike(engine, p);
             flag.pass(leg, p.epsilon);
             flag.strike(M);
@@ -197,7 +204,7 @@ TEST_CASE("the moduli of a product are those of its matrix while double precisio
     PowerProduct product(p.epsilon);
     Matrix4 plain = Matrix4::Identity();
     for (int n = 0; n < 3; ++n) {
-        const Leg leg = random_leg(engine, p, false);
+        const Leg leg = random_leg(engine, p, Kind::flight);
         const Saltation M = random_strike(engine, p);
         product.pass(leg);
         product.strike(M);
@@ -217,7 +224,7 @@ TEST_CASE("an impact with R = 0 leaves rank 3, sticking rank 2, and lost rank do
     PowerProduct product(p.epsilon);
     product.strike(random_strike(engine, soft));
     CHECK(product.rank() == 3);
-    product.pass(random_leg(engine, p, true));
+    product.pass(random_leg(engine, p, Kind::sticking));
     CHECK(product.rank() == 2);
     product.strike(random_strike(engine, p));
     CHECK(product.rank() == 2);
