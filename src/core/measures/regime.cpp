@@ -33,8 +33,7 @@ constexpr double settled_within = 1e-3;
 constexpr int longest_departure = 4096, cycles_of_look = 64;
 // Growth on the way, as a logarithm, by which rounding reaches 1e-5 of the motion.
 constexpr double most_growth_of_rounding = 25;
-// Length of the history in which a chaotic transient is searched.
-constexpr std::size_t transient_history = 4096;
+constexpr std::size_t transient_history = 4096;  // entries searched for a chaotic transient
 // A chaotic run is continued in rounds of this many cycles.
 constexpr long cycles_of_round = 1024;
 // More impacts per cycle than any motion has except endless chatter (R = 1).
@@ -350,8 +349,8 @@ Regime::Untouched untouched_end(
     const Parameters& p, const State& at_whole_cycle, double tau,
     const std::function<bool()>& stop) {
     Regime::Untouched end{false, at_whole_cycle.y_dot, std::nullopt};
-    const auto steady = free_steady_state(p);
-    if (steady && p.has_straight_flights() && at_whole_cycle.y_dot == 0) {
+    if (const auto steady = free_steady_state(p);
+        steady && p.has_straight_flights() && at_whole_cycle.y_dot == 0) {
         const double deviation =
             elementary::hypot(at_whole_cycle.x - steady->x, at_whole_cycle.x_dot - steady->x_dot);
         end.for_ever = *free_amplitude(p) + deviation + std::abs(at_whole_cycle.y) < p.b;

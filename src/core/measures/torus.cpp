@@ -236,6 +236,19 @@ bool lie_apart(std::span<const State> points, std::span<const State> others, con
     return median_of(std::move(nearest)) > 4 * median_of(std::move(neighbours));
 }
 
+/// True if all points lie on one curve, of which every `apart`-th point seems to cover a part:
+/// `found` is of these.
+bool is_one_curve(
+    std::span<const State> states, const State& scale, const QuasiPeriodic& found, int apart) {
+    for (int k = 0; k < apart; ++k) {
+        const SortedPoints sorted(states, scale, (found.rotation_number + k) / apart);
+        if (std::abs(sorted.shape(1).length / sorted.shape(coarse_neighbours).length - 1) <
+            length_tolerance)
+            return true;
+    }
+    return false;
+}
+
 /// Evidence that points at equal intervals, of which one lies on each curve, rotate on it.
 std::optional<QuasiPeriodic> on_one_curve(std::span<const State> points, const State& scale) {
     const Signal signal = windowed(points);
@@ -303,6 +316,7 @@ std::optional<QuasiPeriodic> quasi_periodic(std::span<const State> states, const
                 others.push_back(states[k]);
             if (!lie_apart(points, others, scale)) return std::nullopt;
         }
+        if (curves > 1 && is_one_curve(states, scale, *found, curves)) return std::nullopt;
         found->curves = curves;
         found->rotation_number /= curves;
         found->error /= curves;
