@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "core/motion/elementary.hpp"
 
@@ -67,14 +68,16 @@ void Energy::add_curved(const Stretch& stretch, double from, double to) {
     constexpr double weights[] = {
         0.3626837833783620, 0.3137066458778873, 0.2223810344533745, 0.1012285362903763};
     const double widest = 2 * stretch.flow.cell();
+    const Cubic base = stretch.loading ? stretch.loading->base : Cubic{};
     const auto add = [&](double begin, double end) {
         const double half = 0.5 * (end - begin), middle = begin + half;
         for (int k = 0; k < 8; ++k) {
             const double s = middle + (k % 2 == 0 ? half : -half) * points[k / 2];
             const Oscillation o = stretch.flow.after(stretch.start, s);
             const State at = stretch.at(s, o);
-            const double weight = half * weights[k / 2];
-            sum_(x_squared) += weight * at.x * at.x;
+            const double weight = half * weights[k / 2], x = at.x - base.at(s);
+            sum_(x_squared) += weight * x * x;
+            if (stretch.loading) work_ += weight * at.x_dot * stretch.loading->force.at(s);
             sum_(x_dot_squared) += weight * at.x_dot * at.x_dot;
             sum_(x_dot_sin) += weight * at.x_dot * o.sin_theta;
         }
@@ -100,7 +103,10 @@ void Energy::add_curved(const Stretch& stretch, double from, double to) {
         }
         s = next;
     }
-    peak_ = peak_beyond(peak_, stretch.flow, stretch.start, stretch.shift, from, to);
+    const Cubic& p = stretch.shift;
+    peak_ = peak_beyond(
+        peak_, stretch.flow, stretch.start,
+        {p.c0 - base.c0, p.c1 - base.c1, p.c2 - base.c2, p.c3 - base.c3}, from, to);
     end_ = stretch.at(to);
     duration_ += to - from;
 }
@@ -150,7 +156,7 @@ void Energy::on_impact(const Impact& i) {
     // before the window.
     if (i.tau <= tau_start_) {
         sum_.setZero();
-        duration_ = peak_ = friction_ = 0;
+        duration_ = peak_ = friction_ = work_ = 0;
         at_steps_.clear();
         end_ = {i.x_dot_after, i.x, i.y_dot_after, i.x - i.side * parameters_.b};
         start_ = vines::energy_of(parameters_, end_);
@@ -183,7 +189,7 @@ EnergyBalance Energy::balance(const Interval& window) const {
     const Parameters& p = parameters_;
     const Integrals sum = integrals();
     const Oscillation o = end();
-    const double input = p.epsilon * p.A() * sum(x_dot_sin),
+    const double input = p.load ? work_ : p.epsilon * p.A() * sum(x_dot_sin),
                  damper = 2 * p.zeta() * sum(x_dot_squared),
                  at_end = p.has_straight_flights()
                               ? energy_of(o, last_.is_stuck ? o.x_dot : last_.y_dot)
@@ -205,7 +211,7 @@ EnergyBalance Energy::balance(const Interval& window) const {
     const double observed = steps_.duration() * static_cast<double>(at_steps_.size());
     return {
         .window = window,
-        .input = p.G == 0 ? 0 : input,
+        .input = p.is_forced() ? input : 0,
         .damper = damper,
         .impacts = impacts_,
         .friction = friction_,
@@ -245,6 +251,18 @@ std::optional<State> free_steady_state(const Parameters& p) {
 }
 
 Unattached unattached(const Parameters& p, const State& start, double tau_start, double tau_end) {
+    if (p.load) {
+        Parameters alone = p;
+        alone.gravity = alone.friction = 0;
+        alone.b = std::numeric_limits<double>::max();
+        Energy energy(alone, tau_start, tau_end);
+        Observer* const observers[] = {&energy};
+        simulate(
+            alone, {start.x_dot, start.x, 0, 0},
+            {.tau_end = tau_end, .max_impacts = std::numeric_limits<long>::max()}, observers);
+        const EnergyBalance balance = energy.balance({tau_start, tau_end});
+        return {balance.rms, balance.peak, std::nullopt};
+    }
     const auto table = Flow::shared_free(p);
     const Flow& flow = *table;
     const Oscillation o{start.x, start.x_dot, elementary::sin(p.phi()), elementary::cos(p.phi())};

@@ -18,7 +18,7 @@ namespace vines {
 /// Energy balance of a window and amplitudes of x in it. Energies divided by m1 omega0^2, in m^2.
 struct EnergyBalance {
     Interval window;  ///< the part that the run reached
-    double input;     ///< integral of epsilon A sin(theta) x' dtau
+    double input;     ///< integral of epsilon A sin(theta) x' dtau, or of the load times x'
     double damper;    ///< integral of 2 zeta x'^2 dtau
     /// Dissipated by impacts: epsilon (1 - R^2) v^2/(2 (1 + epsilon)) each, with v = x' - y' before
     /// the impact and R of its wall.
@@ -29,7 +29,7 @@ struct EnergyBalance {
     double at_start, at_end;
     /// Fraction of the dissipation that is due to impacts; empty without dissipation.
     std::optional<double> share_impacts;
-    double rms, peak;  ///< of x, of |x|, m
+    double rms, peak;  ///< of x, of |x|, m; relative to the base if a load moves it
     /// Standard errors of rms and share_impacts as estimates for an infinite run (mean_error.hpp);
     /// NaN for windows of fewer than 32 cycles.
     double rms_error, share_impacts_error;
@@ -88,7 +88,7 @@ private:
         bool is_stuck, in_closed_form;
     };
     Last last_{};
-    double duration_ = 0, peak_ = 0, impacts_ = 0, friction_ = 0, start_ = 0;
+    double duration_ = 0, peak_ = 0, impacts_ = 0, friction_ = 0, work_ = 0, start_ = 0;
     State end_{};  // unless flights are straight
     /// Integrals of x^2 and x'^2 and the dissipation of impacts and friction, from the window's
     /// start to the end of each step.

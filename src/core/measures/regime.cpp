@@ -363,7 +363,7 @@ Regime::Untouched untouched_end(
 }
 
 RegimeType type_of(const Regime& r) {
-    if (!r.forced) return RegimeType::none;
+    if (!r.forced || !r.has_period) return RegimeType::none;
     if (r.orbit) {
         if (r.orbit->contacts == 0) return RegimeType::none;
         if (r.orbit->contacts != 2L * r.orbit->cycles) return RegimeType::V;
@@ -385,11 +385,12 @@ const char* name_of(RegimeType type) {
 Regime regime_of(
     const Parameters& p, const State& start, const RegimeEvidence& e, bool exponents_before) {
     Regime r;
-    r.forced = p.G > 0;
+    r.forced = p.is_forced();
+    r.has_period = !p.load;
     count_contacts(r, e);
     const std::span<const State> states = states_before(e.stroboscopic, e.tau_end);
     // The first state in the window only shows that the window has any.
-    if (r.forced && states.size() > 1 && e.stroboscopic.tau(states.size() - 2) >= e.tau_start) {
+    if (r.forced && r.has_period && states.size() > 1 && e.stroboscopic.tau(states.size() - 2) >= e.tau_start) {
         // Scale of the last part: a transient can have been larger.
         const State scale = scale_of(p, states.last(std::min(states.size(), longest_period)));
         r.orbit = orbit_of(p, states, scale, e);
@@ -432,7 +433,7 @@ VerdictReason undecided_by(const Growth& g) {
 
 Judgement judge(const Growth& g, const Regime& r, double tau_start) {
     if (!r.forced) return {Verdict::none, VerdictReason::free_decay};
-    if (r.type == RegimeType::none && verdict_by_exponents(g) != Verdict::chaotic) {
+    if (r.type == RegimeType::none && r.has_period && verdict_by_exponents(g) != Verdict::chaotic) {
         const bool for_ever = r.orbit || (r.untouched && r.untouched->for_ever);
         return for_ever ? Judgement{Verdict::none, VerdictReason::untouched}
                         : Judgement{Verdict::not_decided, VerdictReason::next_contact};

@@ -43,6 +43,7 @@ struct Capture {
 struct Regime {
     RegimeType type = RegimeType::none;
     bool forced = true;  ///< false for a free decay (G = 0), which has no regime
+    bool has_period = true;  ///< false for a recorded load, which has neither orbit nor type
     long contacts = 0;   ///< in the window
     /// Contacts per forcing cycle: of the orbit if periodic, else between first and last contact.
     double z = 0;

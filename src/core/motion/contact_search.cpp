@@ -271,7 +271,7 @@ std::optional<Contact> next_contact(
     assert(start.side == 0 || (start.zeros >= 1 && start.zeros <= 3));
     const auto bounds = flow.bounds(start.lo);
     const Cubic y = start.ball();
-    const double h = flow.cell(), T = flow.reach(),
+    const double h = flow.cell(), T = std::min(flow.reach(), limit + Flow::block * h),
                  curved = T * T * (std::abs(y.c2) + T * std::abs(y.c3)),
                  eta = position_rounding(bounds, std::abs(start.y) + curved, b),
                  M2 = bounds.x_ddot + 2 * std::abs(y.c2) + 6 * T * std::abs(y.c3),
@@ -305,7 +305,7 @@ std::optional<Contact> next_contact(
 
 std::optional<double> next_release(
     const Flow& flow, const Oscillation& start, int side, int zeros, double limit, double pull,
-    double least) {
+    double least, double pull_rate) {
     assert(side != 0 && (zeros == 0 || zeros == 1) && limit <= flow.reach());
     const double h = flow.cell();
     for (int k = 0; k < Flow::cells && k * h < limit; ++k) {
@@ -313,7 +313,8 @@ std::optional<double> next_release(
         // least - side (x'' - pull), negative while the ball is held.
         std::array<double, Flow::degree - 1> f;
         for (int n = 0; n + 2 <= Flow::degree; ++n) f[n] = -side * (n + 1.0) * (n + 2.0) * x[n + 2];
-        f[0] += least + side * pull;
+        f[0] += least + side * (pull + pull_rate * (k * h));
+        f[1] += side * pull_rate;
         std::optional<double> tangent;
         if (auto d = first_crossing(f, k == 0 ? zeros : 0, h, 0, tangent))
             return k * h + *d <= limit ? std::optional(k * h + *d) : std::nullopt;

@@ -47,6 +47,8 @@ struct RestitutionTable {
     bool operator==(const RestitutionTable&) const = default;
 };
 
+class Load;
+
 /// Dimensionless unless a unit is given; symbols as in the paper. The defaults are Table 1 with the
 /// b of Fig. 3; epsilon and lambda follow from the SI values of the table, which rounds them to .84
 /// % and 1.43.
@@ -67,6 +69,9 @@ struct Parameters {
     /// Deceleration of the sliding ball: mu g cos(inclination)/omega0^2, m.
     double friction = 0;
 
+    /// Replaces the harmonic forcing: G is 0 then.
+    std::shared_ptr<const Load> load;
+
     double zeta() const;  ///< damping ratio of x'' + 2 zeta x' + x = ...
     double A() const;     ///< forcing amplitude over epsilon, m, eq. (3)
     double phi() const;   ///< forcing phase at tau = 0, eq. (3)
@@ -84,8 +89,9 @@ struct Parameters {
         return table ? table->derivative(w) : side > 0 ? R_plus : R_minus;
     }
     bool has_constant_R() const { return !table_plus && !table_minus; }
-    /// True if the free ball moves at a constant velocity and exerts no force.
-    bool has_straight_flights() const { return gravity == 0 && friction == 0; }
+    bool is_forced() const { return G > 0 || load; }
+    /// True for the forces of the paper alone: harmonic forcing, and a ball that flies straight.
+    bool has_straight_flights() const { return gravity == 0 && friction == 0 && !load; }
     /// True if both walls obey the same law.
     bool has_equal_walls() const;
 };

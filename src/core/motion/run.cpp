@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "core/motion/elementary.hpp"
+#include "core/motion/load.hpp"
 #include "core/motion/simulate.hpp"
 
 namespace vines {
@@ -49,6 +50,7 @@ Run::Run(
     relative_speed_ = start.x_dot - start.y_dot;
     assert(is_physical(p));
     assert(std::abs(start.x - start.y) <= p.b + position_rounding(free_.bounds(lo_), start.y, p.b));
+    if (p.load) interval_ = p.load->interval_at(limits.tau_start);
     begin_sliding(sign_of(relative_speed_));
     if (side_ != 0) meet_wall_at_start();
     else if (p.friction > 0 && relative_speed_ == 0) stop_sliding(0);
@@ -60,13 +62,38 @@ void Run::begin_sliding(int direction) {
     if (p_.has_straight_flights()) return;
     direction_ = p_.friction > 0 ? direction : 0;
     y_ddot_ = p_.gravity + p_.friction * direction_;
-    shift_ = {-p_.epsilon * p_.friction * direction_};
+    if (p_.load) {
+        const double tau = clock_.tau();
+        loading_ = {
+            p_.load->force(interval_, tau, p_.epsilon * p_.lambda), p_.load->base(interval_, tau)};
+    }
+    Cubic force = loading_.force;
+    force.c0 -= p_.epsilon * p_.friction * direction_;
+    shift_ = particular_solution(free_, force);
 }
 
-/// Both masses as one: gravity acts on the oscillator.
+/// What load and gravity add to the joint motion of both masses.
+Cubic Run::joint_shift() const {
+    Cubic force = loading_.force;
+    force.c0 += p_.epsilon * p_.gravity;
+    const double nu = 1 / (1 + p_.epsilon);
+    return particular_solution(
+        *sticking_, {nu * force.c0, nu * force.c1, nu * force.c2, nu * force.c3});
+}
+
 void Run::begin_joint_motion() {
     if (!sticking_) sticking_ = Flow::shared_sticking(p_);
-    shift_ = {p_.epsilon * p_.gravity};
+    begin_sliding(direction_);
+    shift_ = joint_shift();
+}
+
+double Run::until_next_interval() const {
+    return p_.load ? std::max(0.0, clock_.until(p_.load->end_of(interval_))) : infinity;
+}
+
+void Run::begin_next_interval() {
+    ++interval_;
+    begin_sliding(direction_);
 }
 
 Outcome Run::run_to_end() {
@@ -92,7 +119,7 @@ void Run::pass(const Flow& flow, double duration, int sticking_side, const Trans
         notify(
             &Observer::on_stretch,
             {flow, clock_.tau(), duration, of_flow(), y_, y_dot_, sticking_side, over, y_ddot_,
-             &flow != &free_ && sticking_side == 0, shift_});
+             &flow != &free_ && sticking_side == 0, shift_, p_.load ? &loading_ : nullptr});
     clock_.advance(duration);
 }
 
@@ -108,7 +135,8 @@ void Run::meet_wall_at_start() {
 // A contact whose tau rounds to tau_end belongs to the run. After it the remaining time can be
 // negative, by half an ulp of tau_end, over which nothing moves.
 double Run::flight_limit() const {
-    return std::min(clock_.until(limits_.tau_end) + end_rounding_, free_.reach());
+    return std::min(
+        {clock_.until(limits_.tau_end) + end_rounding_, free_.reach(), until_next_interval()});
 }
 
 void Run::fly() {
@@ -125,7 +153,8 @@ void Run::fly() {
 }
 
 void Run::fly_to(const std::optional<Contact>& contact, const Transfer* over) {
-    const double rest = clock_.until(limits_.tau_end), limit = std::min(rest, free_.reach());
+    const double rest = clock_.until(limits_.tau_end), next = until_next_interval(),
+                 limit = std::min({rest, free_.reach(), next});
     pass(free_, contact ? contact->s : limit, 0, over);
     if (contact) {
         const double x_ddot = free_.acceleration(contact->lo) + shift_.second(contact->s);
@@ -149,7 +178,8 @@ void Run::fly_to(const std::optional<Contact>& contact, const Transfer* over) {
         limit);
     slip_zeros_ = 0;
     side_ = 0;
-    bounce_limit_ = 0;
+    bounce_limit_ -= limit;
+    if (limit == next && !end_) begin_next_interval();
 }
 
 void Run::graze(double tau, int side) {
@@ -159,9 +189,9 @@ void Run::graze(double tau, int side) {
 
 /// x'' - y'' of a joint motion if nothing but friction held the ball.
 double Run::pull_together() const {
-    const Cubic joint{p_.epsilon * p_.gravity};
-    const Oscillation o{lo_.x - joint.c0, lo_.x_dot, lo_.sin_theta, lo_.cos_theta};
-    return sticking_->acceleration(o) - p_.gravity;
+    const Cubic joint = joint_shift();
+    const Oscillation o{lo_.x - joint.c0, lo_.x_dot - joint.c1, lo_.sin_theta, lo_.cos_theta};
+    return sticking_->acceleration(o) + joint.second(0) - p_.gravity;
 }
 
 /// Advances to the moment s at which the sliding ball has the oscillator's velocity, inside the
@@ -176,6 +206,7 @@ void Run::stop_sliding(double s) {
     relative_speed_ = 0;
     side_ = 0;
     bounce_limit_ -= s;
+    begin_sliding(direction_);  // of the load from here on
     if (!sticking_) sticking_ = Flow::shared_sticking(p_);
     const double pull = pull_together();
     if (std::abs(pull) <= p_.friction) {
@@ -274,14 +305,14 @@ void Run::follow_joint_motion(int zeros) {
     for (bool released = false; !released && !end_;) {
         y_ = lo_.x - apart;
         y_dot_ = lo_.x_dot;
-        const double rest = clock_.until(limits_.tau_end),
-                     limit = std::min(rest, sticking_->reach());
+        const double rest = clock_.until(limits_.tau_end), next = until_next_interval(),
+                     limit = std::min({rest, sticking_->reach(), next});
         std::optional<double> release;
         for (const int held_by : {1, -1})
             if (held_by == side_ || side_ == 0) {
                 const auto end = next_release(
-                    *sticking_, of_flow(), held_by, zeros, release.value_or(limit), p_.gravity,
-                    -p_.friction);
+                    *sticking_, of_flow(), held_by, zeros, release.value_or(limit),
+                    p_.gravity - 2 * shift_.c2, -p_.friction, -6 * shift_.c3);
                 if (end) release = end;
             }
         const double s = release ? *release : limit;
@@ -289,6 +320,8 @@ void Run::follow_joint_motion(int zeros) {
         lo_ = with_shift(sticking_->after(of_flow(), std::max(0.0, s)), s);
         released = release.has_value();
         zeros = 0;
+        if (!released && limit == next) ++interval_;
+        if (p_.load) begin_joint_motion();
         if (!released && limit == rest) end_ = End::tau_end;
         if (!released && limits_.stop && limits_.stop()) end_ = End::stopped;
     }

@@ -73,6 +73,10 @@ private:
     }
     void begin_sliding(int direction);
     void begin_joint_motion();
+    Cubic joint_shift() const;
+    /// The time until the load's law changes.
+    double until_next_interval() const;
+    void begin_next_interval();
     void stop_sliding(double s);
     double pull_together() const;
     void rest_inside();
@@ -100,6 +104,8 @@ private:
     int slip_zeros_ = 0;         // see next_equal_velocity()
     double y_ddot_ = 0;
     Cubic shift_;  // see Stretch
+    std::size_t interval_ = 0;   // of the load
+    Loading loading_;            // over the rest of that interval
     // Side and length of the current sequence of impacts on one side, joined by the pressing wall.
     int last_side_ = 0, chatter_ = 0;
     // A flight that leaves a pressing wall and returns to it while it presses, within half a cycle

@@ -14,6 +14,12 @@
 
 namespace vines {
 
+/// What a recorded load does, as functions of the time s since the last event.
+struct Loading {
+    Cubic force;  ///< right-hand side of x'' + 2 zeta x' + x
+    Cubic base;   ///< displacement of the base; zero for a force on the oscillator
+};
+
 /// A part of the motion without an event inside. A long flight consists of several stretches.
 struct Stretch {
     /// law of motion of the linear oscillator (with the ball's mass while sticking)
@@ -28,6 +34,7 @@ struct Stretch {
     /// What constant forces (friction, gravity of a resting ball) add to the flow's motion: x(s) =
     /// flow's x(s) + shift(s).
     Cubic shift = {};
+    const Loading* loading = nullptr;  ///< null without a load
 
     /// True while both masses move as one.
     bool is_joint() const { return sticking_side != 0 || rests_inside; }
