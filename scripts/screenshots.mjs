@@ -1,6 +1,6 @@
 #!/usr/bin/env -S node
-// scripts/screenshots.mjs FOLDER [QUERY]: takes screenshots of the page, wide and narrow, light and dark: the
-// first screen and the complete page. Without a query it shows the first simulation, the first sweep, a map
+// scripts/screenshots.mjs FOLDER [QUERY]: takes screenshots of the page, wide and narrow, light, dark and in
+// forced colours: the first screen and the complete page. Without a query it shows the first simulation, the first sweep, a map
 // and a measurement. VINES_WEB_DIR=web selects the page in that folder instead of the compiled one.
 import {identified, open, startBrowser} from "../tests/page/browser.mjs";
 import {measured} from "../tests/record.mjs";
@@ -21,8 +21,14 @@ const screens = [
   {name: "wide", viewport: {width: 1440, height: 900}},
   {name: "tablet", viewport: {width: 1024, height: 768}},
   {name: "phone", viewport: {width: 390, height: 844}},
-  {name: "small", viewport: {width: 360, height: 640}},
+  {name: "small", viewport: {width: 320, height: 640}},
+  {name: "landscape", viewport: {width: 844, height: 390}},
 ];
+const schemes = {
+  light: {colorScheme: "light"},
+  dark: {colorScheme: "dark"},
+  forced: {colorScheme: "light", forcedColors: "active"},
+};
 const service = await startService();
 const browser = await startBrowser();
 const record = {
@@ -46,9 +52,13 @@ async function picture(address, options, path) {
 
 try {
   for (const [view, address] of Object.entries(views))
-    for (const colorScheme of ["light", "dark"])
+    for (const colours of ["light", "dark", "forced"])
       for (const {name, viewport} of screens)
-        await picture(address, {viewport, colorScheme}, `${folder}/${view}${name}-${colorScheme}`);
+        await picture(
+          address,
+          {viewport, ...schemes[colours]},
+          `${folder}/${view}${name}-${colours}`,
+        );
   if (browser.complaints.length) console.error(browser.complaints.join("\n"));
 } finally {
   await browser.stop();

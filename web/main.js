@@ -4,6 +4,7 @@
 import {get} from "./shared/api.js";
 import {onColours} from "./shared/colours.js";
 import {$, attributes, on} from "./shared/dom.js";
+import {startTerms} from "./shared/terms.js";
 import {SimulationTab} from "./simulation/simulation.js";
 
 // The class of each tab, a RequestTab; all but the first are loaded on demand. It is made with
@@ -126,6 +127,18 @@ async function openAddress() {
   if (current === name) tabs[name].open(query);
 }
 
+/** Opens a request with a tab in its query. */
+function openQuery(text) {
+  const {tab = "simulation", ...query} = Object.fromEntries(new URLSearchParams(text));
+  return navigate(tab, new URLSearchParams(query));
+}
+
+/** Starts a guided story. */
+async function tell(name) {
+  const {start} = await import("./stories.js");
+  return start(name, openQuery);
+}
+
 function navigate(name, query) {
   writePending();
   history.pushState(null, "", address(name, query));
@@ -156,11 +169,17 @@ async function start() {
   const [fields, {presets}] = await Promise.all([get("v1/parameters"), get("v1/presets")]);
   tables = {...fields, presets};
   listenToButtons();
+  startTerms();
+  $("story").onchange = ({target}) => {
+    tell(target.value);
+    target.value = "";
+  };
   addEventListener("popstate", openAddress);
   onColours(() => {
     for (const tab of Object.values(tabs)) tab.redraw();
   });
-  await openAddress();
+  const story = new URLSearchParams(location.search).get("story");
+  if (!story || !(await tell(story))) await openAddress();
 }
 
 async function showVersion() {

@@ -3,6 +3,7 @@ import assert from "node:assert/strict";
 import {test} from "node:test";
 import {measured} from "../record.mjs";
 import {drawn, identified, swept} from "./browser.mjs";
+import {leastDifference} from "./palette.mjs";
 import {browser, findingsInBothSchemes, service} from "./support.mjs";
 
 const tabs = {
@@ -46,3 +47,90 @@ for (const [name, show] of Object.entries(tabs))
     assert.deepEqual(await findingsInBothSchemes(page), []);
     await page.close();
   });
+
+const screens = {
+  "320 px": [320, 640],
+  "a phone in landscape": [844, 390],
+  "200 % zoom": [720, 450],
+  "a tablet": [1024, 768],
+};
+for (const [name, [width, height]] of Object.entries(screens))
+  test(`no tab scrolls sideways on ${name}, and sliders are 24 px high`, async () => {
+    const page = await browser.context.newPage();
+    await page.setViewportSize({width, height});
+    for (const [address, wait] of [
+      ["?preset=fig11", drawn],
+      ["?preset=fig11&embed=1", drawn],
+      ["?tab=sweep&axis1=b,0.003,0.04,24&cycles=60", swept],
+      ["?tab=measurement", identified],
+    ]) {
+      await page.goto(`${service.url}/${address}`);
+      await wait(page, 1);
+      const wide = await page.evaluate(() => document.documentElement.scrollWidth);
+      assert.ok(wide <= width, `${address}: ${wide} px`);
+    }
+    await page.goto(`${service.url}/?preset=fig11`);
+    await drawn(page, 1);
+    const heights = await page.$$eval("input[type=range]", (inputs) =>
+      inputs.map((input) => input.offsetHeight).filter(Boolean),
+    );
+    assert.ok(Math.min(...heights) >= 24, heights.join());
+    await page.close();
+  });
+
+/** Colours of the style sheet by name, as [r, g, b]. */
+const coloursOf = (page, names) =>
+  page.evaluate((names) => {
+    const probe = document.body.appendChild(document.createElement("i"));
+    const found = names.map((name) => {
+      probe.style.color = `var(--${name})`;
+      return getComputedStyle(probe).color.match(/\d+/g).map(Number);
+    });
+    probe.remove();
+    return found;
+  }, names);
+
+test("colours that stand for different things differ for everyone, also with a colour blindness", async () => {
+  const regimes = ["VI", "V", "IV", "III", "II", "I", "none"].map((name) => `regime-${name}`);
+  const verdicts = ["chaotic", "regular", "undecided", "untouched"];
+  const limits = [
+    [regimes, regimes, 13.5],
+    [verdicts, verdicts, 13.5],
+    [verdicts, regimes, 7.5],
+    [["plus"], ["minus"], 13.5],
+    [["before"], ["after"], 13.5],
+    [["c1"], ["without"], 13.5],
+  ];
+  const page = await browser.context.newPage();
+  await page.goto(service.url);
+  for (const colorScheme of ["light", "dark"]) {
+    await page.emulateMedia({colorScheme});
+    for (const [some, others, least] of limits) {
+      const [ofSome, ofOthers] = [await coloursOf(page, some), await coloursOf(page, others)];
+      for (const [i, one] of some.entries())
+        for (const [k, other] of others.entries()) {
+          const difference = one === other ? Infinity : leastDifference(ofSome[i], ofOthers[k]);
+          assert.ok(difference >= least, `${colorScheme}: ${one}, ${other}: ${difference}`);
+        }
+    }
+  }
+  await page.close();
+});
+
+test("forced colours show the selected tab and the pressed chip", async () => {
+  const page = await browser.context.newPage();
+  await page.emulateMedia({forcedColors: "active"});
+  await page.goto(service.url);
+  await drawn(page, 1);
+  const background = (selector) =>
+    page.$eval(selector, (node) => getComputedStyle(node).backgroundColor);
+  assert.notEqual(
+    await background("[aria-selected=true]"),
+    await background("[role=tab][aria-selected=false]"),
+  );
+  assert.notEqual(
+    await background(".chip[aria-pressed=true]"),
+    await background(".chip[aria-pressed=false]"),
+  );
+  await page.close();
+});

@@ -60,7 +60,8 @@ export async function startBrowser() {
 export async function open(context, url, options = {}) {
   const page = await context.newPage();
   if (options.viewport) await page.setViewportSize(options.viewport);
-  if (options.colorScheme) await page.emulateMedia({colorScheme: options.colorScheme});
+  const {colorScheme, forcedColors} = options;
+  if (colorScheme) await page.emulateMedia({colorScheme, forcedColors});
   await page.goto(url);
   if (url.includes("tab=measurement"))
     await page.waitForFunction(() => document.getElementById("measure-preset").value);

@@ -347,7 +347,7 @@ test("a file with unknown column names is identified once its columns are chosen
 });
 
 test("a binary file is rejected with advice", async () => {
-  const page = await visit("?tab=measurement");
+  const page = await visit("?tab=measurement&preset=fig15");
   const requests = [];
   page.on("request", (request) => requests.push(request.url()));
   const bytes = Buffer.from(Array.from({length: 4000}, (_, i) => (i * 37) % 251));
@@ -380,6 +380,25 @@ test("Measurement identifies the restitution and clearance of a simulated run", 
   for (const wall of ["R at \\+b", "R at −b"]) agrees(summary, wall, 0.65);
   agrees(summary, "b fitted", 22);
   assert.match(page.url(), /tab=measurement&b=0\.022&m1=1&k1=1/);
+  assert.deepEqual(browser.complaints, []);
+  await page.close();
+});
+
+test("the tab opens with a sample, and a record of one's own is shown again after a reload", async () => {
+  const page = await visit("?tab=measurement");
+  await identified(page, 1);
+  assert.match(await page.textContent("#measure-about"), /^sample-fig20\.csv/);
+  await page.setInputFiles("#measure-file", asFile(await regular(), "mine.csv"));
+  await page.waitForFunction(() => document.getElementById("measure-results").dataset.done > 1);
+  const summary = await page.textContent("#measure-summary");
+  const impacts = /impacts(\d+)/;
+  await page.reload();
+  await identified(page, 1);
+  assert.match(await page.textContent("#measure-about"), /^mine\.csv/);
+  assert.equal(
+    impacts.exec(await page.textContent("#measure-summary"))[1],
+    impacts.exec(summary)[1],
+  );
   assert.deepEqual(browser.complaints, []);
   await page.close();
 });

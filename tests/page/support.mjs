@@ -119,6 +119,12 @@ export function asked(page, route) {
 export const input = (name) => `#fields [aria-describedby='error-${name}']`;
 export const origin = (page, name) => page.textContent(`#fields .field-${name} .origin`);
 
+/** The value that the service chooses for an empty menu of the form. */
+export const automatic = (page, name) =>
+  page.$eval(input(name), ({value, options}) =>
+    value ? null : options[0].text.replace("automatic: ", ""),
+  );
+
 /** Opens the form and its groups. */
 export async function unfold(page) {
   await page.click("#more > summary");

@@ -11,6 +11,7 @@ import {summariseMeasurement} from "./measurement_summary.js";
 import * as views from "./measurement_views.js";
 import {asJson, columnsOf, parse, recordOf, spikeNear} from "./record.js";
 import {oscillatorOf, recordOfRun} from "./sample.js";
+import {afterReload, keep} from "./stored.js";
 
 const groups = {
   system: ["System", true],
@@ -19,6 +20,7 @@ const groups = {
 };
 const longestQuery = 6000; // characters; servers and proxies accept addresses of about 8 kB
 const sampleCycles = 330; // about 40 s
+const firstSample = "fig20"; // read when the tab is opened without a record
 
 /**
  * Changes to the service's fields: column names are typed or taken from the file's header; the
@@ -52,6 +54,7 @@ export class MeasurementTab extends RequestTab {
   answer = null;
   sent = null; // fields that the answer belongs to
   shown = null; // the form as a query
+  opened = false;
 
   constructor({identify_fields: fields, presets}, changed) {
     super("measure-", changed);
@@ -116,8 +119,19 @@ export class MeasurementTab extends RequestTab {
   open(given) {
     const fields = Object.fromEntries(given);
     if (asQuery(fields) === this.shown) return;
-    const {preset = given.size ? "" : "fig20", ...rest} = fields;
+    const {preset = given.size ? "" : firstSample, ...rest} = fields;
     this.choosePreset(preset, rest);
+    if (!this.opened) this.readFirst(given.size === 0);
+    this.opened = true;
+  }
+
+  /** Reads the record of before a reload or, if wanted, a sample. */
+  async readFirst(sample) {
+    const isNewest = this.beginRecord();
+    const file = await afterReload();
+    if (!isNewest()) return;
+    if (file) this.readFile(file);
+    else if (sample) this.readSample(firstSample);
   }
 
   /** Selects an oscillator; more: further fields. */
@@ -289,6 +303,7 @@ export class MeasurementTab extends RequestTab {
       });
       if (!isNewest()) return;
       this.parsed = parsed;
+      keep(file);
       const {names, columns} = parsed;
       $("measure-columns").replaceChildren(...names.map((value) => element("option", {value})));
       setTexts({"measure-about": `${about}, ${columns[0]?.length ?? 0} samples`});

@@ -32,9 +32,18 @@ with urllib.request.urlopen(urllib.request.Request(url, body, head)) as answer:
 print(result["exponents"].get("qr", {}).get("final"), result["regime"]["type"])
 `;
 
+/** A frame for another page, of a site that the service allows to embed it. */
+function asFrame() {
+  const address = new URL(location.href);
+  address.searchParams.set("embed", "1");
+  address.hash = "";
+  return `<iframe src="${address}" width="800" height="600" allow="autoplay"></iframe>`;
+}
+
 /** Functions that return the text, by form. request() returns the fields of the request. */
 export const formsOf = (path, request) => ({
   link: () => location.href,
+  embed: asFrame,
   curl: () => asCurl({path, body: request()}),
   Python: () => asPython(path, {...request(), include: ["impacts", "exponents", "regime"]}),
   JSON: () => JSON.stringify(request(), null, 2),

@@ -18,18 +18,15 @@ export const groups = {
   run: ["Run", true],
   output: ["Output", false],
 };
-/** Masses, spring and damper, to which a preset's `damping` belongs; as in the service. */
-export const isOfSystem = (name) =>
-  /^(epsilon|lambda|m1|c1|damping_ratio|k1|f0|m2|mass_ratio)$/.test(name);
-
 /** True for fields of /v1/parameters that affect the motion. */
 export const isOfMotion = (field) =>
   ["system", "reduced", "SI", "start"].includes(field?.group) ||
   ["tau_end", "cycles"].includes(field?.name);
 
-// The preset has a menu outside the form; the page chooses `include` and never shows a perturbed
-// run.
-const hidden = new Set(["preset", "include", "perturbation"]);
+// The page chooses `include` and never shows a perturbed run. A preset without choices has a menu
+// outside the form.
+const hidden = new Set(["include", "perturbation"]);
+const isShown = ({name, choices}) => !hidden.has(name) && (name !== "preset" || choices);
 
 /** Pairs of SI fields of one quantity; the origin of the second shows if the first was given. */
 const equivalents = {
@@ -97,15 +94,27 @@ const state = (text) =>
 const partsOf = (text) => text.split(";").filter((part) => part.trim());
 export const defaultSet = "default set"; // value of `starts` in place of a list
 
+/**
+ * The first entry of a menu whose default depends on the other fields: it stands for the value that
+ * the service chooses, and shows it.
+ */
+const automatic = ({group, default: standard}) =>
+  group === "system" ? [new Option(`automatic: ${standard ?? "none"}`, "")] : [];
+
 // Types of fields other than number. Menus and check boxes: make(field) creates the input,
-// get(input, default) returns its value (undefined for the default), set(input, value) sets it.
+// get(input, default) returns its value (undefined for the default), set(input, value, default)
+// sets it, without a value to the default.
 // Text inputs: read(text) parses the text, `hint` is the placeholder of an empty one.
 const types = {
   choice: {
     wide: true,
-    make: ({choices}) => element("select", {}, ...choices.map((c) => new Option(c))),
-    get: ({value}, standard) => (value === standard ? undefined : value),
-    set: (input, value) => Object.assign(input, {value}),
+    make: (field) =>
+      element("select", {}, ...automatic(field), ...field.choices.map((c) => new Option(c))),
+    get: ({value, options}, standard) =>
+      value === (options[0].value && standard) ? undefined : value,
+    set(input, value, standard) {
+      input.value = value ?? (input.options[0].value && standard);
+    },
   },
   choices: {
     wide: true,
@@ -118,8 +127,9 @@ const types = {
       const chosen = [...input.querySelectorAll("input:checked")].map((box) => box.value);
       return chosen.length === standard.length ? undefined : chosen;
     },
-    set(input, chosen) {
-      for (const box of input.querySelectorAll("input")) box.checked = chosen.includes(box.value);
+    set(input, chosen, standard) {
+      for (const box of input.querySelectorAll("input"))
+        box.checked = (chosen ?? standard).includes(box.value);
     },
   },
   interval: {read: interval},
@@ -158,7 +168,7 @@ const times = (value, factor) =>
     : Number((value * factor).toPrecision(15));
 
 /** On a small screen the groups are closed at first, because the results lie below them. */
-const smallScreen = matchMedia("(max-width: 700px)").matches;
+export const smallScreen = matchMedia("(max-width: 60rem)").matches;
 
 export class Form {
   inputs = new Map();
@@ -174,7 +184,7 @@ export class Form {
    */
   constructor(container, fields, {prefix = "", grouped = groups} = {}) {
     this.prefix = prefix;
-    this.fields = fields.filter((f) => !hidden.has(f.name) && f.group in grouped);
+    this.fields = fields.filter((f) => isShown(f) && f.group in grouped);
     this.factors = new Map(fields.map((field) => [field.name, factorOf(field)]));
     for (const [group, [title, open, note = ""]] of Object.entries(grouped)) {
       const rows = this.fields.filter((f) => f.group === group).map((f) => this.row(f));
@@ -195,7 +205,7 @@ export class Form {
     const {name, label: title = name, type, minimum, maximum} = field;
     const {make = textInput, set, wide} = typeOf(field);
     const input = make(field);
-    if (set) set(input, field.default);
+    if (set) set(input, undefined, field.default);
     else input.placeholder = this.placeholderOf(field);
     const error = element("p", {className: "error", id: `${this.prefix}error-${name}`});
     input.setAttribute("aria-describedby", error.id);
@@ -265,7 +275,7 @@ export class Form {
       const {name} = field;
       const value = values[name];
       const {set} = typeOf(field);
-      if (set) set(this.inputs.get(name), value ?? field.default);
+      if (set) set(this.inputs.get(name), value, field.default);
       else this.setValue(name, value ?? "");
       this.showOrigin(name);
     }
@@ -286,10 +296,12 @@ export class Form {
     for (const field of this.fields) {
       const {name} = field;
       this.showOrigin(name, origins[name]);
-      if (typeOf(field).set) continue;
+      const input = this.inputs.get(name);
       const value = values[name];
-      this.inputs.get(name).placeholder =
+      const text =
         value == null ? this.placeholderOf(field) : textOf(rounded(this.shown(name, value)));
+      if (!typeOf(field).set) input.placeholder = text;
+      else if (input.options?.[0].value === "") input.options[0].text = `automatic: ${text}`;
     }
   }
 
@@ -360,7 +372,9 @@ export class Form {
       place.append(place.textContent && " ", error.detail);
       const input = this.inputs.get(name);
       input.setAttribute("aria-invalid", "true");
-      input.closest("details").open = true;
+      // The groups of the form lie in a further fold, which only an error that leads opens.
+      for (let at = input.closest("details"); at; at = lead && at.parentElement.closest("details"))
+        at.open = true;
     }
     const first = this.fields.find(({name}) => this.errors.get(name).textContent);
     if (lead && first) this.inputs.get(first.name).focus();

@@ -61,12 +61,12 @@ const sharp = (px) => Math.round(px) + 0.5;
 export class Frame {
   /**
    * width, height: px. x, y: {range, log, label, factor, bare, labels}: visible range, logarithmic
-   * scale, name of the axis, factor of its numbers, whether the labels are omitted, and labels(min,
-   * max), which returns [{at, text}] in place of round numbers. beside, above: px at the right and
-   * at the top.
+   * scale, name of the axis, factor of its numbers, and labels(min, max), which returns [{at, text}]
+   * in place of round numbers; x.bare: a small plot has numbers at the left only. beside, above: px
+   * at the right and at the top.
    */
   constructor(width, height, x, y, beside = 10, above = 5) {
-    const [left, top, right] = [50, above, width - beside];
+    const [left, top, right] = [x.bare ? 36 : 58, above, width - beside];
     const below = x.bare ? 5 : 18 + (x.label ? 14 : 0);
     const bottom = Math.max(height - below, 15);
     const box = {left, top, right, bottom};
@@ -121,7 +121,7 @@ export class Frame {
       this.across(c, at);
       drawText(c, text, left - 5, py(at), "right");
     }
-    drawTextUpwards(c, y.label ?? "", 8, (top + bottom) / 2);
+    if (!x.bare) drawTextUpwards(c, y.label ?? "", 8, (top + bottom) / 2);
   }
 }
 

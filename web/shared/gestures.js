@@ -118,13 +118,25 @@ function followMouse(plot, where, click) {
   });
 }
 
-/** The wheel zooms, or scrolls sideways; zooming out of the full range scrolls the page. */
+/**
+ * With Ctrl, or while the plot has the focus, the wheel zooms, or scrolls sideways; zooming out of
+ * the full range scrolls the page. Otherwise the wheel scrolls the page and a hint names the keys.
+ */
 function followWheel(plot) {
   const {over, viewport, directions} = plot;
+  const hint = element("p", {className: "hint", textContent: "Ctrl + wheel zooms", hidden: true});
+  over.append(hint);
+  over.addEventListener("pointerleave", () => {
+    hint.hidden = true;
+  });
   const zoom = (event) => {
-    const {deltaX, deltaY, deltaMode, shiftKey} = event;
+    const {deltaX, deltaY, deltaMode, shiftKey, ctrlKey} = event;
+    const focused =
+      document.activeElement?.matches("[tabindex='0']") && document.activeElement.contains(over);
+    hint.hidden = ctrlKey || focused;
+    if (!hint.hidden) return;
     const sideways = Math.abs(deltaX) > Math.abs(deltaY) || shiftKey;
-    if ((sideways || deltaY > 0) && !isZoomed(plot)) return;
+    if (!ctrlKey && (sideways || deltaY > 0) && !isZoomed(plot)) return;
     event.preventDefault();
     const lines = deltaMode ? 16 : 1;
     if (sideways) viewport.pan(((deltaX || deltaY) * lines) / over.clientWidth);

@@ -81,12 +81,13 @@ export const curve = kind((c, {px, py}, {x, y, colour, width = 1.6, dash}) => {
   stroke(c, ...x.map((v, i) => [px(v), py(y[i])]));
 });
 
-/** Horizontal lines at y, one or several; text: above the right end. */
+/** Horizontal lines at y, one or several; text: above the right end, where there is space. */
 export const levels = kind((c, frame, {y, colour = "line", text = ""}) => {
   ink(c, colour);
   for (const level of [y].flat()) {
     frame.across(c, level);
-    if (text) drawText(c, text, frame.box.right - 4, frame.py(level) - 2, "right", "bottom");
+    if (text && frame.width > 7 * text.length)
+      drawText(c, text, frame.box.right - 4, frame.py(level) - 2, "right", "bottom");
   }
 });
 
@@ -114,19 +115,34 @@ export const bands = kind((c, {box: {left, right, top}, px, height}, {intervals,
   c.fill();
 });
 
+const hatchStep = 6; // px between the lines of a hatched rectangle
+
+/** Lines across a rectangle, so that it differs from others not only in colour. */
+function hatch(c, left, top, width, height) {
+  c.save();
+  c.beginPath();
+  c.rect(left, top, width, height);
+  c.clip();
+  ink(c, "panel", 1.5);
+  for (let x = left - height; x < left + width; x += hatchStep)
+    stroke(c, [x, top + height], [x + height, top]);
+  c.restore();
+}
+
 /**
- * Rectangles over intervals [{from, to, colour, text}] of x, `height` px high and `down` px below
- * the upper edge. Texts that fit are written `textDown` px below it.
+ * Rectangles over intervals [{from, to, colour, text, hatched}] of x, `height` px high and `down` px
+ * below the upper edge. Texts that fit are written `textDown` px below it.
  */
 export const blocks = kind((c, {box, px, ...frame}, options) => {
   const {list, down = 0, height = frame.height, textDown = 0, size = 11} = options;
   const alpha = c.globalAlpha;
-  for (const {from, to, colour, text = ""} of list) {
+  for (const {from, to, colour, text = "", hatched} of list) {
     const ends = [from, to].map((x) => clamp(px(x), box.left, box.right));
     if (!(ends[1] > ends[0])) continue;
     const [left, right] = ends.map(Math.round); // whole pixels: no gaps between neighbours
     ink(c, colour);
     c.fillRect(left, box.top + down, right - left || 1, height);
+    if (hatched) hatch(c, left, box.top + down, right - left, height);
     if (!text || 7 * text.length + 4 >= right - left) continue;
     ink(c, "text");
     c.font = `600 ${font.replace("11", size)}`;

@@ -4,7 +4,7 @@ import {Flow} from "./flow.js";
 import {lastUpTo} from "./search.js";
 
 // Samples per cycle of the faster of forcing and oscillator; fewer would show aliases.
-const samplesPerCycle = 16;
+const samplesPerCycle = 32;
 
 export class Motion {
   /** answer: of /v1/simulate, with impacts. */
@@ -73,6 +73,11 @@ export class Motion {
     const {state, y, y_dot} = this.stateOf(piece, tau);
     const [x, x_dot] = state;
     return {x, x_dot, x_ddot: piece.flow.force(state), y, y_dot, side: piece.side};
+  }
+
+  /** x of the same oscillator without the absorber, from the same start; in m. */
+  withoutAbsorber(tau) {
+    return this.free.after(this.pieces[0].state, tau)[0];
   }
 
   /** The largest |x| in the first trace over the whole run. */

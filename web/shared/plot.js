@@ -142,6 +142,8 @@ function paint(c, {frame, marks, empty, width, height}) {
   for (const mark of marks) if (mark.above) mark.draw(c, frame);
 }
 
+const small = 130; // px of height below which a plot has few labels
+
 const columnsOf = (width) => Math.max(width - 60, 10);
 
 const shortOrNone = (value) => (value === null ? "" : short(value));
@@ -159,9 +161,9 @@ export class LinePlot extends ZoomablePlot {
   }
 
   /**
-   * x: {label, factor}; y: {range, log, label}, the range by default that of the series; bare: no
-   * labels along x; span: [from, to] of the full axis, if this plot sets it; unit: of the series;
-   * click(x, reach): reach is 6 px in units of x; points: as in Plot.
+   * x: {label, factor}; y: {range, log, label}, the range by default that of the series; span: [from,
+   * to] of the full axis, if this plot sets it; unit: of the series; click(x, reach): reach is 6 px
+   * in units of x; points: as in Plot.
    *
    * marks: the labelled ones are series, whose text(value, ended) is their value in the legend; or
    * trace(from, to, columns), which returns the marks of the visible range, and samples(from, to),
@@ -196,16 +198,16 @@ export class LinePlot extends ZoomablePlot {
     return this.last.marks ?? this.last.trace(...this.viewport.range, columnsOf(width));
   }
 
-  /** alone: for export, with labels along x and the names of the series. */
+  /** alone: for export, with the names of the series. */
   prepare(width, height, alone = false) {
     if (!this.last) return null;
-    const {x, y, bare, under = []} = this.last;
+    const {x, y, under = []} = this.last;
     const {range} = this.viewport;
     const marks = this.marks(width);
     const series = seriesOf(marks);
     const columns = series.map((one) => one.y);
     const ofY = {range: rangeOf(columns, y.log) ?? [0, 1], ...y};
-    const frame = new Frame(width, height, {...x, range, bare: bare && !alone}, ofY);
+    const frame = new Frame(width, height, {...x, range, bare: height < small}, ofY);
     const named = alone && series.length > 1 ? [names({series})] : [];
     return {frame, marks: [...under, ...marks, ...named]};
   }
@@ -293,6 +295,7 @@ export class ScatterPlot extends Plot {
       return {range, ...this.last[key]};
     });
     if (!axes.every(({range}) => range)) return {frame: null, empty};
+    axes[0].bare = height < small;
     const frame = new Frame(width, height, ...axes);
     return {marks, frame: equal ? new Frame(width, height, ...sameScale(axes, frame)) : frame};
   }
@@ -305,16 +308,17 @@ export class ScatterPlot extends Plot {
     return {names: [x.label, y.label, "group"], columns: [all("x"), all("y"), labels]};
   }
 
-  /** Picks the point nearest to the pointer. */
+  /** Picks the point nearest to the pointer, preferably one whose time is in view. */
   hover({offsetX, offsetY, type}) {
-    const {x, y, use} = this.last?.points ?? {};
+    const {x, y, t, use} = this.last?.points ?? {};
     if (!use || !this.frame) return;
     const {px, py} = this.frame;
-    let best = reach;
+    let best = 2 * reach;
     let found = -1;
     x.forEach((v, i) => {
       const distance = Math.hypot(px(v) - offsetX, py(y[i]) - offsetY);
-      if (distance < best) [best, found] = [distance, i];
+      const away = distance + (this.viewport.holds(t[i]) ? 0 : reach);
+      if (distance < reach && away < best) [best, found] = [away, i];
     });
     if (found < 0) return;
     this.light(x[found], y[found]);

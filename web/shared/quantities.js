@@ -146,7 +146,7 @@ export const coordinates = {
     x: length("x", "x"),
     x_dot: velocity("x"),
     y_dot: velocity("y"),
-    gap: {...length("y − x", "y", "x"), value: (y, _, x) => (y - x) * 1000},
+    gap: {...length("x − y", "x", "y"), value: (x, _, y) => (x - y) * 1000},
   },
 };
 

@@ -5,7 +5,7 @@
 // dimensionless value, unit is the suffix. at(tau) formats a time.
 
 import {$, reveal, setTexts} from "../shared/dom.js";
-import {clamp, count, digits, inMm, minus, percent, shortTo} from "../shared/numbers.js";
+import {count, digits, inMm, minus, percent, shortTo} from "../shared/numbers.js";
 import {verdicts} from "../shared/quantities.js";
 import {cards, tableOf} from "../shared/tables.js";
 import {largestMagnitude} from "./columns.js";
@@ -168,11 +168,6 @@ function decayTimes(decay, {at}) {
     );
 }
 
-/** Sets the length of a bar: a fraction of the whole. */
-function lengthen(id, fraction) {
-  $(id).style.width = `${clamp(fraction, 0, 1) * 100}%`;
-}
-
 /**
  * Shows the energy balance: the energy supplied by the base or present at the start is dissipated by
  * the damper and the impacts, or is left at the end. The fractions are of the sum of these three,
@@ -181,21 +176,15 @@ function lengthen(id, fraction) {
 export function accountEnergy(energy, units) {
   const {damper, impacts, at_end: left, without_absorber: without} = energy;
   const total = damper + impacts + left || 1;
-  for (const [name, value] of Object.entries({damper, impacts, left})) {
-    lengthen(`bar-${name}`, value / total);
-    setTexts({
-      [`fraction-${name}`]: percent(value / total),
-      [`amount-${name}`]: inUnit(value, units.energy),
-    });
-  }
-  for (const name of ["rms", "peak"]) {
-    const values = {with: energy[name], without: without[name]};
-    const longest = Math.max(...Object.values(values)) || 1;
-    for (const [which, value] of Object.entries(values)) {
-      lengthen(`bar-${name}-${which}`, value / longest);
-      setTexts({[`${name}-${which}`]: inMm(value)});
-    }
-  }
+  const parts = Object.entries({damper, impacts, "left at the end": left});
+  const row = ([name, value]) => [name, percent(value / total), inUnit(value, units.energy)];
+  const compared = Object.entries({rms: "rms", peak: "largest"});
+  const both = ([key, name]) => [name, inMm(energy[key]), inMm(without[key])];
+  const tables = {
+    "energy-parts": tableOf(["energy to", "fraction", "amount"], parts.map(row)),
+    "energy-compared": tableOf(["|x|", "with absorber", "without"], compared.map(both)),
+  };
+  for (const [id, rows] of Object.entries(tables)) $(id).replaceChildren(...rows);
   setTexts({"energy-note": energyNote(energy, units)});
   reveal({"energy-scale": !units.si});
 }

@@ -1,19 +1,31 @@
-// Drawing of the machine to scale at the cursor: spring, damper, oscillator, walls, and the ball
-// with a short trail; impacts flash.
-import {$} from "../shared/dom.js";
+// Drawings of the machine to scale at the cursor, with and without the absorber, shaken by the same
+// base: spring, damper, oscillator, walls, and the ball with a short trail; impacts flash. A band
+// below each shows how far its oscillator moves.
+import {$, setTexts} from "../shared/dom.js";
 import {blank, font, Size} from "../shared/frame.js";
 import {drawText, ink} from "../shared/ink.js";
-import {clamp} from "../shared/numbers.js";
+import {inMm, percent} from "../shared/numbers.js";
 import {run, viewport} from "./run.js";
 
 const flashDuration = 0.12; // cycles
 const trail = [0.12, 0.08, 0.04, 0]; // positions of the trail, cycles ago
 
 const anchor = 14; // px
-const top = 30; // px of the cavity
 const ballRadius = 11; // px
-const nameWidth = 76; // px of the ball's name, which stays over the cavity
 const rim = 14; // px of the oscillator outside its walls
+const bandHeight = 9; // px of the band below the machine
+
+let heldScale = null; // px per m while a part is dragged
+let last = null; // the machine with absorber as it is drawn
+
+/** Keeps the scale during a drag; null: ends that. */
+export function holdScale(scale) {
+  heldScale = scale;
+  redraw();
+}
+
+/** {px, scale, wall, x: displacement, ball: px} of the machine with the absorber. */
+export const drawn = () => last;
 
 /** Draws a path in the notation of SVG. */
 const line = (c, path) => c.stroke(new Path2D(path));
@@ -36,23 +48,6 @@ function damper(c, to, y) {
   line(c, `M${piston} ${y - 4}v8m0 -4H${to}`);
 }
 
-function ground(c, floor, width) {
-  ink(c, "soft");
-  line(c, `M${anchor} ${floor + 0.5}H${width - 8}`);
-  for (let x = anchor + 8; x < width - 8; x += 14) line(c, `M${x} ${floor + 1}l-6 7`);
-  ink(c, "soft", 3);
-  line(c, `M${anchor} 14V${floor}`);
-}
-
-function body(c, left, right, floor) {
-  c.beginPath();
-  c.roundRect(left, top - 12, right - left, floor + 11 - top, 5);
-  ink(c, "oscillator");
-  c.fill();
-  ink(c, "accent", 1.2);
-  c.stroke();
-}
-
 /** Rays at the wall of the last impact. */
 function flash(c, x, y, inwards, share) {
   c.globalAlpha = 1 - share;
@@ -65,52 +60,67 @@ function flash(c, x, y, inwards, share) {
   c.globalAlpha = 1;
 }
 
-function label(c, name, ...text) {
-  ink(c, name);
-  drawText(c, ...text);
+/**
+ * The parts that both machines share, in a canvas of a size. x: displacement of the oscillator;
+ * peak: its largest; title; colour: of the oscillator's edge and of the band. The scale depends on
+ * the run alone, so that both machines have the same.
+ */
+class Drawing {
+  constructor(canvas, size, {x, peak, title, colour}) {
+    const {width, height} = size;
+    const c = blank(canvas, size);
+    const {motion} = run;
+    const length = Math.max(width * 0.16, 48); // of the spring
+    const room = (width - length - 24) / 2;
+    const reach = Math.max(motion.reach, run.answer.energy.without_absorber.peak ?? 0);
+    const scale = heldScale ?? Math.max(room - rim - ballRadius, 10) / (motion.b + reach);
+    this.px = (at) => length + 12 + room + at * scale;
+    Object.assign(this, {scale, x});
+    this.wall = (side) => this.px(x - side * motion.b);
+    const [top, floor] = [24, height - bandHeight - 8];
+    Object.assign(this, {c, top, bottom: floor - 12, level: (top + floor - 12) / 2});
+    const [left, right] = [this.wall(1) - ballRadius, this.wall(-1) + ballRadius];
+    Object.assign(this, {left, right});
+    ink(c, "soft");
+    line(c, `M${anchor} ${floor + 0.5}H${width - 8}`);
+    ink(c, "soft", 3);
+    line(c, `M${anchor} 14V${floor}`);
+    spring(c, left - rim, this.level - 8);
+    damper(c, left - rim, this.level + 10);
+    c.beginPath();
+    c.roundRect(left - rim, top - 8, right - left + 2 * rim, floor - top + 6, 5);
+    ink(c, "oscillator");
+    c.fill();
+    ink(c, colour, 1.2);
+    c.stroke();
+    this.band(floor + 5, peak, x, colour);
+    this.name("text", `${title}: ± ${inMm(peak, 2)}`, width / 2, 1, "top", `600 ${font}`);
+  }
+
+  /** The range of the oscillator, and its place in it. */
+  band(y, peak, x, colour) {
+    const {c, px} = this;
+    ink(c, colour, 2);
+    c.globalAlpha = 0.35;
+    c.fillRect(px(-peak), y, px(peak) - px(-peak), bandHeight);
+    c.globalAlpha = 1;
+    line(c, `M${px(x)} ${y - 2}v${bandHeight + 4}`);
+  }
+
+  name(colour, text, x, y, baseline, as = font) {
+    this.c.font = as;
+    ink(this.c, colour);
+    drawText(this.c, text, x, y, "center", baseline);
+  }
 }
 
-const canvas = $("machine");
-const size = new Size(canvas, redraw);
-
-/** Draws the state at the cursor. */
-export function redraw() {
-  const {cursor} = viewport;
-  const {width, height} = size;
-  if (!run || cursor === null || !width) return;
-  const {motion} = run;
-  const c = blank(canvas, size);
-  const length = Math.max(width * 0.16, 60); // of the spring
-  const room = (width - length - 24) / 2;
-  const scale = Math.max(room - rim - ballRadius, 10) / (motion.b + motion.reach);
-  const px = (at) => length + 12 + room + at * scale;
+function drawWith(canvas, size, cursor) {
+  const {motion, answer} = run;
   const {x, y} = motion.at(cursor);
-  const wall = (side) => px(x - side * motion.b);
-  const floor = height - 16;
-  const bottom = floor - 22;
-  const level = (top + bottom) / 2;
-  const [left, right] = [wall(1) - ballRadius, wall(-1) + ballRadius];
-  ground(c, floor, width);
-  spring(c, left - rim, level - 9);
-  damper(c, left - rim, level + 13);
-  body(c, left - rim, right + rim, floor);
-  cavity(c, left, right, bottom);
-  mass(c, px, x, level);
-  impact(c, wall, level);
-  c.font = font;
-  if (motion.parameters.G) label(c, "soft", "↔ base", 4, 8, "left", "middle");
-  c.font = "italic 13px system-ui";
-  label(c, "accent", "oscillator x", px(x), top - 14, "center", "bottom");
-  const reach = Math.min(nameWidth / 2, (right - left) / 2);
-  const middle = clamp(px(y), left + reach, right - reach);
-  label(c, "mass", "ball y", middle, top + 1, "center", "bottom");
-  c.font = font;
-  const [at, opposite] = right - left > 2 * nameWidth ? ["y − x = −b", "y − x = b"] : ["−b", "b"];
-  label(c, "plus", at, left, bottom + 3, "left", "top");
-  label(c, "minus", opposite, right, bottom + 3, "right", "top");
-}
-
-function cavity(c, left, right, bottom) {
+  const title = "with absorber";
+  const drawing = new Drawing(canvas, size, {x, peak: answer.energy.peak, title, colour: "accent"});
+  const {c, px, wall, level, top, bottom, left, right} = drawing;
+  last = Object.assign(drawing, {ball: px(y)});
   const fill = (name, from, width) => {
     ink(c, name);
     c.fillRect(from, top, width, bottom - top);
@@ -118,10 +128,20 @@ function cavity(c, left, right, bottom) {
   fill("panel", left - 3, right - left + 6);
   fill("plus", left - 6, 3);
   fill("minus", right + 3, 3);
+  ball(drawing, x);
+  const {impacts, cycle} = motion;
+  const i = motion.impactBefore(cursor);
+  const side = impacts.side[i];
+  const share = (cursor - impacts.tau[i]) / (flashDuration * cycle);
+  if (share < 1) flash(c, wall(side) - side * (ballRadius + 2), level, side, share);
+  if (right - left < 150 || size.height < 100) return;
+  drawing.name("plus", "x − y = b", left + 30, bottom - 1, "bottom");
+  drawing.name("minus", "−b", right - 10, bottom - 1, "bottom");
+  drawing.name("mass", "ball", px(y), level - ballRadius - 1, "bottom");
 }
 
 /** The ball and its trail, relative to the current position of the cavity. */
-function mass(c, px, x, level) {
+function ball({c, px, level}, x) {
   ink(c, "mass");
   trail.forEach((cycles, k) => {
     const moment = viewport.cursor - cycles * run.motion.cycle;
@@ -134,10 +154,41 @@ function mass(c, px, x, level) {
   });
 }
 
-function impact(c, wall, level) {
-  const {impacts, cycle} = run.motion;
-  const i = run.motion.impactBefore(viewport.cursor);
-  const side = impacts.side[i];
-  const share = (viewport.cursor - impacts.tau[i]) / (flashDuration * cycle);
-  if (share < 1) flash(c, wall(side) - side * (ballRadius + 2), level, side, share);
+function drawWithout(canvas, size, cursor) {
+  const x = run.motion.withoutAbsorber(cursor);
+  const {peak} = run.answer.energy.without_absorber;
+  const {c, level, left, right} = new Drawing(canvas, size, {
+    x,
+    peak,
+    title: "without",
+    colour: "without",
+  });
+  ink(c, "without");
+  c.globalAlpha = 0.2;
+  c.fillRect(left, level - 3, right - left, 6);
+  c.globalAlpha = 1;
+}
+
+const machines = [
+  [$("machine"), drawWith],
+  [$("machine-without"), drawWithout],
+].map(([canvas, draw]) => ({canvas, draw, size: new Size(canvas, redraw)}));
+
+/** Draws the state at the cursor. */
+export function redraw() {
+  const {cursor} = viewport;
+  if (!run || cursor === null) return;
+  for (const {canvas, draw, size} of machines) if (size.width) draw(canvas, size, cursor);
+}
+
+/** Shows in large figures by how much the absorber reduces the rms of x. */
+export function showReduction({rms_ratio: ratio, rms, without_absorber: without}) {
+  const known = ratio != null;
+  $("reduction").hidden = !known;
+  if (!known) return;
+  setTexts({
+    "reduction-figure": percent(Math.abs(1 - ratio)),
+    "reduction-word": ratio <= 1 ? "less vibration" : "more vibration",
+    "reduction-rms": `rms of x ${inMm(rms, 3)} instead of ${inMm(without.rms, 3)}`,
+  });
 }

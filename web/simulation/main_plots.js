@@ -12,9 +12,8 @@ import {commonOptions, exponentLines, halves, PlotGroup, picked} from "./plot_gr
 import {run, viewport} from "./run.js";
 
 const mostSamples = 100000; // samples in an exported table
-const alone = matchMedia("(max-width: 700px)"); // one plot at a time is shown
 // Side of the impacts of each colour, and their name in tables.
-const walls = {plus: [1, "y − x = −b"], minus: [-1, "y − x = b"]};
+const walls = {plus: [1, "x − y = b"], minus: [-1, "x − y = −b"]};
 
 let plots;
 let pinned = null; // {answer, motion} of the run to compare with
@@ -66,7 +65,7 @@ const rate = () =>
 function traces(from, to, columns) {
   const trace = (motion, by) => {
     const {tau, x, gap, dense} = motion.trace(from * by, to * by, columns);
-    return {tau, dense, x: mm(x), gap: mm(gap)};
+    return {tau, dense, x: mm(x), gap: gap.map((v) => -1000 * v)};
   };
   const own = trace(run.motion, 1);
   return pinned ? [{...trace(pinned.motion, rate()), tau: own.tau}, own] : [own];
@@ -89,7 +88,7 @@ const impactsByWall = ({tau, side}) =>
 /** A component of the motion, x or gap, for the plots over time; heights: of the impacts. */
 function partOf(name, label, heights) {
   const styles = [{label, colour: "motion"}];
-  if (pinned) styles.unshift({label: `${label}, pinned`, colour: "pinned"});
+  if (pinned) styles.unshift({label: `${label}, pinned`, colour: "pinned", width: 1.6});
   const impacts = byWall.map(({mine, ...style}) =>
     symbols({...style, y: mine.map((i) => heights[i])}),
   );
@@ -98,7 +97,6 @@ function partOf(name, label, heights) {
     return styles.map((style, k) => line({...style, dense, x: tau, y: motions[k][name]}));
   };
   return {
-    bare: !alone.matches,
     unit: "mm",
     trace: (...part) => [...linesOf(inView(...part)), ...impacts],
     samples(from, to) {
@@ -121,12 +119,15 @@ function displacement() {
 
 function relative() {
   const b = run.motion.b * 1000;
-  const heights = run.answer.impacts.side.map((side) => -side * b);
-  const {trace, ...rest} = partOf("gap", "y − x", heights);
+  const heights = run.answer.impacts.side.map((side) => side * b);
+  const {trace, ...rest} = partOf("gap", "x − y", heights);
+  const other = (pinned?.motion.b ?? 0) * 1000;
+  const reach = 1.14 * Math.max(b, other);
+  const walls = [levels({y: [-b, b]}), levels({y: [-other, other], colour: "pinned"})];
   return {
     ...rest,
-    trace: (...part) => [levels({y: [-b, b]}), ...trace(...part)],
-    y: {label: "y − x (mm)", range: [-1.14 * b, 1.14 * b]},
+    trace: (...part) => [...walls.slice(0, pinned ? 2 : 1), ...trace(...part)],
+    y: {label: "x − y (mm)", range: [-reach, reach]},
   };
 }
 
@@ -135,7 +136,6 @@ function largest() {
   const moduli = T.map(([first]) => positive(first));
   const [x, y] = alongRun(tau, [moduli]);
   return {
-    bare: !alone.matches,
     marks: [
       levels({y: 1}),
       line({label: "|μ₁|", colour: "c3", width: 0.8, x, y}),
@@ -204,7 +204,7 @@ function tell(by) {
   const at = run.units.at(cursor);
   const texts = {
     x: inMm(x),
-    relative: inMm(y - x),
+    relative: inMm(x - y),
     largest: modulus == null ? "" : short(modulus),
     lambda: `at ${at}`, // the legend shows the values
   };

@@ -2,6 +2,7 @@
 import {get} from "../shared/api.js";
 import {$, reveal, setTexts} from "../shared/dom.js";
 import {Motion} from "../shared/motion.js";
+import {digits, percent} from "../shared/numbers.js";
 import * as mainPlots from "./main_plots.js";
 import {toQuery} from "./request.js";
 import {run} from "./run.js";
@@ -12,11 +13,26 @@ let pinned = null; // {query, answer, motion}
 /** The query of the pinned run; null without one. */
 export const query = () => pinned?.query ?? null;
 
+const resultsOf = ({energy, exponents: {qr}, regime}) => ({
+  "rms of x": percent(energy.rms_ratio),
+  "λ₁": digits(qr?.final[0], 3),
+  z: digits(regime.z, 2),
+});
+
+/** Compares the results of the pinned run with those of the run shown. */
+export function compare() {
+  if (!pinned?.answer || !run) return setTexts({"pinned-run": ""});
+  const [before, now] = [pinned.answer, run.answer].map(resultsOf);
+  const changes = Object.keys(now).map((name) => `${name} ${before[name]} → ${now[name]}`);
+  const what = parameterLine(pinned.answer.parameters);
+  setTexts({"pinned-run": `pinned: ${what}. Pinned → shown: ${changes.join(", ")}`});
+}
+
 function keep(other) {
   pinned = other;
   const there = other?.answer ? other : null;
   reveal({swap: there, unpin: there});
-  setTexts({"pinned-run": there ? `pinned: ${parameterLine(there.answer.parameters)}` : ""});
+  compare();
   mainPlots.pin(there);
 }
 

@@ -1,11 +1,13 @@
 // The player: moves the cursor through the visible range in a loop, at a number of cycles per
 // second, optionally with a knock at each impact.
 import {$, attributes, setTexts} from "../shared/dom.js";
+import {save} from "../shared/export.js";
 import {count, shortTo} from "../shared/numbers.js";
 import * as machine from "./machine.js";
 import {run, viewport} from "./run.js";
 
 const holdTime = 150; // ms of pause after an edit
+const filmTime = 5000; // ms of a video
 
 let frame = 0;
 let held = 0;
@@ -27,6 +29,8 @@ export function start() {
   $("play").onclick = () => (frame ? pause() : play());
   $("restart").onclick = () => restart("restart");
   $("sound").onclick = toggleSound;
+  $("record").onclick = film;
+  $("full-screen").onclick = () => $("results").requestFullscreen();
   $("scrub").oninput = () => {
     const [from, to] = viewport.range;
     viewport.point(from + ($("scrub").value / 1000) * (to - from), "scrub");
@@ -79,6 +83,17 @@ function toggleSound() {
   audio?.close();
   audio = audio ? null : new AudioContext();
   attributes($("sound"), {"aria-pressed": audio !== null});
+}
+
+/** Saves the playing machine as a video. */
+function film() {
+  const recorder = new MediaRecorder($("machine").captureStream());
+  recorder.ondataavailable = ({data}) => save(data, "vines.webm");
+  recorder.onstop = () => $("record").removeAttribute("aria-pressed");
+  attributes($("record"), {"aria-pressed": true});
+  if (!frame) play();
+  recorder.start();
+  setTimeout(() => recorder.stop(), filmTime);
 }
 
 /** Pauses briefly while a slider is dragged. */

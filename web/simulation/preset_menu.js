@@ -4,23 +4,26 @@ import {$, element, press, setTexts} from "../shared/dom.js";
 
 const chips = document.querySelectorAll("#chips button");
 
-/** choose(name) is called with the name of a preset; "" means user-defined parameters. */
-export function start(presets, choose) {
+/**
+ * choose(name) is called with the name of a preset; "" means user-defined parameters; read(query)
+ * with the query of a machine.
+ */
+export function start(presets, choose, read) {
   const menu = $("preset");
   menu.append(new Option("user-defined parameters", ""));
   for (const {name, source, title} of presets) menu.append(new Option(`${source}: ${title}`, name));
   menu.onchange = () => choose(menu.value);
   for (const chip of chips) {
-    const {preset} = chip.dataset;
-    chip.title = menu.querySelector(`[value="${preset}"]`).text;
-    chip.onclick = () => choose(preset);
+    const {preset, query} = chip.dataset;
+    if (preset) chip.title = menu.querySelector(`[value="${preset}"]`).text;
+    chip.onclick = () => (preset ? choose(preset) : read(query));
   }
 }
 
-/** Selects the preset, and its chip unless the parameters were changed. */
-export function markChip(name, changed) {
+/** Selects the preset, and its chip unless the parameters were changed; own: a user's machine. */
+export function markChip(name, changed, own) {
   $("preset").value = name;
-  press(chips, (chip) => chip.dataset.preset === name && !changed);
+  press(chips, ({dataset: {preset}}) => (preset ? preset === name && !changed : own));
 }
 
 /** Tags the plots of a preset, and links to one in the details if all of them are there. */

@@ -1,17 +1,15 @@
 // The request of the form: a preset and the given fields; and its conversion to and from a query.
 //
-// `name` is the selected preset, "" if none. The form holds the given fields only: the service merges
-// them with the preset, and its answer has the values and origins of the others. A field of the
-// system replaces the preset: the system is then user-defined. A reduced (dimensionless) field over
-// a preset in SI is an exception: it only changes the preset's system.
-import {isOfMotion, isOfSystem, resolved, textOf} from "../shared/form.js";
+// `name` is the selected preset, "" if none. The form holds the given fields only. The service merges
+// them with the preset, and its answer has the values and origins of the others.
+import {isOfMotion, resolved, textOf} from "../shared/form.js";
 import {run} from "./run.js";
 import {differenceText, parameterLine} from "./sliders.js";
 
 export class Request {
   /** form: the Form; fields: of /v1/parameters; presets: of /v1/presets. */
   constructor(form, fields, presets) {
-    Object.assign(this, {form, presets, name: "", dampingChosen: false});
+    Object.assign(this, {form, presets, name: ""});
     this.fieldOf = Object.fromEntries(fields.map((f) => [f.name, f]));
   }
 
@@ -22,28 +20,17 @@ export class Request {
   /** Selects a preset, or none, and sets fields. Without either, the preset's values become given. */
   choose(name, fields) {
     const chosen = this.presets.find((p) => p.name === name);
-    if (chosen || fields) {
-      this.dampingChosen = "damping" in {...fields};
-      this.form.set({damping: chosen?.parameters.damping, ...fields});
-      this.form.unfold({...chosen?.parameters});
-    } else this.giveValues(() => true);
+    this.form.set(fields ?? (chosen ? {} : this.givenValues()));
+    this.form.unfold({...chosen?.parameters});
     this.name = chosen?.name ?? "";
   }
 
-  /** Fills empty fields with the values that the run shown has from the preset. */
-  giveValues(isWanted) {
-    const {form, name: preset} = this;
-    const {origins} = resolved(run?.answer.parameters ?? {});
-    const isPresets = (name) =>
-      origins[name === "windows" ? "window" : name] === `preset ${preset}`;
-    form.updateDisabled(); // of a value that can be given in two ways, only one is filled
-    for (const [name, value] of Object.entries(this.preset?.parameters ?? {}))
-      if (isWanted(name) && isPresets(name) && form.isEmpty(name)) form.replace(name, value);
-  }
-
-  /** Shows the damping of an answer; the service decides whether that of a preset applies. */
-  showDamping({damping}) {
-    if (!this.dampingChosen) this.form.inputs.get("damping").value = damping;
+  /** The given fields, and those that the run shown has from its preset. */
+  givenValues() {
+    const {values, origins} = resolved(run?.answer.parameters ?? {});
+    const isPresets = ([name]) => origins[name] === `preset ${this.name}`;
+    const own = Object.entries(values).filter(isPresets);
+    return {...Object.fromEntries(own), ...this.form.values()};
   }
 
   /** True when the motion, or the part of it that is analysed, is no longer that of the preset. */
@@ -64,11 +51,7 @@ export class Request {
   /** The given fields; none if all of them have the preset's values. */
   givenFields() {
     const given = this.form.values();
-    const {preset} = this;
-    if (!preset) return given;
-    if (this.dampingChosen) given.damping = this.form.inputs.get("damping").value;
-    else delete given.damping; // the service chooses the preset's or the default
-    const own = preset.parameters;
+    const own = this.preset?.parameters ?? {};
     const differs = ([name, value]) => !(name in own) || textOf(value) !== textOf(own[name]);
     return Object.entries(given).some(differs) ? given : {};
   }
@@ -95,33 +78,6 @@ export class Request {
     this.choose(named, fields);
     const unknown = Object.keys(fields).filter((name) => !this.form.inputs.has(name));
     return named && !this.name ? [`preset=${named}`, ...unknown] : unknown;
-  }
-
-  /**
-   * Handles a field edited over a preset. A field of the system replaces the preset, except a
-   * reduced field over a preset in SI. The preset's other values become given, without its damping
-   * and windows, which belong to its system. Returns the changes as text if the preset is replaced,
-   * otherwise "".
-   */
-  fieldEdited(name) {
-    const {preset, form} = this;
-    const restated = "m1" in (preset?.parameters ?? {}) && this.fieldOf[name].group === "reduced";
-    const replaced = preset && form.filled(name) && isOfSystem(name) && !restated;
-    const changes = [];
-    if (replaced) {
-      const standard = this.fieldOf.damping.default;
-      if (!this.dampingChosen && preset.parameters.damping !== standard) {
-        form.replace("damping", standard);
-        changes.push(`damping is ${standard}`);
-      }
-      for (const window of ["window", "windows"])
-        if (window in preset.parameters && !form.filled(window)) changes.push(`${window} is empty`);
-      this.giveValues((field) => !["damping", "window", "windows"].includes(field));
-      this.name = "";
-    }
-    return replaced
-      ? [`User-defined system in place of ${preset.source}`, ...changes].join("; ")
-      : "";
   }
 }
 

@@ -2,7 +2,7 @@
 // address holds the request and the visible range.
 
 import {simulate} from "../shared/api.js";
-import {$, attributes, countUp, nextTask, press, reveal, setTexts} from "../shared/dom.js";
+import {$, attributes, countUp, nextTask, on, press, reveal, setTexts} from "../shared/dom.js";
 import {copy, formsOf} from "../shared/export.js";
 import {Form, unknownText} from "../shared/form.js";
 import {Job} from "../shared/job.js";
@@ -12,6 +12,7 @@ import {RequestTab} from "../shared/request_tab.js";
 import {showRemarks} from "../shared/tables.js";
 import {onUnits, unitsOf, unitsSwitch} from "../shared/units.js";
 import * as details from "./details.js";
+import * as grab from "./grab.js";
 import * as machine from "./machine.js";
 import * as mainPlots from "./main_plots.js";
 import * as pin from "./pin.js";
@@ -33,10 +34,18 @@ const deferredParts = {
 const large = 20000; // impacts above which a run is drawn in several tasks
 const idle = 100; // ms without an edit before the deferred parts are requested
 
-/** The range first in view: the window, if it ends well before the run. */
-function homeOf({parameters, status}) {
+/**
+ * The range first in view: the last six cycles of a periodic motion, or else the window, if it ends
+ * well before the run.
+ */
+function homeOf({parameters, status, regime}) {
+  const end = status.tau;
+  if (regime.periodic && regime.contacts) {
+    const cycles = Math.max(6, 2 * regime.period_cycles);
+    return [Math.max(end - (2 * Math.PI * cycles) / parameters.Omega, 0), end];
+  }
   const to = parameters.window?.[1];
-  return to && to < 0.9 * status.tau ? [0, to] : [0, status.tau];
+  return to && to < 0.9 * end ? [0, to] : [0, end];
 }
 
 /** Shows the remarks: the reason for an undecided verdict, and warnings. */
@@ -74,26 +83,27 @@ export class SimulationTab extends RequestTab {
     player.start();
     sliders.start(this);
     details.start(this.request.fieldOf);
-    presetMenu.start(presets, (name) => this.choosePreset(name));
-    pin.start(changed, (other) => {
-      this.request.read(other);
+    const read = (query) => {
+      this.request.read(query);
+      this.note();
       this.send();
-    });
+    };
+    presetMenu.start(presets, (name) => this.choosePreset(name), read);
+    pin.start(changed, read);
     this.listen(measure);
-    startSmallScreen();
+    grab.start($("machine"), (fields, dragging) => this.set(fields, dragging));
+    startPlots();
+    startSheet();
   }
 
   listen(measure) {
     const {form, request} = this;
-    for (const [name, input] of form.inputs) {
-      input.oninput = () => this.note(request.fieldEdited(name));
-      input.onchange = () => {
-        if (name === "damping") request.dampingChosen = true;
-        this.send();
-      };
+    for (const input of form.inputs.values()) {
+      input.oninput = () => this.note();
+      input.onchange = () => this.send();
     }
     viewport.onZoom(() => {
-      reveal({whole: viewport.changed});
+      reveal({whole: viewport.zoomed});
       this.changed({soon: true});
     });
     $("whole").onclick = () => viewport.reset();
@@ -127,6 +137,11 @@ export class SimulationTab extends RequestTab {
     this.markStale();
   }
 
+  markStale(busy) {
+    super.markStale(busy);
+    reveal({again: !busy && this.isStale(false)});
+  }
+
   busy(is, cancelled) {
     super.busy(is, cancelled);
     if (is && !$("message").classList.contains("fault")) this.say("computing …");
@@ -134,7 +149,8 @@ export class SimulationTab extends RequestTab {
   }
 
   /** Errors are shown at sliders, or else at fields, without moving the focus. */
-  fail({message, errors = []}) {
+  fail({message, errors = []}, fields) {
+    if (fields.linked && errors.length) return this.fallBack([...fields.unknown], errors);
     if (!run) setTexts({sentence: "No results yet."});
     const left = this.form.showErrors(errors, false);
     const ofSliders = sliders.showErrors(errors);
@@ -144,7 +160,6 @@ export class SimulationTab extends RequestTab {
   }
 
   showOrigins() {
-    this.request.showDamping(run.answer.parameters);
     if ($("more").open) this.form.showOrigins(run.answer.parameters);
   }
 
@@ -154,7 +169,7 @@ export class SimulationTab extends RequestTab {
     if (pause) await pause();
     const fresh = run === null || fields.fresh;
     setRun({fields, answer, motion: new Motion(answer), units: unitsOf(answer.parameters)});
-    this.say(unknownText(fields.unknown));
+    this.say(fields.note || unknownText(fields.unknown));
     this.mark(false);
     this.form.showErrors([]);
     this.showOrigins();
@@ -163,7 +178,7 @@ export class SimulationTab extends RequestTab {
     viewport.span(0, answer.status.tau, homeOf(answer), fresh);
     if (this.wantedView) viewport.range = this.wantedView;
     this.wantedView = null;
-    reveal({whole: viewport.changed});
+    reveal({whole: viewport.zoomed});
     for (const step of this.drawing(fresh)) {
       if (pause) await pause();
       if (run.answer !== answer) return;
@@ -184,6 +199,8 @@ export class SimulationTab extends RequestTab {
       () => {
         sliders.show(parameters, {fresh, dragged: fields.dragged}, slider);
         showSentence(answer, slider, units);
+        machine.showReduction(answer.energy);
+        pin.compare();
       },
       ...mainPlots.drawing(),
       () => {
@@ -201,13 +218,15 @@ export class SimulationTab extends RequestTab {
 
   /**
    * Sends the form. dragging: while a slider is dragged; fresh: not changed by a slider; unknown:
-   * names in the address.
+   * names in the address; linked: the form has the fields of the address; note: to be shown with
+   * the run.
    */
-  send({dragging = false, fresh = false, unknown = []} = {}) {
+  send({dragging = false, fresh = false, unknown = [], linked = false, note = ""} = {}) {
     const fields = this.request.fields();
-    const about = {fresh, unknown, dragged: dragging};
-    for (const [name, value] of Object.entries(about)) Object.defineProperty(fields, name, {value});
-    presetMenu.markChip(this.request.name, this.request.edited);
+    const about = {fresh, unknown, dragged: dragging, linked, note};
+    for (const [what, value] of Object.entries(about)) Object.defineProperty(fields, what, {value});
+    const {name, edited} = this.request;
+    presetMenu.markChip(name, edited, !name && "m1" in fields);
     if (dragging) player.hold();
     this.remember(toQuery(fields), dragging);
     this.start(fields, {dragging});
@@ -235,25 +254,28 @@ export class SimulationTab extends RequestTab {
    * the slider is being dragged.
    */
   sliderMoved(fields, slider, dragging) {
-    const {form, request} = this;
     this.lastMoved = slider.name;
-    if (slider.name === "zeta") request.dampingChosen = true;
-    for (const [name, value] of Object.entries(fields)) form.replace(name, value ?? "");
-    this.note("");
+    this.set(fields, dragging);
+  }
+
+  /** Sets fields, null to clear one; dragging: more changes follow. */
+  set(fields, dragging) {
+    for (const [name, value] of Object.entries(fields)) this.form.replace(name, value ?? "");
+    this.note();
     this.send({dragging});
   }
 
   /** Shows the preset's note, or that the preset was changed. */
-  note(text) {
+  note() {
     const {preset, edited} = this.request;
     const changed = preset && edited ? `${preset.source}, changed` : (preset?.note ?? "");
-    setTexts({"preset-note": text || changed});
+    setTexts({"preset-note": changed});
   }
 
   choosePreset(name) {
     this.lastMoved = "b";
     this.request.choose(name);
-    this.note("");
+    this.note();
     this.send({fresh: true});
   }
 
@@ -269,8 +291,14 @@ export class SimulationTab extends RequestTab {
     return [this.asked, ...more].filter(Boolean).join("&");
   }
 
-  /** Shows the run of a query; by default the paper's Fig. 3. */
-  open(given) {
+  /** Shows Fig. 3 in place of a run whose address has faults, and names them. */
+  fallBack(unknown, errors) {
+    const faults = [...unknown, ...errors.map(({detail}) => detail)].join("; ");
+    this.open(new URLSearchParams(), `the address has faults, Fig. 3 is shown: ${faults}`);
+  }
+
+  /** Shows the run of a query, with a note; by default the paper's Fig. 3. */
+  open(given, note = "") {
     const rest = new URLSearchParams(given);
     const view = rest.get("view")?.split(",").map(Number);
     const pinned = rest.get("pinned");
@@ -282,9 +310,9 @@ export class SimulationTab extends RequestTab {
     const unknown = this.request.read(rest);
     if (view && !isView) unknown.push(`view=${given.get("view")}`);
     this.lastMoved = "b";
-    this.note("");
+    this.note();
     this.asked = toQuery(this.request.fields());
-    this.send({fresh: true, unknown});
+    this.send({fresh: true, unknown, linked: !note, note});
     this.changed(); // in canonical form
   }
 
@@ -293,15 +321,26 @@ export class SimulationTab extends RequestTab {
   }
 }
 
-/** On small screens: one plot at a time, and the parameters in a sheet. */
-function startSmallScreen() {
-  const buttons = document.querySelectorAll("#switch button");
-  for (const one of buttons)
-    one.onclick = () => {
-      press(buttons, (b) => b === one);
-      for (const figure of document.querySelectorAll("#instrument figure"))
-        figure.classList.toggle("chosen", figure.id === `figure-${one.dataset.plot}`);
-    };
+/** One plot is large, by a click on it, Enter or its chip; on small screens the others are hidden. */
+function startPlots() {
+  const buttons = [...document.querySelectorAll("#switch button")];
+  const figures = [...document.querySelectorAll("#plots figure")];
+  const enlarge = (name) => {
+    press(buttons, ({dataset}) => dataset.plot === name);
+    for (const {id, classList} of figures) classList.toggle("chosen", id === `figure-${name}`);
+  };
+  for (const one of buttons) one.onclick = () => enlarge(one.dataset.plot);
+  for (const figure of figures) {
+    const act = () => enlarge(figure.id.replace("figure-", ""));
+    on(figure, {
+      click: ({target}) => target.closest("button") || act(),
+      keydown: ({key, target}) => key === "Enter" && !target.closest("button") && act(),
+    });
+  }
+}
+
+/** On small screens the parameters are in a sheet. */
+function startSheet() {
   $("sheet").onclick = () => {
     const open = $("form").classList.toggle("open");
     attributes($("sheet"), {"aria-expanded": open});

@@ -48,7 +48,11 @@ const reduced = [
   slider("zeta", {
     usualRange: () => [0, 0.04],
     of: ({derived}) => derived.zeta,
-    fields: (zeta, parameters) => ({lambda: zeta / zetaOver(parameters)}),
+    // The damping law is given too: a changed lambda would leave that of the preset.
+    fields: (zeta, parameters) => ({
+      lambda: zeta / zetaOver(parameters),
+      damping: parameters.damping,
+    }),
   }),
 ];
 const si = [

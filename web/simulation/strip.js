@@ -1,9 +1,10 @@
-// The regime strip: regimes and lambda1 along the parameter moved last, computed by a sweep from
-// coarse to fine. Its marker acts as the slider.
+// The regime strip: a bifurcation diagram along the parameter moved last, computed by a sweep from
+// coarse to fine: the regimes, and lambda1, the largest |x| or x at the impacts. Its marker acts as
+// the slider.
 import {$, attributes, countUp, setTexts} from "../shared/dom.js";
-import {Frame} from "../shared/frame.js";
+import {Frame, rangeOf} from "../shared/frame.js";
 import {Job} from "../shared/job.js";
-import {blocks, dots, levels} from "../shared/marks.js";
+import {blocks, density, dots, levels, line} from "../shared/marks.js";
 import {clamp, digits, withError} from "../shared/numbers.js";
 import {Plot} from "../shared/plot.js";
 import {regimeColour, regimeText, verdictColour, verdicts} from "../shared/quantities.js";
@@ -16,10 +17,13 @@ import {fieldsOf, moveSlider, valueAt, written} from "./sliders.js";
 const cycles = 300; // measured at each point
 const transient = 150; // cycles discarded before
 const points = 257; // computed coarse to fine
-const pause = 180; // ms without an edit before it starts
+const impacts = 40; // listed of each point of a bifurcation diagram
+const pause = 400; // ms without an edit before it starts
+const mostKept = 20; // sweeps kept for parameters that return
 const band = 13; // px, height of the regime band
 
 const canvas = $("strip");
+const menu = $("strip-quantity");
 const marker = canvas.nextElementSibling;
 const say = (text) => setTexts({"strip-trouble": text});
 let parameters;
@@ -31,6 +35,7 @@ let layers = null; // the sweep drawn
 let stale = false;
 let waiting = 0;
 let drawing = 0;
+const kept = new Map(); // layers of complete sweeps by their key, the oldest first
 let pointed = false;
 
 const job = new Job({
@@ -41,7 +46,11 @@ const job = new Job({
       say("");
       if (!drawing) drawing = requestAnimationFrame(redraw);
     }),
-  show: () => countUp(canvas),
+  show() {
+    kept.set(key, layers);
+    if (kept.size > mostKept) kept.delete(kept.keys().next().value);
+    countUp(canvas);
+  },
   fail(error) {
     layers = null;
     say(error.message);
@@ -52,22 +61,27 @@ const job = new Job({
 
 /** Updates the strip for a run: system fields of its request, parameters, slider. */
 export function show(system, shown, turned) {
+  menu.onchange = () => show(system, shown, turned);
   parameters = shown;
   slider = turned;
   range = slider.span;
-  const names = Object.keys(fieldsOf(slider, 0, parameters));
-  if (parameter !== names[0]) layers = null;
-  [parameter] = names;
-  const base = {...system};
-  for (const name of names) delete base[name];
-  const wanted = JSON.stringify([base, parameter, range]);
-  if (wanted === key) return place();
+  const set = Object.entries(fieldsOf(slider, 0, parameters));
+  const [[swept], ...others] = set;
+  if (parameter !== swept) layers = null;
+  parameter = swept;
+  const base = {...system, ...Object.fromEntries(others)};
+  for (const [name, value] of set) if (name === swept || value === null) delete base[name];
+  const more = menu.value === "section" ? {section: "impact", section_points: impacts} : {};
+  const wanted = JSON.stringify([base, parameter, range, more]);
+  if (wanted === key) return redraw();
   if (key === null) listen();
   key = wanted;
-  stale = true;
   job.cancel();
   clearTimeout(waiting);
-  waiting = setTimeout(() => job.start(request(base)), pause);
+  const known = kept.get(key);
+  stale = !known;
+  if (known) layers = known;
+  else waiting = setTimeout(() => job.start(request({base, ...more})), pause);
   say("");
   const {symbol, unit} = slider;
   setTexts({"strip-parameter": unit ? `${symbol} (${unit})` : symbol});
@@ -84,13 +98,13 @@ const least = () => range[0] || 0.002 * range[1];
  * The sweep over the range. The marker's point comes first: its errors are reported for the whole
  * sweep; errors of other points only at those points.
  */
-function request(base) {
+function request(fields) {
   const [from, to] = range;
   const step = (to - from) / (points - 1);
   const values = Array.from({length: points}, (_, i) => (i ? from + i * step : least()));
   const first = values[nearest(values, valueAt(slider, parameters))];
   const axis = {parameter, values: [...new Set([first, ...values])].map(toParameter)};
-  return new SweepData({base, axes: [axis], cycles, transient_cycles: transient});
+  return new SweepData({...fields, axes: [axis], cycles, transient_cycles: transient});
 }
 
 /** The point at a value of the slider, if it has been computed. */
@@ -104,14 +118,12 @@ class StripPlot extends Plot {
     if (!range) return null;
     const [from, to] = range.map(toParameter);
     const received = layers?.places(0) ?? [];
-    const isShown = ({p, value}) => lambdaOf(p) != null && value >= from && value <= to;
-    const exponents = received.filter(isShown);
+    const inRange = received.filter(({value}) => value >= from && value <= to);
     const ofX = {range: [from, to], factor: range[1] / to};
-    const ofY = {range: rangeOf(exponents)};
-    const frame = new Frame(width, height, ofX, ofY, 14, band + 5);
     const alpha = stale ? 0.5 : 1;
-    const own = [dotsOf(exponents, ofY.range, alpha), regimes(received, alpha)];
-    return {frame, marks: [levels({y: 0}), ...own]};
+    const {marks, ...ofY} = drawn[menu.value](inRange, alpha);
+    const frame = new Frame(width, height, ofX, ofY, 14, band + 5);
+    return {frame, marks: [...marks, regimes(received, alpha)]};
   }
 
   place() {
@@ -132,14 +144,47 @@ function regimes(places, alpha) {
     ...ends,
     colour: regime ? regimeColour(regime) : "nothing",
     text: regime && regime !== "none" ? regime : "",
+    hatched: regime === "none",
   }));
   return blocks({list, down: -band, height: band, textDown: 2, alpha, above: true});
 }
 
 const lambdaOf = (p) => p?.lambda?.[0];
 
+/** Options along y and marks of each quantity of the menu, from places and an opacity. */
+const drawn = {
+  lambda1(places, alpha) {
+    const exponents = places.filter(({p}) => lambdaOf(p) != null);
+    const range = usualRange(exponents);
+    return {label: "λ₁", range, marks: [levels({y: 0}), dotsOf(exponents, range, alpha)]};
+  },
+  x_max(places, alpha) {
+    const x = places.map(({value}) => value);
+    const column = (name) => places.map(({p}) => (p[name] == null ? null : p[name] * 1000));
+    const [most, free] = ["x_max", "x_free"].map(column);
+    const tints = places.map(({p}) => verdictColour(p));
+    const range = [0, rangeOf([[0], most, free])[1]];
+    const without = line({x, y: free, colour: "without", width: 2, dash: [6, 4], alpha});
+    return {
+      label: "|x| (mm)",
+      range,
+      marks: [without, dots({x, y: most, tints, size: 1.5, alpha})],
+    };
+  },
+  section(places, alpha) {
+    const values = ({p}) => p.section?.x ?? [];
+    const columns = places.map((place) => ({
+      from: place.low,
+      to: place.high,
+      values: values(place),
+    }));
+    const range = rangeOf(places.map(values)) ?? [-1, 1];
+    return {label: "x (mm)", range, marks: [density({columns, colour: "c1", alpha})]};
+  },
+};
+
 /** The range of lambda1 without outliers. */
-function rangeOf(exponents) {
+function usualRange(exponents) {
   const values = exponents.map(({p}) => lambdaOf(p)).sort((a, b) => a - b);
   const quantile = (share) => values[Math.floor(values.length * share)];
   const most = Math.max(quantile(0.98) ?? 0.1, 0.02) * 1.15;

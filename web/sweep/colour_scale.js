@@ -34,8 +34,8 @@ export function endsOf({diverging, from0}, values) {
   if (!n) return [0, 1];
   const [low, high] = [spare, 1 - spare].map((q) => sorted[Math.round(q * (n - 1))]);
   if (diverging) {
-    const least = rounded(Math.min(low, 0)) || -rounded(Math.abs(high)) || -1;
-    return [least, rounded(Math.max(high, 0)) || -least];
+    const ends = [rounded(Math.min(low, 0)), rounded(Math.max(high, 0))];
+    return ends[0] < ends[1] ? ends : [-1, 1];
   }
   if (from0) return [0, rounded(high) || 1];
   const step = rounded((high - low) / 10 || Math.abs(low) / 10 || 0.1);
@@ -44,26 +44,23 @@ export function endsOf({diverging, from0}, values) {
 }
 
 /**
- * {at(value): colour as bytes, share(value): position in [0, 1] or beyond, ends, stops, beyond:
- * [whether at() got values below the scale, above it]}. A diverging scale has 0 in its middle and
- * independent scales on both sides.
+ * {at(value): colour as bytes, ends, beyond: [whether at() got values below the scale, above it]}.
+ * The colours of a diverging scale are symmetric about 0, whatever its ends.
  */
 export function scaleOf({diverging}, ends) {
   const [low, high] = ends;
   const stops = colour(diverging ? "diverging" : "sequential")
     .split(/\s+/)
     .map(hex);
-  const share = diverging
-    ? (v) => 0.5 + (0.5 * v) / (v < 0 ? -low : high)
-    : (v) => (v - low) / (high - low);
+  const most = Math.max(-low, high);
+  const [first, last] = diverging ? [-most, most] : ends;
   const beyond = [false, false];
   const at = (v) => {
-    const t = share(v);
-    beyond[0] ||= t < 0;
-    beyond[1] ||= t > 1;
-    return between(stops, t);
+    beyond[0] ||= v < low;
+    beyond[1] ||= v > high;
+    return between(stops, (v - first) / (last - first));
   };
-  return {stops, share, ends, beyond, at};
+  return {ends, beyond, at};
 }
 
 export const barWidth = 86; // px next to the map
@@ -72,20 +69,20 @@ const thickness = 12; // px of the bar
 /** The bar of a scale at the right of a plot, with its title. */
 export const bar = kind(
   (c, {box, height}, {scale, title}) => {
-    const {stops, share, ends, beyond} = scale;
+    const {at, ends, beyond} = scale;
     const [low, high] = ends;
     const left = box.right + 12;
     const rows = Math.min(Math.round(height), 256);
     const row = height / rows;
     for (let y = 0; y < rows; ++y) {
-      c.fillStyle = `rgb(${between(stops, 1 - (y + 0.5) / rows)})`;
+      c.fillStyle = `rgb(${at(high - ((y + 0.5) / rows) * (high - low))})`;
       c.fillRect(left, box.top + y * row, thickness, row + 0.5);
     }
     c.font = font;
     ink(c, "soft");
     let last = Infinity;
     for (const value of marksOf(ends, height)) {
-      const y = box.bottom - share(value) * height;
+      const y = box.bottom - ((value - low) / (high - low)) * height;
       if (last - y < 12) continue;
       last = y;
       const sign =

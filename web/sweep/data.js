@@ -48,10 +48,14 @@ function unfold({worst, best, starts, ...line}, parameter) {
   return {...peak(line), ...motions};
 }
 
-/** Half a forcing period, pi/Omega, from the fields of a point. */
-function halfPeriod({Omega, f, f0, k1, m1}) {
-  const natural = f0 ?? Math.sqrt(k1 / m1) / (2 * Math.PI); // Hz
-  return Math.PI / (Omega ?? (f ? f / natural : 1));
+/**
+ * Half a forcing period, pi/Omega, from the fields of a point; what they lack is in the resolved
+ * parameters of the sweep.
+ */
+function halfPeriod({Omega, f, f0, k1, m1}, {Omega: standard, si}) {
+  if (Omega || !(f ?? f0 ?? k1 ?? m1)) return Math.PI / (Omega ?? standard);
+  const natural = f0 ?? Math.sqrt((k1 ?? si.k1) / (m1 ?? si.m1)) / (2 * Math.PI); // Hz
+  return (Math.PI * natural) / (f ?? si.f);
 }
 
 const enough = 500; // lines collected as strings before they become a Blob
@@ -130,7 +134,7 @@ export class SweepData {
     if (!point.section) return point;
     const {section, ...rest} = point;
     if (this.axes.length > 1) return rest;
-    const half = halfPeriod(this.fields(point.index));
+    const half = halfPeriod(this.fields(point.index), this.parameters);
     rest.section = {};
     for (const [name, {columns, value, seconds}] of Object.entries(coordinates[this.section])) {
       const [first, second] = columns(section);

@@ -22,7 +22,7 @@ import * as labels from "./axis_labels.js";
 import {stretches} from "./layers.js";
 import {missingPoint, SweepPlot, SweepView} from "./sweep_view.js";
 
-const startColours = ["c1", "before", "c2", "c4", "c3"];
+const startColours = ["c1", "minus", "c2", "c4", "c3"];
 const startColour = (s) => startColours[s % startColours.length];
 
 const startShapes = ["dot", "box", "triangle", "diamond", "pointed"];
@@ -108,6 +108,7 @@ class Diagram extends SweepPlot {
         from: value(from),
         to: value(to),
         colour: regimeColour(regime),
+        hatched: regime === "none",
         regime,
       }));
   }

@@ -148,8 +148,10 @@ class MapPlot extends SweepPlot {
     };
   }
 
-  /** Sets the pixels of all layers. */
+  /** Sets the pixels of all layers; those without a regime are hatched. */
   fill(pixels, width, height, colourOf) {
+    const [none, line] = ["regime-none", "panel"].map((name) => pixel(rgb(name)));
+    const hatched = this.quantity().categories;
     for (const data of this.view.over()) {
       const [first, second] = data.axes;
       const columns = positions(first, this.viewport.range, width);
@@ -159,7 +161,8 @@ class MapPlot extends SweepPlot {
         for (let i = 0; i < width; ++i) {
           const inside = rows[j] >= 0 && columns[i] >= 0;
           const colour = inside && cells[rows[j] * first.at.length + columns[i]];
-          if (colour) pixels[j * width + i] = colour;
+          const isLine = hatched && colour === none && (i + j) % 8 < 2;
+          if (colour) pixels[j * width + i] = isLine ? line : colour;
         }
     }
   }

@@ -87,7 +87,7 @@ function showParts({axes, section, defaultSet, starts, parameters, reduced, poin
 function showRegimes({points}) {
   const item = ([regime, n]) => {
     const none = regime === "none";
-    const className = "key regime";
+    const className = `key regime${none ? " none" : ""}`;
     const style = `--key: var(--regime-${regime})`;
     const textContent = none ? regimes.none : `${regime} ${regimes[regime]}`;
     const key = element("span", {className, style, textContent});
@@ -181,7 +181,7 @@ export class SweepTab extends RequestTab {
     const request = requestOf(given) || requestOf(examples[0].dataset.query);
     const standard = {coordinate: "", beside: "", map: ""}; // the first entry
     this.wanted = {...standard, ...Object.fromEntries(given)};
-    this.form.setQuery(new URLSearchParams(request), exampleOf(request) !== custom);
+    this.form.setQuery(new URLSearchParams(request));
     this.run(ends);
   }
 

@@ -1,7 +1,7 @@
 // The form of a sweep: axes, run of each point, shared fields; and its conversion to and from a
 // query. The fields of an axis have its name in front: axis1_from.
 import {$, element, fillMenu, setTexts} from "../shared/dom.js";
-import {defaultSet, Form, groups, isOfSystem, textOf, unknownText} from "../shared/form.js";
+import {defaultSet, Form, groups, smallScreen, textOf, unknownText} from "../shared/form.js";
 import {unitShown} from "../shared/units.js";
 
 const none = "none";
@@ -52,7 +52,10 @@ export class SweepForm extends Form {
   /** tables: the answer of /v1/parameters; changed: called after each change. */
   constructor(container, tables, changed) {
     const {start, system, reduced, SI} = groups;
-    const shared = tables.fields.filter((f) => f.group in {system, reduced, SI, start});
+    const choices = tables.presets.map(({name}) => name);
+    const shared = tables.fields
+      .filter((f) => f.group in {system, reduced, SI, start})
+      .map((f) => (f.name === "preset" ? {...f, choices} : f));
     const swept = new Map(shared.filter((f) => f.type === "number").map((f) => [f.name, f]));
     const fields = [
       ...axisNames.flatMap((axis, i) => axisFields(axis, tables.axis_fields, swept.keys(), i > 0)),
@@ -67,6 +70,7 @@ export class SweepForm extends Form {
       ...{system, reduced, SI, start},
     };
     super(container, fields, {prefix: "sweep-", grouped});
+    $("sweep-more").open = !smallScreen; // the results lie below the form
     this.parameters = swept;
     this.notes = axisNames.map((axis) =>
       this.parts.get(axis).appendChild(element("p", {className: "note"})),
@@ -89,19 +93,6 @@ export class SweepForm extends Form {
     const axis = axisNames.find((each) => name === parameterOf(each));
     if (axis) for (const end of endsOf(axis)) this.replace(end, "");
     if (axis && axis !== axisNames[0] && value !== none) this.inputs.get("section").value = none;
-    if (name === "damping") this.dampingChosen = true;
-    if (isOfSystem(axis ? value : name) && this.filled(name)) this.resetDamping();
-  }
-
-  /**
-   * The closed-form damping belongs to the paper's system. It is reset for another system, unless
-   * the user chose it.
-   */
-  resetDamping() {
-    const standard = this.standard("damping");
-    if (this.dampingChosen || this.inputs.get("damping").value === standard) return;
-    this.replace("damping", standard);
-    setTexts({"sweep-note": `User-defined system: damping is ${standard}`});
   }
 
   /** The default of a field. */
@@ -187,12 +178,8 @@ export class SweepForm extends Form {
     return String(query);
   }
 
-  /**
-   * Fills the form from a query. example: the query is an example, whose damping was not chosen by
-   * the user.
-   */
-  setQuery(query, example) {
-    this.dampingChosen = !example && query.has("damping");
+  /** Fills the form from a query. */
+  setQuery(query) {
     const fields = Object.fromEntries(query);
     const isKnown = (name) => axisNames.includes(name) || this.inputs.has(name);
     setTexts({"sweep-note": unknownText(Object.keys(fields).filter((name) => !isKnown(name)))});

@@ -30,10 +30,10 @@ export class SweepPlot extends ZoomablePlot {
       caption: view.caption(),
       name: `sweep-${name}`,
     }));
-    this.over.addEventListener("pointermove", (event) => {
-      const mouse = event.pointerType === "mouse" && !event.buttons;
-      if (mouse && this.viewport.cursor !== null)
-        view.showTip({plot: this, at: view.viewports.map(({cursor}) => cursor)});
+    this.over.addEventListener("pointermove", ({pointerType, buttons}) => {
+      if (pointerType !== "mouse" || this.viewport.cursor === null) return;
+      if (buttons) view.hideTip();
+      else view.showTip({plot: this, at: view.viewports.map(({cursor}) => cursor)});
     });
   }
 

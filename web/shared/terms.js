@@ -1,0 +1,30 @@
+// Terms that explain themselves: an element with data-term shows a sentence, the formula and the
+// values that matter, from the element `term-NAME` of the page, on hover, focus and touch.
+import {$, attributes, element, on} from "./dom.js";
+
+const below = 6; // px between a term and its explanation
+const box = element("div", {className: "tip term", id: "term", role: "tooltip", hidden: true});
+
+function show({target}) {
+  const node = target.closest?.("[data-term]");
+  box.hidden = !node;
+  if (!node) return;
+  attributes(node, {"aria-describedby": box.id});
+  box.replaceChildren($(`term-${node.dataset.term}`).content.cloneNode(true));
+  const {left, top, bottom} = node.getBoundingClientRect();
+  const {offsetWidth: width, offsetHeight: height} = box;
+  const fits = bottom + below + height < innerHeight;
+  box.style.left = `${Math.max(Math.min(left, innerWidth - width - below), 0)}px`;
+  box.style.top = `${fits ? bottom + below : top - below - height}px`;
+}
+
+export function startTerms() {
+  document.body.append(box);
+  on(document, {
+    pointerover: show,
+    focusin: show,
+    keydown({key}) {
+      if (key === "Escape") box.hidden = true;
+    },
+  });
+}
