@@ -36,6 +36,7 @@ OBJECTS = ["SweepBase", "Axis", "Start"]
 # Fields that are objects, and their types.
 NESTED = {
     "perturbation": "Perturbation",
+    "forcing": "RecordedForcing",
     "restitution": "RestitutionTable",
     "restitution_plus": "RestitutionTable",
     "restitution_minus": "RestitutionTable",

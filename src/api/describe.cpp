@@ -6,6 +6,7 @@
 
 #include "api/properties.hpp"
 #include "core/motion/elementary.hpp"
+#include "core/motion/load.hpp"
 
 namespace vines::api {
 
@@ -15,6 +16,8 @@ Json describe_system(const System& system, const Json& of_run) {
     const auto add_table = [&j](const char* name, const auto& table) {
         if (table) j[name] = {{"speed", column(table->speed)}, {"R", column(table->R)}};
     };
+    if (const auto& load = system.parameters.load)
+        j["forcing"] = {{"samples", load->samples()}, {"length", load->length()}};
     add_table("restitution_plus", system.parameters.table_plus);
     add_table("restitution_minus", system.parameters.table_minus);
     j["origin"] = system.origin;
@@ -79,6 +82,7 @@ std::string impacts_of(int count) {
 }
 
 std::string describe_type(const Regime& r) {
+    if (!r.has_period) return "a recorded load has no period, and the response no regime";
     if (r.quasi_periodic) return fmt::format("quasi-periodic, {:.4g} impacts per cycle", r.z);
     if (!r.orbit && r.forced && r.contacts > 0 && r.in_every_cycle)
         return fmt::format("not periodic, with {} in every cycle", impacts_of(*r.in_every_cycle));

@@ -54,6 +54,7 @@ const std::vector<Alternative>& alternatives() {
         {{"R", "R_minus"},
          {"restitution_minus"},
          "R_minus and restitution_minus are of the same wall"},
+        {{"F", "f", "G", "Omega"}, {"forcing"}, "forcing replaces F and f; give one of them"},
         {{"gravity"},
          {"inclination"},
          "inclination stands for gravity = g sin(inclination)/omega0^2; give one of them"},
@@ -140,6 +141,7 @@ void restate_walls(Json& preset, const Json& given) {
     drop({"R_plus", "restitution_plus"}, {"R", "restitution", "R_plus", "restitution_plus"});
     drop({"R_minus", "restitution_minus"}, {"R", "restitution", "R_minus", "restitution_minus"});
     drop({"R", "restitution"}, {"R", "restitution"});
+    drop({"F", "f", "G", "Omega"}, {"forcing"});
     drop({"gravity", "inclination"}, {"gravity", "inclination"});
     drop({"friction", "mu"}, {"friction", "mu"});
 }

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "core/motion/load.hpp"
+
 namespace vines::api {
 
 namespace {
@@ -17,9 +19,12 @@ void check_window(
 }
 
 /// The length of the run from tau_end or cycles; an error if it is too long.
-double read_tau_end(const MergedFields& l, double cycle, std::vector<FieldError>& errors) {
-    const bool by_cycles = l.has("cycles");
-    const double tau_end = by_cycles ? l.number("cycles") * cycle : l.number("tau_end"),
+double read_tau_end(const MergedFields& l, const Parameters& p, std::vector<FieldError>& errors) {
+    const bool by_cycles = l.has("cycles"), by_load = p.load && !by_cycles && !l.has("tau_end");
+    const double cycle = p.cycle(),
+                 tau_end = by_cycles ? l.number("cycles") * cycle
+                           : by_load ? p.load->length()
+                                     : l.number("tau_end"),
                  longest = std::min(longest_run, most_cycles * cycle);
     if (errors.empty() && tau_end > longest) {  // Omega is within its range
         const double most = by_cycles ? longest / cycle : longest;
@@ -105,7 +110,8 @@ std::optional<State> read_perturbation(
     if (!p.has_straight_flights()) {
         errors.push_back(
             {"/perturbation", l.fields["perturbation"], nullptr,
-             "the distance of two runs is computed for a ball without gravity and friction"});
+             "the distance of two runs is computed for harmonic forcing and a ball without gravity "
+             "and friction"});
         return std::nullopt;
     }
     const Json& given = l.fields["perturbation"];
@@ -164,7 +170,7 @@ SimulateRequest read_simulate_request(const Json& given) {
     w.parameters = r.system.parameters;
     w.start = read_start(l, r.system);
     std::vector<FieldError> errors = field_errors(validate(w.parameters, w.start), l);
-    w.tau_end = read_tau_end(l, w.parameters.cycle(), errors);
+    w.tau_end = read_tau_end(l, w.parameters, errors);
     w.window = l.has("window") ? l.interval("window") : Interval{0, w.tau_end};
     check_window("/window", w.window, w.tau_end, errors);
     w.windows = l.intervals("windows");
@@ -183,6 +189,14 @@ SimulateRequest read_simulate_request(const Json& given) {
     w.most_listed = static_cast<std::size_t>(w.max_impacts);
     w.estimators = read_estimators(l);
     add_origins(r.system.origin, l);
+    if (const auto& load = w.parameters.load) {
+        if (!l.has("cycles") && !l.has("tau_end"))
+            r.system.origin["tau_end"] = "the length of forcing";
+        if (w.tau_end > load->length() * (1 + 1e-12))
+            r.system.notes.push_back(
+                "the record of forcing ends at tau = " + Json(load->length()).dump() +
+                "; afterwards the load is zero, and the base moves on with its velocity");
+    }
     return r;
 }
 

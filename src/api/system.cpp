@@ -4,6 +4,7 @@
 
 #include "api/properties.hpp"
 #include "api/schema/field.hpp"
+#include "core/motion/load.hpp"
 
 namespace vines::api {
 
@@ -37,10 +38,11 @@ std::vector<std::string> sources_of(const std::string& name, const Json& fields)
 /// Checks that a system in SI is complete. f can be omitted if F = 0.
 void check_si_is_whole(const MergedFields& l, bool forcing_fitted) {
     std::vector<FieldError> errors;
-    const bool unforced = l.fields.contains("F") && l.fields["F"] == 0;
+    const bool loaded = l.fields.contains("forcing"),
+               unforced = loaded || (l.fields.contains("F") && l.fields["F"] == 0);
     for (const auto& group : si_groups) {
         if (!present(l.fields, group).empty() || (group[0] == "f" && unforced) ||
-            (group[0] == "F" && forcing_fitted))
+            (group[0] == "F" && (forcing_fitted || loaded)))
             continue;
         errors.push_back(
             {"/" + group[0], nullptr, nullptr,
@@ -216,14 +218,83 @@ std::vector<FieldError> field_errors(const std::vector<Fault>& faults, const Mer
     return errors;
 }
 
+namespace {
+
+constexpr std::size_t most_samples = 200000;
+
+/// The recorded load; problem 422 for one that is invalid.
+std::shared_ptr<const Load> read_load(const MergedFields& l, const SiParameters& si) {
+    const Json& given = l.fields["forcing"];
+    std::vector<FieldError> errors;
+    const auto fail = [&](const std::string& where, const Json& value, const Json& range,
+                          const std::string& detail) {
+        errors.push_back({"/forcing" + where, value, range, "forcing " + detail});
+    };
+    const auto columns = present(given, {"acceleration_m_s2", "displacement_m", "force_N"});
+    if (!given.contains("time_s")) fail("/time_s", nullptr, nullptr, "needs time_s");
+    if (columns.size() != 1)
+        fail("", nullptr, nullptr, "needs one of acceleration_m_s2, displacement_m and force_N");
+    if (!errors.empty()) refuse(std::move(errors));
+    const Json &time = given["time_s"], &samples = given[columns[0]];
+    if (time.size() < 2 || time.size() > most_samples)
+        fail(
+            "/time_s", time.size(), Json::array({2, most_samples}),
+            "needs at least two samples and at most " + std::to_string(most_samples));
+    if (samples.size() != time.size())
+        fail(
+            "/" + columns[0], samples.size(), Json::array({time.size(), time.size()}),
+            "needs one value for each time");
+    auto tau = time.get<std::vector<double>>(), values = samples.get<std::vector<double>>();
+    const double omega0 = si.omega0(), begin = tau.empty() ? 0 : tau[0],
+                 unit = columns[0] == "acceleration_m_s2" ? omega0 * omega0
+                        : columns[0] == "force_N"         ? si.k1
+                                                          : 1;
+    for (std::size_t i = 0; i < tau.size() && errors.empty(); ++i) {
+        if (i > 0 && !(time[i].get<double>() > time[i - 1].get<double>()))
+            fail("/time_s/" + std::to_string(i), time[i], nullptr, "needs ascending times");
+        tau[i] = (tau[i] - begin) * omega0;
+    }
+    if (!errors.empty()) refuse(std::move(errors));
+    for (double& value : values) value /= unit;
+    const LoadKind kind = columns[0] == "acceleration_m_s2" ? LoadKind::base_acceleration
+                          : columns[0] == "force_N"         ? LoadKind::force
+                                                            : LoadKind::base_displacement;
+    return std::make_shared<const Load>(kind, tau, values);
+}
+
+/// A base that ends this many times b away has probably an offset in its acceleration.
+constexpr double far_away = 1000;
+
+void apply_load(const MergedFields& l, System& system) {
+    if (!system.si)
+        refuse(
+            {{"/forcing", nullptr, nullptr,
+              "forcing is in SI and needs a system in SI (m1, k1 or f0, ...)"}});
+    Parameters& p = system.parameters;
+    p.load = read_load(l, *system.si);
+    p.G = system.si->F = 0;
+    p.Omega = 1;
+    system.si->f = system.si->f0();
+    for (const char* name : {"G", "Omega"}) system.origin[name] = "replaced by forcing";
+    for (const char* name : {"F", "f"}) system.origin[name] = "replaced by forcing";
+    const double far = p.load->largest_base_displacement();
+    if (far > far_away * p.b)
+        system.notes.push_back(
+            "the base moves as far as " + Json(far).dump() +
+            " m, more than 1000 b: is there an offset in its acceleration?");
+}
+
+}  // namespace
+
 System read_system(const MergedFields& l, bool forcing_fitted) {
+    check_laws(l, !present(l.fields, si_names).empty());
     const SystemFields fields = system_fields(l.fields);
     if (fields.is_in_si() && !fields.is_reduced()) check_si_is_whole(l, forcing_fitted);
-    check_laws(l, fields.is_in_si());
     const ResolvedSystem resolved = resolve(fields);
     System system{resolved.parameters, resolved.si, {}, {}};
     system.origin = origins_of(l, system);
     system.notes = notes_on(l, system);
+    if (l.fields.contains("forcing")) apply_load(l, system);
     return system;
 }
 

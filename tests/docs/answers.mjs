@@ -34,6 +34,14 @@ export const simulations = [
     restitution: {speed_m_s: [0, 1], R: [0.8, 0.5]},
     cycles: 50,
   },
+  // A recorded load.
+  {
+    ...platform,
+    F: undefined,
+    f: undefined,
+    forcing: {time_s: [0, 0.1, 0.2, 0.3, 3], acceleration_m_s2: [0, 60, -60, 0, 0]},
+    include: everything,
+  },
   // Quasi-periodic.
   {b: 0.019898, cycles: 2000, include: ["regime", "exponents"], max_points: 300},
 ];

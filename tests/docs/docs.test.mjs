@@ -68,7 +68,7 @@ function defaultOf(row) {
   }
 }
 
-const groups = ["system", "reduced", "SI", "laws", "start", "run", "output"];
+const groups = ["system", "reduced", "SI", "laws", "load", "start", "run", "output"];
 
 test("every field is in a table with its type, unit, range and default", () => {
   const marked = tables(documents["docs/api.md"], "fields");

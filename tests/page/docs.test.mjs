@@ -106,7 +106,10 @@ test("nested schemas can be opened at any depth", async () => {
   const inside = page.locator("#schema-Presets");
   await inside.locator("details > summary", {hasText: /\b6 fields/}).click();
   await inside.locator("details > summary", {hasText: "SimulateRequest"}).click();
-  await inside.locator("details > summary", {hasText: /\b6 fields/}).nth(1).click();
+  await inside
+    .locator("details > summary", {hasText: /\b6 fields/})
+    .nth(1)
+    .click();
   await inside.getByRole("rowheader", {name: "seed"}).waitFor();
   const names = await inside.locator("th code").allTextContents();
   for (const name of ["presets", "source", "damping_ratio", "seed"])

@@ -42,6 +42,24 @@ seed: seed of a random direction in (x', x, y', y), the same on every computer; 
 size: Euclidean length of the random difference; default: none; 1e-18 to 1000
 """
 
+RecordedForcing = TypedDict(
+    "RecordedForcing",
+    {
+        "time_s": Iterable[float],
+        "acceleration_m_s2": Iterable[float],
+        "displacement_m": Iterable[float],
+        "force_N": Iterable[float],
+    },
+    total=False,
+)
+RecordedForcing.__doc__ = """Keys of the object:
+
+time_s: ascending times; the first one is tau = 0 (s); default: none
+acceleration_m_s2: acceleration of the base, which starts at rest (m/s^2); default: none
+displacement_m: displacement of the base (m); default: none
+force_N: force on m1 (N); default: none
+"""
+
 RestitutionTable = TypedDict(
     "RestitutionTable",
     {
@@ -270,6 +288,8 @@ class SimulateFields(TypedDict, total=False):
         between the points, constant outside; instead of R; default: none: a constant R
     restitution_plus: the same for the wall at x - y = +b; default: none: a constant R
     restitution_minus: the same for the wall at x - y = -b; default: none: a constant R
+    forcing: recorded load instead of F and f, for a system in SI: time_s and one of the others,
+        linear between the samples; only in a body; default: none: F and f
     x0: displacement of the linear oscillator at tau = 0 (m, x(0)); -1000 to 1000; default: 0
     x_dot0: velocity of the linear oscillator at tau = 0 (m per unit of tau, x'(0)); -1000 to
         1000; default: 0
@@ -337,6 +357,7 @@ class SimulateFields(TypedDict, total=False):
     restitution: RestitutionTable
     restitution_plus: RestitutionTable
     restitution_minus: RestitutionTable
+    forcing: RecordedForcing
     x0: float
     x_dot0: float
     x_velocity0: float

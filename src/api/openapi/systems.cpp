@@ -10,6 +10,12 @@ Keys system_keys() {
     return values_of(properties::reduced) +
            Keys{
                optional(
+                   {"forcing",
+                    object_of(
+                        {{"samples", whole(), "number of samples"},
+                         {"length", number(), "in tau"}}),
+                    "recorded load, if it replaces F and f"}),
+               optional(
                    {"restitution_plus", reference("RestitutionTable"),
                     "R of the wall at x - y = b as a function of the speed, if it is not "
                     "constant"}),

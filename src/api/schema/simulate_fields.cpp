@@ -162,6 +162,28 @@ FieldTable law_rows() {
     };
 }
 
+FieldTable load_rows() {
+    const auto list = [](const char* name, const char* unit, const char* description) {
+        return Field{
+            .name = name,
+            .type = FieldType::numbers,
+            .unit = unit,
+            .description = description,
+            .fallback_note = "none"};
+    };
+    return {
+        {.name = "forcing",
+         .type = FieldType::object,
+         .description = "recorded load instead of F and f, for a system in SI: time_s and one of "
+                        "the others, linear between the samples; only in a body",
+         .fallback_note = "none: F and f",
+         .fields = {
+             list("time_s", "s", "ascending times; the first one is tau = 0"),
+             list("acceleration_m_s2", "m/s^2", "acceleration of the base, which starts at rest"),
+             list("displacement_m", "m", "displacement of the base"),
+             list("force_N", "N", "force on m1")}}};
+}
+
 FieldTable start_rows() {
     return {
         number("x0", "m", "x(0)", "displacement of the linear oscillator at tau = 0", 0),
@@ -307,8 +329,9 @@ Field section_phase_row() {
 const FieldTable& simulate_fields() {
     static const FieldTable table = grouped("system", system_rows()) +
                                     grouped("reduced", reduced_rows()) + grouped("SI", si_rows()) +
-                                    grouped("laws", law_rows()) + grouped("start", start_rows()) +
-                                    grouped("run", run_rows()) + grouped("output", output_rows());
+                                    grouped("laws", law_rows()) + grouped("load", load_rows()) +
+                                    grouped("start", start_rows()) + grouped("run", run_rows()) +
+                                    grouped("output", output_rows());
     return table;
 }
 

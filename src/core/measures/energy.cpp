@@ -68,7 +68,8 @@ void Energy::add_curved(const Stretch& stretch, double from, double to) {
     constexpr double weights[] = {
         0.3626837833783620, 0.3137066458778873, 0.2223810344533745, 0.1012285362903763};
     const double widest = 2 * stretch.flow.cell();
-    const Cubic base = stretch.loading ? stretch.loading->base : Cubic{};
+    const auto& loading = stretch.forces->loading;
+    const Cubic base = loading ? loading->base : Cubic{};
     const auto add = [&](double begin, double end) {
         const double half = 0.5 * (end - begin), middle = begin + half;
         for (int k = 0; k < 8; ++k) {
@@ -77,7 +78,7 @@ void Energy::add_curved(const Stretch& stretch, double from, double to) {
             const State at = stretch.at(s, o);
             const double weight = half * weights[k / 2], x = at.x - base.at(s);
             sum_(x_squared) += weight * x * x;
-            if (stretch.loading) work_ += weight * at.x_dot * stretch.loading->force.at(s);
+            if (loading) work_ += weight * at.x_dot * loading->force.at(s);
             sum_(x_dot_squared) += weight * at.x_dot * at.x_dot;
             sum_(x_dot_sin) += weight * at.x_dot * o.sin_theta;
         }
@@ -103,7 +104,7 @@ void Energy::add_curved(const Stretch& stretch, double from, double to) {
         }
         s = next;
     }
-    const Cubic& p = stretch.shift;
+    const Cubic& p = stretch.forces->shift;
     peak_ = peak_beyond(
         peak_, stretch.flow, stretch.start,
         {p.c0 - base.c0, p.c1 - base.c1, p.c2 - base.c2, p.c3 - base.c3}, from, to);
@@ -131,14 +132,14 @@ void CyclePeaks::on_stretch(const Stretch& stretch) {
            tau = stretch.tau + from;
     if (!(duration > 0)) return;
     const Flow& flow = stretch.flow;
+    const Cubic shift = stretch.forces ? stretch.forces->shift : Cubic{};
     Oscillation o = from > 0 ? flow.after(stretch.start, from) : stretch.start;
     while (true) {
         const double part = std::min(duration, end_ - tau), s = tau - stretch.tau;
-        peak_ = std::max(peak_, std::abs(o.x + stretch.shift.at(s)));
+        peak_ = std::max(peak_, std::abs(o.x + shift.at(s)));
         if (peak_ < least_ && part > 0)
-            peak_ = stretch.shift.is_zero()
-                        ? peak_beyond(peak_, flow, o, part)
-                        : peak_beyond(peak_, flow, stretch.start, stretch.shift, s, s + part);
+            peak_ = shift.is_zero() ? peak_beyond(peak_, flow, o, part)
+                                    : peak_beyond(peak_, flow, stretch.start, shift, s, s + part);
         if (duration < end_ - tau) return;
         least_ = std::min(least_, peak_);
         peak_ = 0;

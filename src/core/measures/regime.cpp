@@ -390,7 +390,8 @@ Regime regime_of(
     count_contacts(r, e);
     const std::span<const State> states = states_before(e.stroboscopic, e.tau_end);
     // The first state in the window only shows that the window has any.
-    if (r.forced && r.has_period && states.size() > 1 && e.stroboscopic.tau(states.size() - 2) >= e.tau_start) {
+    if (r.forced && r.has_period && states.size() > 1 &&
+        e.stroboscopic.tau(states.size() - 2) >= e.tau_start) {
         // Scale of the last part: a transient can have been larger.
         const State scale = scale_of(p, states.last(std::min(states.size(), longest_period)));
         r.orbit = orbit_of(p, states, scale, e);

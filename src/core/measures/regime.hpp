@@ -42,9 +42,9 @@ struct Capture {
 
 struct Regime {
     RegimeType type = RegimeType::none;
-    bool forced = true;  ///< false for a free decay (G = 0), which has no regime
+    bool forced = true;      ///< false for a free decay (G = 0), which has no regime
     bool has_period = true;  ///< false for a recorded load, which has neither orbit nor type
-    long contacts = 0;   ///< in the window
+    long contacts = 0;       ///< in the window
     /// Contacts per forcing cycle: of the orbit if periodic, else between first and last contact.
     double z = 0;
     double z_overall = 0;  ///< from the first to the last contact, in any case

@@ -83,7 +83,8 @@ std::optional<Contact> next_contact(
 /// The first s in (0, limit] at which side (x'' - pull) falls to `least`, where x'' is the
 /// acceleration of the joint motion; limit <= flow.reach(). At a wall, `side` presses the ball
 /// against it until then; inside the cavity friction holds the ball up to side (x'' - pull) =
-/// least < 0. pull grows by pull_rate per unit of time. `zeros` is 1 if they are equal at the start, otherwise 0.
+/// least < 0. pull grows by pull_rate per unit of time. `zeros` is 1 if they are equal at the
+/// start, otherwise 0.
 std::optional<double> next_release(
     const Flow& flow, const Oscillation& start, int side, int zeros, double limit, double pull = 0,
     double least = 0, double pull_rate = 0);

@@ -70,7 +70,7 @@ Saltation saltation(const Parameters& p, const Impact& i) {
     // r = (f+ - S f-)/(x'- - y'-) with f = (x'', x', y'', y'), eq. (27): a deviation shifts the
     // impact in time. x'' jumps by -2 zeta (x'+ - x'-), velocities by jump_x, jump_y times (x'- -
     // y'-). Friction reverses: y'' jumps by -2 friction side, x'' by -epsilon times that.
-    const double friction = 2 * p.friction * i.side / i.relative_speed_before;
+    const double friction = p.friction == 0 ? 0 : 2 * p.friction * i.side / i.relative_speed_before;
     const double two_zeta = 2 * p.zeta();
     return {
         .R = i.R,

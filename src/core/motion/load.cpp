@@ -12,7 +12,8 @@ Load::Load(LoadKind kind, const std::vector<double>& tau, const std::vector<doub
     for (std::size_t i = 0; i < tau.size(); ++i) {
         const bool last = i + 1 == tau.size();
         const long double h = last ? 1 : static_cast<long double>(tau[i + 1]) - tau[i],
-                          slope = last ? 0 : (static_cast<long double>(values[i + 1]) - values[i]) / h,
+                          slope =
+                              last ? 0 : (static_cast<long double>(values[i + 1]) - values[i]) / h,
                           value = values[i];
         if (kind != LoadKind::base_acceleration) {
             const bool zero = last && kind == LoadKind::force;
@@ -41,9 +42,7 @@ std::size_t Load::interval_at(double tau) const {
 
 namespace {
 
-Cubic about(const Cubic& c, double s) {
-    return {c.at(s), c.rate(s), c.c2 + 3 * c.c3 * s, c.c3};
-}
+Cubic about(const Cubic& c, double s) { return {c.at(s), c.rate(s), c.c2 + 3 * c.c3 * s, c.c3}; }
 
 }  // namespace
 
@@ -54,8 +53,7 @@ Cubic Load::base(std::size_t interval, double from) const {
 Cubic Load::force(std::size_t interval, double from, double damping) const {
     const Cubic c = about(pieces_[interval], from - tau_[interval]);
     if (!moves_base()) return c;
-    return {
-        c.c0 + damping * c.c1, c.c1 + 2 * damping * c.c2, c.c2 + 3 * damping * c.c3, c.c3};
+    return {c.c0 + damping * c.c1, c.c1 + 2 * damping * c.c2, c.c2 + 3 * damping * c.c3, c.c3};
 }
 
 Cubic particular_solution(const Flow& flow, const Cubic& force) {

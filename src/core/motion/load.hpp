@@ -35,6 +35,7 @@ public:
     Cubic force(std::size_t interval, double from, double damping) const;
 
     bool moves_base() const { return kind_ != LoadKind::force; }
+    std::size_t samples() const { return tau_.size(); }
     double length() const { return tau_.back(); }
     double largest_base_displacement() const { return largest_; }  ///< at the samples, m
 

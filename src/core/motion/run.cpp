@@ -60,21 +60,24 @@ Run::Run(
 /// friction direction, and the reaction -epsilon friction direction on the oscillator.
 void Run::begin_sliding(int direction) {
     if (p_.has_straight_flights()) return;
+    if (!forces_) forces_.emplace();
+    Forces& f = *forces_;
+    f.rests_inside = false;
     direction_ = p_.friction > 0 ? direction : 0;
-    y_ddot_ = p_.gravity + p_.friction * direction_;
+    f.y_ddot = p_.gravity + p_.friction * direction_;
     if (p_.load) {
         const double tau = clock_.tau();
-        loading_ = {
+        f.loading = {
             p_.load->force(interval_, tau, p_.epsilon * p_.lambda), p_.load->base(interval_, tau)};
     }
-    Cubic force = loading_.force;
+    Cubic force = f.loading ? f.loading->force : Cubic{};
     force.c0 -= p_.epsilon * p_.friction * direction_;
-    shift_ = particular_solution(free_, force);
+    f.shift = particular_solution(free_, force);
 }
 
 /// What load and gravity add to the joint motion of both masses.
 Cubic Run::joint_shift() const {
-    Cubic force = loading_.force;
+    Cubic force = forces_ && forces_->loading ? forces_->loading->force : Cubic{};
     force.c0 += p_.epsilon * p_.gravity;
     const double nu = 1 / (1 + p_.epsilon);
     return particular_solution(
@@ -83,12 +86,20 @@ Cubic Run::joint_shift() const {
 
 void Run::begin_joint_motion() {
     if (!sticking_) sticking_ = Flow::shared_sticking(p_);
+    if (p_.has_straight_flights()) return;
     begin_sliding(direction_);
-    shift_ = joint_shift();
+    forces_->shift = joint_shift();
+    forces_->rests_inside = side_ == 0;
 }
 
 double Run::until_next_interval() const {
-    return p_.load ? std::max(0.0, clock_.until(p_.load->end_of(interval_))) : infinity;
+    return std::max(0.0, clock_.until(p_.load->end_of(interval_)));
+}
+
+/// The shortest of `rest`, the flow's reach and the time until the load's law changes.
+double Run::until_boundary(double rest, const Flow& flow) const {
+    const double limit = std::min(rest, flow.reach());
+    return p_.load ? std::min(limit, until_next_interval()) : limit;
 }
 
 void Run::begin_next_interval() {
@@ -117,61 +128,61 @@ Outcome Run::outcome() const {
 void Run::pass(const Flow& flow, double duration, int sticking_side, const Transfer* over) {
     if (duration > 0)
         notify(
-            &Observer::on_stretch,
-            {flow, clock_.tau(), duration, of_flow(), y_, y_dot_, sticking_side, over, y_ddot_,
-             &flow != &free_ && sticking_side == 0, shift_, p_.load ? &loading_ : nullptr});
+            &Observer::on_stretch, {flow, clock_.tau(), duration, of_flow(), y_, y_dot_,
+                                    sticking_side, over, forces_ ? &*forces_ : nullptr});
     clock_.advance(duration);
 }
 
 void Run::meet_wall_at_start() {
     y_ = lo_.x - side_ * p_.b;
     if (side_ * relative_speed_ > 0)
-        strike(
-            {0, side_, lo_, relative_speed_}, free_.acceleration(of_flow()) + shift_.second(0),
-            y_ddot_);
+        strike({0, side_, lo_, relative_speed_}, relative_acceleration(of_flow(), 0));
     else leave_or_stick();
 }
 
 // A contact whose tau rounds to tau_end belongs to the run. After it the remaining time can be
 // negative, by half an ulp of tau_end, over which nothing moves.
 double Run::flight_limit() const {
-    return std::min(
-        {clock_.until(limits_.tau_end) + end_rounding_, free_.reach(), until_next_interval()});
+    return until_boundary(clock_.until(limits_.tau_end) + end_rounding_, free_);
 }
 
 void Run::fly() {
     grazing_.clear();
     const FlightStart start = flight();
-    const double limit = flight_limit();
-    const auto stop = direction_ != 0
-                          ? next_equal_velocity(free_, start, direction_, slip_zeros_, limit)
-                          : std::nullopt;
-    const auto contact = fast_contact(free_, start, p_.b, stop.value_or(limit), grazing_);
+    double limit = flight_limit();
+    std::optional<double> stop;
+    if (direction_ != 0) {
+        stop = next_equal_velocity(free_, start, direction_, slip_zeros_, limit);
+        limit = stop.value_or(limit);
+    }
+    const auto contact = fast_contact(free_, start, p_.b, limit, grazing_);
     for (const GrazingPoint& t : grazing_) graze(clock_.tau() + t.s, t.side);
     if (stop && !contact) stop_sliding(*stop);
     else fly_to(contact, nullptr);
 }
 
 void Run::fly_to(const std::optional<Contact>& contact, const Transfer* over) {
-    const double rest = clock_.until(limits_.tau_end), next = until_next_interval(),
-                 limit = std::min({rest, free_.reach(), next});
-    pass(free_, contact ? contact->s : limit, 0, over);
     if (contact) {
-        const double x_ddot = free_.acceleration(contact->lo) + shift_.second(contact->s);
-        lo_ = with_shift(contact->lo, contact->s);
+        pass(free_, contact->s, 0, over);
+        const double a = relative_acceleration(contact->lo, contact->s);
+        lo_ = contact->lo;
+        if (forces_) lo_ = with_shift(lo_, contact->s);
         y_ = lo_.x - contact->side * p_.b;
         side_ = contact->side;
         if (contact->relative_speed != 0)
-            return strike(
-                {contact->s, contact->side, lo_, contact->relative_speed}, x_ddot, y_ddot_);
+            return forces_ ? strike({contact->s, side_, lo_, contact->relative_speed}, a)
+                           : strike(*contact, a);
         // Rounding has reduced the approach speed to zero: a grazing contact.
         graze(clock_.tau(), side_);
         relative_speed_ = 0;
         return leave_or_stick();
     }
+    const double rest = clock_.until(limits_.tau_end), limit = until_boundary(rest, free_);
+    const bool ends_interval = p_.load && limit == until_next_interval();
+    pass(free_, limit, 0, over);
     if (limit == rest) end_ = End::tau_end;
-    y_ += limit * (y_dot_ + 0.5 * y_ddot_ * limit);
-    y_dot_ += y_ddot_ * limit;
+    y_ += limit * (y_dot_ + 0.5 * y_ddot() * limit);
+    y_dot_ += y_ddot() * limit;
     lo_ = with_shift(
         limit == free_.reach() ? free_.at(of_flow(), Flow::cells)
                                : free_.after(of_flow(), std::max(0.0, limit)),
@@ -179,7 +190,7 @@ void Run::fly_to(const std::optional<Contact>& contact, const Transfer* over) {
     slip_zeros_ = 0;
     side_ = 0;
     bounce_limit_ -= limit;
-    if (limit == next && !end_) begin_next_interval();
+    if (ends_interval && !end_) begin_next_interval();
 }
 
 void Run::graze(double tau, int side) {
@@ -197,11 +208,11 @@ double Run::pull_together() const {
 /// Advances to the moment s at which the sliding ball has the oscillator's velocity, inside the
 /// cavity: friction holds it, or it slides on in the other direction.
 void Run::stop_sliding(double s) {
-    const double before =
-        free_.acceleration(free_.after(of_flow(), s)) + shift_.second(s) - y_ddot_;
+    const Oscillation end = free_.after(of_flow(), s);
+    const double before = relative_acceleration(end, s);
     pass(free_, s, 0, nullptr);
-    y_ += s * (y_dot_ + 0.5 * y_ddot_ * s);
-    lo_ = with_shift(free_.after(of_flow(), s), s);
+    y_ += s * (y_dot_ + 0.5 * y_ddot() * s);
+    lo_ = with_shift(end, s);
     y_dot_ = lo_.x_dot;
     relative_speed_ = 0;
     side_ = 0;
@@ -215,13 +226,14 @@ void Run::stop_sliding(double s) {
     }
     begin_sliding(sign_of(pull));
     slip_zeros_ = 1;
-    const double after = free_.acceleration(of_flow()) + shift_.second(0) - y_ddot_;
-    if (s > 0) notify(&Observer::on_slip, {clock_.tau(), after / before});
+    if (s > 0)
+        notify(&Observer::on_slip, {clock_.tau(), relative_acceleration(of_flow(), 0) / before});
 }
 
-void Run::strike(const Contact& contact, double x_ddot, double y_ddot) {
-    const Impact i = impact_at(p_, contact, x_ddot, clock_.tau(), y_ddot);
-    const bool pressed = i.side * (x_ddot - y_ddot) > 0 && contact.s < bounce_limit_;
+void Run::strike(const Contact& contact, double relative_acceleration) {
+    const double y_ddot = forces_ ? forces_->y_ddot : 0;
+    const Impact i = impact_at(p_, contact, relative_acceleration + y_ddot, clock_.tau(), y_ddot);
+    const bool pressed = i.side * relative_acceleration > 0 && contact.s < bounce_limit_;
     chatter_ = i.side == last_side_ && pressed ? chatter_ + 1 : 1;
     last_side_ = i.side;
     ++impacts_;
@@ -235,17 +247,18 @@ void Run::strike(const Contact& contact, double x_ddot, double y_ddot) {
 /// At the wall side_ with a relative speed that is zero or points away from it: determines the
 /// leading derivative of the gap.
 void Run::leave_or_stick() {
-    begin_sliding(relative_speed_ != 0 ? sign_of(relative_speed_) : -side_);
+    if (forces_) begin_sliding(relative_speed_ != 0 ? sign_of(relative_speed_) : -side_);
     const Oscillation o = of_flow();
-    const double press = side_ * (free_.acceleration(o) + shift_.second(0) - y_ddot_),
-                 press_rate = side_ * (free_.jerk(o) + 6 * shift_.c3);
+    const double press = side_ * relative_acceleration(o, 0),
+                 press_rate = side_ * (free_.jerk(o) + (forces_ ? 6 * forces_->shift.c3 : 0));
     bounce_limit_ = press > 0 ? longest_bounce_ : 0;
     if (relative_speed_ != 0) {
         zeros_ = 1;
         slip_zeros_ = 0;
+        if (!(press > 0)) return;
         const double R = p_.restitution(side_, std::abs(relative_speed_));
         const double rest = rest_of_chatter(std::abs(relative_speed_), press, R);
-        if (press > 0 && rest < (direction_ == 0 ? chatter_rest : sliding_chatter_rest) &&
+        if (rest < (direction_ == 0 ? chatter_rest : sliding_chatter_rest) &&
             std::abs(press_rate) * rest < chatter_drift * press)
             stick(rest, 0);
         // All three zero: both masses stay at rest together.
@@ -305,14 +318,15 @@ void Run::follow_joint_motion(int zeros) {
     for (bool released = false; !released && !end_;) {
         y_ = lo_.x - apart;
         y_dot_ = lo_.x_dot;
-        const double rest = clock_.until(limits_.tau_end), next = until_next_interval(),
-                     limit = std::min({rest, sticking_->reach(), next});
+        const double rest = clock_.until(limits_.tau_end), limit = until_boundary(rest, *sticking_);
+        const bool ends_interval = p_.load && limit == until_next_interval();
+        const Cubic bend = forces_ ? forces_->shift : Cubic{};
         std::optional<double> release;
         for (const int held_by : {1, -1})
             if (held_by == side_ || side_ == 0) {
                 const auto end = next_release(
                     *sticking_, of_flow(), held_by, zeros, release.value_or(limit),
-                    p_.gravity - 2 * shift_.c2, -p_.friction, -6 * shift_.c3);
+                    p_.gravity - 2 * bend.c2, -p_.friction, -6 * bend.c3);
                 if (end) release = end;
             }
         const double s = release ? *release : limit;
@@ -320,7 +334,7 @@ void Run::follow_joint_motion(int zeros) {
         lo_ = with_shift(sticking_->after(of_flow(), std::max(0.0, s)), s);
         released = release.has_value();
         zeros = 0;
-        if (!released && limit == next) ++interval_;
+        if (!released && ends_interval) ++interval_;
         if (p_.load) begin_joint_motion();
         if (!released && limit == rest) end_ = End::tau_end;
         if (!released && limits_.stop && limits_.stop()) end_ = End::stopped;

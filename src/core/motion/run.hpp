@@ -43,8 +43,16 @@ public:
     const Flow& flow() const { return free_; }
     double b() const { return p_.b; }
     FlightStart flight() const {
-        return {of_flow(),       y_ - shift_.c0, y_dot_ - shift_.c1,        side_,
-                relative_speed_, zeros_,         0.5 * y_ddot_ - shift_.c2, -shift_.c3};
+        if (!forces_) return {lo_, y_, y_dot_, side_, relative_speed_, zeros_};
+        const Cubic& p = forces_->shift;
+        return {of_flow(),
+                y_ - p.c0,
+                y_dot_ - p.c1,
+                side_,
+                relative_speed_,
+                zeros_,
+                0.5 * forces_->y_ddot - p.c2,
+                -p.c3};
     }
     double flight_limit() const;
     /// Finds the contact and advances past it.
@@ -62,27 +70,34 @@ private:
     }
     void pass(const Flow& flow, double duration, int sticking_side, const Transfer* over);
     void meet_wall_at_start();
-    /// The oscillator without shift_.
+    // The oscillator without the forces' shift, and with it from a state of the flow at s.
     Oscillation of_flow() const {
-        return {lo_.x - shift_.c0, lo_.x_dot - shift_.c1, lo_.sin_theta, lo_.cos_theta};
+        if (!forces_) return lo_;
+        const Cubic& p = forces_->shift;
+        return {lo_.x - p.c0, lo_.x_dot - p.c1, lo_.sin_theta, lo_.cos_theta};
     }
-    /// The oscillator from a state of the flow at s.
     Oscillation with_shift(Oscillation o, double s) const {
-        o.x += shift_.at(s), o.x_dot += shift_.rate(s);
+        if (forces_) o.x += forces_->shift.at(s), o.x_dot += forces_->shift.rate(s);
         return o;
+    }
+    double y_ddot() const { return forces_ ? forces_->y_ddot : 0; }
+    /// x'' - y'' of the free ball after s, and the rate of x'' at once.
+    double relative_acceleration(const Oscillation& flow_after, double s) const {
+        const double x_ddot = free_.acceleration(flow_after);
+        return forces_ ? x_ddot + forces_->shift.second(s) - forces_->y_ddot : x_ddot;
     }
     void begin_sliding(int direction);
     void begin_joint_motion();
     Cubic joint_shift() const;
-    /// The time until the load's law changes.
-    double until_next_interval() const;
+    double until_next_interval() const;  ///< of the load
+    double until_boundary(double rest, const Flow& flow) const;
     void begin_next_interval();
     void stop_sliding(double s);
     double pull_together() const;
     void rest_inside();
     void follow_joint_motion(int zeros);
     void graze(double tau, int side);
-    void strike(const Contact& contact, double x_ddot, double y_ddot);
+    void strike(const Contact& contact, double relative_acceleration);
     void leave_or_stick();
     double rest_of_chatter(double w, double press, double R) const;
     void stick(double chatter_left, int zeros);
@@ -97,15 +112,13 @@ private:
     Oscillation lo_;
     double y_, y_dot_;
     double end_rounding_;
-    int side_ = 0;               // the wall that the ball is at, 0 in flight
-    double relative_speed_ = 0;  // x' - y' at that wall
-    int zeros_ = 1;              // see FlightStart
-    int direction_ = 0;          // sign of x' - y' of a sliding ball; 0 without friction
-    int slip_zeros_ = 0;         // see next_equal_velocity()
-    double y_ddot_ = 0;
-    Cubic shift_;  // see Stretch
-    std::size_t interval_ = 0;   // of the load
-    Loading loading_;            // over the rest of that interval
+    int side_ = 0;                  // the wall that the ball is at, 0 in flight
+    double relative_speed_ = 0;     // x' - y' at that wall
+    int zeros_ = 1;                 // see FlightStart
+    int direction_ = 0;             // sign of x' - y' of a sliding ball; 0 without friction
+    int slip_zeros_ = 0;            // see next_equal_velocity()
+    std::optional<Forces> forces_;  // empty if they are the paper's
+    std::size_t interval_ = 0;      // of the load
     // Side and length of the current sequence of impacts on one side, joined by the pressing wall.
     int last_side_ = 0, chatter_ = 0;
     // A flight that leaves a pressing wall and returns to it while it presses, within half a cycle

@@ -5,6 +5,7 @@
 #pragma once
 
 #include <functional>
+#include <optional>
 #include <span>
 #include <string_view>
 #include <vector>
@@ -20,6 +21,15 @@ struct Loading {
     Cubic base;   ///< displacement of the base; zero for a force on the oscillator
 };
 
+/// Forces beyond the paper's during a stretch.
+struct Forces {
+    double y_ddot = 0;          ///< of a free ball, constant
+    bool rests_inside = false;  ///< friction holds the ball inside the cavity
+    /// What the forces on the oscillator add to the flow's motion: x(s) = flow's x(s) + shift(s).
+    Cubic shift;
+    std::optional<Loading> loading;
+};
+
 /// A part of the motion without an event inside. A long flight consists of several stretches.
 struct Stretch {
     /// law of motion of the linear oscillator (with the ball's mass while sticking)
@@ -29,27 +39,31 @@ struct Stretch {
     double y, y_dot;    ///< of the ball at the start; while it rests also those of its wall
     int sticking_side;  ///< wall on which the ball rests, 0 in the cavity
     const Transfer* transfer = nullptr;  ///< flow.transfer(duration) if already known
-    double y_ddot = 0;                   ///< of a free ball, constant
-    bool rests_inside = false;           ///< friction holds the ball inside the cavity
-    /// What constant forces (friction, gravity of a resting ball) add to the flow's motion: x(s) =
-    /// flow's x(s) + shift(s).
-    Cubic shift = {};
-    const Loading* loading = nullptr;  ///< null without a load
+    const Forces* forces = nullptr;      ///< null if they are the paper's
 
+    bool rests_inside() const { return forces && forces->rests_inside; }
     /// True while both masses move as one.
-    bool is_joint() const { return sticking_side != 0 || rests_inside; }
+    bool is_joint() const { return sticking_side != 0 || rests_inside(); }
     /// The state of both masses at 0 <= s <= duration.
     State at(double s) const { return at(s, flow.after(start, s)); }
     /// The same, given the flow's state.
     State at(double s, const Oscillation& o) const {
-        const double x = o.x + shift.at(s), x_dot = o.x_dot + shift.rate(s);
-        if (is_joint()) return {x_dot, x, x_dot, x + (y - (start.x + shift.c0))};
-        return {x_dot, x, y_dot + y_ddot * s, y + s * (y_dot + 0.5 * y_ddot * s)};
+        if (forces) return under_forces(s, o);
+        if (sticking_side != 0) return {o.x_dot, o.x, o.x_dot, o.x + (y - start.x)};
+        return {o.x_dot, o.x, y_dot, y + y_dot * s};
     }
     /// Acceleration of the linear oscillator, m per unit of tau squared.
     double x_ddot(double s) const { return x_ddot(s, flow.after(start, s)); }
     double x_ddot(double s, const Oscillation& o) const {
-        return flow.acceleration(o) + shift.second(s);
+        return flow.acceleration(o) + (forces ? forces->shift.second(s) : 0);
+    }
+
+private:
+    State under_forces(double s, const Oscillation& o) const {
+        const Cubic& shift = forces->shift;
+        const double x = o.x + shift.at(s), x_dot = o.x_dot + shift.rate(s), a = forces->y_ddot;
+        if (is_joint()) return {x_dot, x, x_dot, x + (y - (start.x + shift.c0))};
+        return {x_dot, x, y_dot + a * s, y + s * (y_dot + 0.5 * a * s)};
     }
 };
 

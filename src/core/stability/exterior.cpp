@@ -20,18 +20,16 @@ double parts_of(const Flow& flow, double duration) {
 
 }  // namespace
 
-Leg leg_of(const Flow& flow, double duration, bool sticking) {
+Leg leg_of(const Flow& flow, double duration, bool sticking, bool resting) {
     const double parts = parts_of(flow, duration), part = duration / parts;
-    return {flow.transfer(part), part, -flow.damping() * part, static_cast<long>(parts), sticking};
+    return {flow.transfer(part),      part,     -flow.damping() * part,
+            static_cast<long>(parts), sticking, resting};
 }
 
 Leg leg_of(const Stretch& s) {
     const bool sticking = s.sticking_side != 0;
-    if (!s.transfer || parts_of(s.flow, s.duration) > 1) {
-        Leg leg = leg_of(s.flow, s.duration, sticking);
-        leg.resting = s.rests_inside;
-        return leg;
-    }
+    if (!s.transfer || parts_of(s.flow, s.duration) > 1)
+        return leg_of(s.flow, s.duration, sticking, s.rests_inside());
     return {*s.transfer, s.duration, -s.flow.damping() * s.duration, 1, sticking};
 }
 
@@ -48,14 +46,13 @@ void carry_rows(Deviations& d, const Leg& leg, double epsilon) {
     const auto& [a11, a12, a21, a22] = leg.oscillator;
     using Row = Eigen::Matrix<double, 1, Deviations::ColsAtCompileTime>;
     Row x_dot = d.row(0), x = d.row(1);
-    const Row gap = d.row(3) - d.row(1);
+    const Row gap = leg.resting ? Row(d.row(3) - x) : Row(Row::Zero());
     const double nu = 1 / (1 + epsilon), mu = epsilon * nu;
     if (leg.sticking || leg.resting) x_dot = nu * x_dot + mu * d.row(2);
     if (leg.sticking) x = nu * x + mu * d.row(3);
     d.row(0) = a11 * x_dot + a12 * x;
     d.row(1) = a21 * x_dot + a22 * x;
-    if (leg.sticking) d.row(2) = d.row(0), d.row(3) = d.row(1);
-    else if (leg.resting) d.row(2) = d.row(0), d.row(3) = d.row(1) + gap;
+    if (leg.sticking || leg.resting) d.row(2) = d.row(0), d.row(3) = d.row(1) + gap;
     else d.row(3) += leg.duration * d.row(2);
 }
 
@@ -86,6 +83,26 @@ namespace {
 /// Determinant over one part; the contraction is too small for the difference to lose digits.
 double determinant_of(const Transfer& a) { return a.a11 * a.a22 - a.a12 * a.a21; }
 
+/// In the coordinates (x', x, z', z) with z = x - y, c = x' - mu z' and x move as one body, z'
+/// vanishes and z stays.
+[[gnu::noinline]] Area carried_at_rest(const Area& w, const Leg& leg, double epsilon) {
+    const auto& [a11, a12, a21, a22] = leg.oscillator;
+    // The areas of c and x, c and z, x and z.
+    const double mu = epsilon / (1 + epsilon), cx = w(0) - mu * (w(0) + w(3)),
+                 cz = w(0) - w(2) - mu * (w(0) - w(2) + w(3) + w(5)), xz = -w(4);
+    const double x_dot_x = determinant_of(leg.oscillator) * cx, x_dot_z = a11 * cz + a12 * xz;
+    Area out;
+    out << x_dot_x, 0, x_dot_x - x_dot_z, -x_dot_x, -(a21 * cz + a22 * xz), x_dot_x - x_dot_z;
+    return out;
+}
+
+[[gnu::noinline]] Volume carried_at_rest(const Volume& volume, const Leg& leg, double epsilon) {
+    const Eigen::Vector4d& n = volume.normal;
+    const double nu = 1 / (1 + epsilon),
+                 size = determinant_of(leg.oscillator) * (epsilon * nu * n(0) - nu * n(2));
+    return {{size, 0, -size, 0}};
+}
+
 }  // namespace
 
 Area carried(const Area& w, const Leg& leg, double epsilon) {
@@ -100,16 +117,7 @@ Area carried(const Area& w, const Leg& leg, double epsilon) {
         out << area, 0, area, -area, 0, area;
         return out;
     }
-    if (leg.resting) {
-        // In the coordinates (x', x, z', z) with z = x - y, c = x' - mu z' and x move as one body,
-        // z' vanishes and z stays. The areas of c and x, c and z, x and z:
-        const double mu = epsilon / (1 + epsilon), cx = w(0) - mu * (w(0) + w(3)),
-                     cz = w(0) - w(2) - mu * (w(0) - w(2) + w(3) + w(5)), xz = -w(4);
-        const double x_dot_z = a11 * cz + a12 * xz;
-        out << det * cx, 0, det * cx - x_dot_z, -det * cx, -(a21 * cz + a22 * xz),
-            det * cx - x_dot_z;
-        return out;
-    }
+    if (leg.resting) return carried_at_rest(w, leg, epsilon);
     // J consists of the oscillator's block and the ball's block [1 0; s 1].
     const double s = leg.duration, w03 = w(2) + s * w(1), w13 = w(4) + s * w(3);
     out << det * w(0), a11 * w(1) + a12 * w(3), a11 * w03 + a12 * w13, a21 * w(1) + a22 * w(3),
@@ -123,10 +131,7 @@ Volume carried(const Volume& volume, const Leg& leg, double epsilon) {
     const auto& [a11, a12, a21, a22] = leg.oscillator;
     const Eigen::Vector4d& n = volume.normal;
     const double det = determinant_of(leg.oscillator);
-    if (leg.resting) {
-        const double nu = 1 / (1 + epsilon), size = det * (epsilon * nu * n(0) - nu * n(2));
-        return {{size, 0, -size, 0}};
-    }
+    if (leg.resting) return carried_at_rest(volume, leg, epsilon);
     return {
         {a22 * n(0) - a21 * n(1), a11 * n(1) - a12 * n(0), det * (n(2) - leg.duration * n(3)),
          det * n(3)}};

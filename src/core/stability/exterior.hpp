@@ -32,7 +32,7 @@ struct Leg {
     /// The slip that ends it: factor for deviations of x' - y'.
     double slip = 1;
 };
-Leg leg_of(const Flow& flow, double duration, bool sticking);
+Leg leg_of(const Flow& flow, double duration, bool sticking, bool resting = false);
 Leg leg_of(const Stretch& stretch);
 
 /// Transports deviations over one part: J of eq. (19), or for a sticking leg the projection onto

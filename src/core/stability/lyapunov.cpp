@@ -134,12 +134,12 @@ struct TransferProduct::Qr {
             log_det += leg.log_det;
             if (leg.parts > 1 || leg.sticking) rescale();
         }
-        if (leg.slip != 1) strike(slip_of(leg, epsilon));
+        if (leg.slip != 1) strike_magnified(slip_of(leg, epsilon), 0);
     }
 
     void strike(const Saltation& M) {
         const double steepness = steepness_of(M);
-        if (std::min(std::abs(M.R), std::abs(M.R_speed)) < 1e-3 || steepness > steep)
+        if (std::min(M.R, std::abs(M.R_speed)) < 1e-3 || steepness > steep)
             return strike_magnified(M, steepness);
         // Within these limits an impact and a flight of one part let no size grow by more than 1e17
         // (for a flight of duration 1e10) or shrink by more than 1e10.

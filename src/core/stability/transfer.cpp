@@ -11,15 +11,15 @@ namespace vines {
 void LegSequence::extend(const Stretch& stretch) {
     const bool sticking = stretch.sticking_side != 0;
     const bool continues = !legs_.empty() && legs_.back().sticking == sticking &&
-                           legs_.back().resting == stretch.rests_inside && legs_.back().slip == 1;
+                           legs_.back().resting == stretch.rests_inside() && legs_.back().slip == 1;
     if (!continues) {
         legs_.push_back(leg_of(stretch));
         return;
     }
     Leg& leg = legs_.back();
     leg = leg_of(
-        stretch.flow, stretch.duration + leg.duration * static_cast<double>(leg.parts), sticking);
-    leg.resting = stretch.rests_inside;
+        stretch.flow, stretch.duration + leg.duration * static_cast<double>(leg.parts), sticking,
+        stretch.rests_inside());
 }
 
 void LegSequence::slip(const Slip& slip) {

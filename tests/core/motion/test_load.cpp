@@ -38,8 +38,9 @@ TEST_CASE("the base of a recorded acceleration is its double integral") {
     CHECK(load.base(1, 1).at(2) == doctest::Approx(2. / 3 + 3 + 4 - 8. / 3));
     CHECK(load.base(2, 5).at(0) == doctest::Approx(load.base(1, 1).at(2) + 2 * 1.5));
     CHECK(load.base(1, 2).at(0.5) == doctest::Approx(load.base(1, 1).at(1.5)));
-    CHECK(load.force(0, 0, 0.3).at(0.5) ==
-          doctest::Approx(load.base(0, 0).at(0.5) + 0.3 * load.base(0, 0).rate(0.5)));
+    CHECK(
+        load.force(0, 0, 0.3).at(0.5) ==
+        doctest::Approx(load.base(0, 0).at(0.5) + 0.3 * load.base(0, 0).rate(0.5)));
 }
 
 TEST_CASE("a motion under a recorded load satisfies the equation of motion between its events") {
@@ -56,8 +57,7 @@ TEST_CASE("a motion under a recorded load satisfies the equation of motion betwe
                 const State x = s.at(at);
                 const double mass = s.is_joint() ? 1 + p.epsilon : 1;
                 largest = std::max(
-                    largest,
-                    std::abs(mass * s.x_ddot(at) + 2 * p.zeta() * x.x_dot + x.x - force));
+                    largest, std::abs(mass * s.x_ddot(at) + 2 * p.zeta() * x.x_dot + x.x - force));
                 if (last_tau == s.tau && !hit)
                     jump = std::max(
                         jump, (vector_of(s.at(0)) - vector_of(last)).cwiseAbs().maxCoeff());
@@ -118,7 +118,9 @@ TEST_CASE("the energy and the deviations of a loaded motion balance") {
         CHECK(balance.friction > 0);
         struct Product : Observer {
             explicit Product(const Parameters& of) : p(of) {}
-            void on_stretch(const Stretch& s) override { m = transfer_of(leg_of(s), p.epsilon) * m; }
+            void on_stretch(const Stretch& s) override {
+                m = transfer_of(leg_of(s), p.epsilon) * m;
+            }
             void on_impact(const Impact& i) override { m = saltation(p, i).matrix() * m; }
             void on_slip(const Slip& s) override { m = saltation(p, s).matrix() * m; }
             const Parameters& p;
