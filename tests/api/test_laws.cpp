@@ -49,8 +49,8 @@ TEST_CASE("a table of R applies to both walls or to one, at speeds in m/s or per
         const double x = impacts["x_dot_before"][i], y = impacts["y_dot_before"][i],
                      w = std::abs(x - y) * omega0;
         const double R = impacts["side"][i] == 1 ? 0.9 - 0.8 * std::min(w, 1.0) : 0.6;
-        const double after = impacts["y_dot_after"][i].get<double>() -
-                             impacts["x_dot_after"][i].get<double>();
+        const double after =
+            impacts["y_dot_after"][i].get<double>() - impacts["x_dot_after"][i].get<double>();
         CHECK(std::abs(after) * omega0 == doctest::Approx(R * w).epsilon(1e-9));
     }
     CHECK(warns(
@@ -68,12 +68,12 @@ TEST_CASE("invalid laws are named at their pointers") {
     CHECK(at(R"("restitution":{"speed":[1,0],"R":[0.5,0.4]})") == Pointers{"/restitution/speed/1"});
     CHECK(at(R"("restitution":{"speed":[0,1],"R":[0.5,1.4]})") == Pointers{"/restitution/R/1"});
     CHECK(at(R"("restitution":{"speed":[0,1],"R":[0.5]})") == Pointers{"/restitution/R"});
-    CHECK(at(R"("R":0.4,"restitution":{"speed":[0],"R":[0.5]})") ==
-          Pointers{"/R", "/restitution"});
+    CHECK(at(R"("R":0.4,"restitution":{"speed":[0],"R":[0.5]})") == Pointers{"/R", "/restitution"});
     CHECK(at(R"("gravity":1e-4,"perturbation":{"y":1e-9})") == Pointers{"/perturbation"});
     CHECK(pointers(refused(R"({"mu":0.1})")) == Pointers{"/mu"});
-    CHECK(pointers(refused(R"({"restitution":{"speed_m_s":[0],"R":[0.5]}})")) ==
-          Pointers{"/restitution/speed_m_s"});
+    CHECK(
+        pointers(refused(R"({"restitution":{"speed_m_s":[0],"R":[0.5]}})")) ==
+        Pointers{"/restitution/speed_m_s"});
 }
 
 TEST_CASE("a recorded load replaces F and f and sets the length of the run") {
@@ -105,8 +105,10 @@ TEST_CASE("an invalid load is named at its pointer") {
     CHECK(at(R"({"time_s":[0,1],"force_N":[0,1,2]})") == Pointers{"/forcing/force_N"});
     CHECK(at(R"({"time_s":[0],"force_N":[0]})") == Pointers{"/forcing/time_s"});
     CHECK(at(R"({"time_s":[0,"a"],"force_N":[0,1]})") == Pointers{"/forcing/time_s/1"});
-    CHECK(pointers(refused(forced(R"("forcing":{"time_s":[0,1],"force_N":[0,1]})"))) ==
-          Pointers{"/F", "/f", "/forcing"});
-    CHECK(pointers(refused(R"({"forcing":{"time_s":[0,1],"force_N":[0,1]}})")) ==
-          Pointers{"/forcing"});
+    CHECK(
+        pointers(refused(forced(R"("forcing":{"time_s":[0,1],"force_N":[0,1]})"))) ==
+        Pointers{"/F", "/f", "/forcing"});
+    CHECK(
+        pointers(refused(R"({"forcing":{"time_s":[0,1],"force_N":[0,1]}})")) ==
+        Pointers{"/forcing"});
 }

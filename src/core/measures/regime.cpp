@@ -18,8 +18,7 @@ constexpr double near_return = 0.1, near_return_if_chaotic = 1e-3;
 // periods add up to at most this many cycles.
 constexpr int most_attempts = 8;
 constexpr std::size_t most_attempted_cycles = 1024;
-// z of an irregular response is a mean over a finite run.
-constexpr double irregular_margin = 0.02;
+constexpr double irregular_margin = 0.02;  // z of an irregular response is a mean over a run
 // Continuations, in cycles, of a run that is near a return but not on an orbit.
 constexpr int follow_rounds[] = {150, 300, 600, 1200};
 // Whole cycles are run slightly longer, so that rounding does not cut off the last one.
@@ -36,8 +35,7 @@ constexpr double most_growth_of_rounding = 25;
 constexpr std::size_t transient_history = 4096;  // entries searched for a chaotic transient
 // A chaotic run is continued in rounds of this many cycles.
 constexpr long cycles_of_round = 1024;
-// More impacts per cycle than any motion has except endless chatter (R = 1).
-constexpr long most_impacts_per_cycle = 1000;
+constexpr long most_impacts_per_cycle = 1000;  // exceeded by endless chatter (R = 1) alone
 // Longest time, in cycles, in which the next contact of a flying ball is searched.
 constexpr double longest_flight = 10000;
 
