@@ -1,5 +1,6 @@
 #include "core/continuation/curve.hpp"
 
+#include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
 

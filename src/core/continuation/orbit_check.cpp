@@ -22,9 +22,15 @@ constexpr double shallow = 1e-15;
 /// The first contact of a flight within `limit`.
 std::optional<Contact> first_contact(
     const Flow& flow, const OrbitFlight& f, double b, double limit) {
-    // Without relative speed the wall recedes: two derivatives vanish.
-    FlightStart start{f.oscillation(), f.x - f.side * b, f.x_dot - f.relative_speed,
-                      f.side,          f.relative_speed, f.relative_speed == 0 ? 2 : 1};
+    // Without relative speed, up to rounding at a grazing contact, two derivatives vanish.
+    const bool leaves = f.side * f.relative_speed < 0;
+    FlightStart start{
+        f.oscillation(),
+        f.x - f.side * b,
+        f.x_dot - f.relative_speed,
+        f.side,
+        leaves ? f.relative_speed : 0,
+        leaves ? 1 : 2};
     std::vector<GrazingPoint> grazing;
     for (double passed = 0; passed < limit; passed += flow.reach()) {
         auto contact =
@@ -114,7 +120,8 @@ OrbitCheck check_orbit(
     const double period = equations.sequence().cycles() * p.cycle();
     double tau = std::fmod((z(0) - p.phi()) / p.Omega, p.cycle());
     if (tau < 0) tau += p.cycle();
-    Energy energy(p, tau, tau + period);
+    // The last impact belongs to the period, however tau is rounded.
+    Energy energy(p, tau, tau + period + same_contact);
     replay(equations, p, flights, tau, energy);
     const EnergyBalance balance = energy.balance({tau, tau + period});
     check.measures = {

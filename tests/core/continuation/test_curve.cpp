@@ -59,7 +59,7 @@ TEST_CASE("a curve of special points passes through those of other branches") {
           Case{SpecialKind::symmetry_breaking, 0.01, 0.005, 0.012},
           Case{SpecialKind::flip, 0.0065, 0.0045, 0.007},
           Case{SpecialKind::grazing, 0.0065, 0.0045, 0.007}}) {
-        CAPTURE(name_of(kind));
+        CAPTURE(std::string(name_of(kind)));
         const Collected branch = branch_along_b(b, 0.6, from, to);
         const SpecialPoint* const begin = branch.first(kind);
         REQUIRE(begin);
