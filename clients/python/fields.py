@@ -30,6 +30,7 @@ from typing import Literal, TypedDict
 KEYWORDS = [
     ("SimulateFields", "SimulateRequest", "Fields of a simulation."),
     ("SweepFields", "SweepRequest", "Fields of a sweep."),
+    ("ContinueFields", "ContinueRequest", "Fields of a continuation."),
     ("IdentifyFields", "IdentifyRequest", "Fields of an identification."),
 ]
 OBJECTS = ["SweepBase", "Axis", "Start"]
@@ -104,7 +105,7 @@ def typed(key: str, schema: dict[str, Any]) -> str:
         return f"Literal[{', '.join(json.dumps(word) for word in schema['enum'])}]"
     if schema["type"] == "array":
         return f"Iterable[{typed(key, schema['items'])}]"
-    return {"number": "float", "integer": "int", "string": "str"}[schema["type"]]
+    return {"number": "float", "integer": "int", "string": "str", "boolean": "bool"}[schema["type"]]
 
 
 def documented(key: str, schema: dict[str, Any]) -> str:

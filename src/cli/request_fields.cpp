@@ -79,22 +79,21 @@ Json axis_of(const std::string& text) {
     return axis;
 }
 
-/// Returns whether a name, even a mistyped one, belongs to the sweep rather than to its base.
-bool belongs_to_sweep(const std::string& name) {
+/// Returns whether a name, even a mistyped one, belongs to the table rather than to its base.
+bool belongs_to(const FieldTable& table, const std::string& name) {
     const std::string outer = name.substr(0, name.find('.'));
-    if (api::find(api::sweep_fields(), outer)) return true;
-    return !api::find(api::sweep_base_fields(), name) &&
-           !api::nearest_name(api::sweep_fields(), name).empty();
+    if (api::find(table, outer)) return true;
+    return !api::find(api::sweep_base_fields(), name) && !api::nearest_name(table, name).empty();
 }
 
 [[noreturn]] void refuse_both(const std::string& name, const std::string& other) {
     throw api::Problem(400, name + " and " + api::shortened(other) + " exclude each other");
 }
 
-Json given_sweep(const RequestFields& given) {
+Json given_over_base(const RequestFields& given, const FieldTable& table) {
     api::Query own, base;
-    for (auto& pair : pairs_of(given)) (belongs_to_sweep(pair.first) ? own : base).push_back(pair);
-    Json object = fields_of_pairs(own, api::sweep_fields());
+    for (auto& pair : pairs_of(given)) (belongs_to(table, pair.first) ? own : base).push_back(pair);
+    Json object = fields_of_pairs(own, table);
     if (object.contains("base") && !base.empty()) refuse_both("base", base[0].first);
     if (object.contains("axes") && !given.axes.empty()) refuse_both("axes", "--axis");
     if (!base.empty()) object["base"] = fields_of_pairs(base, api::sweep_base_fields());
@@ -165,8 +164,8 @@ Json read_request(const Files& files, const RequestFields& given, const FieldTab
     return with_file(files, given, given_fields(given, table));
 }
 
-Json read_sweep(const Files& files, const RequestFields& given) {
-    return with_file(files, given, given_sweep(given));
+Json read_over_base(const Files& files, const RequestFields& given, const FieldTable& table) {
+    return with_file(files, given, given_over_base(given, table));
 }
 
 }  // namespace vines::cli

@@ -41,7 +41,9 @@ api::Json read_request(
 /// has one.
 void add_format_of(const std::string& output, api::Json& request);
 
-/// The same as read_request() for a sweep: fields that are not a sweep's own are set in its base.
-api::Json read_sweep(const Files& files, const RequestFields& fields);
+/// The same as read_request() for a request with a base, such as a sweep: fields that are not in
+/// its own table are set in the base.
+api::Json read_over_base(
+    const Files& files, const RequestFields& fields, const api::FieldTable& table);
 
 }  // namespace vines::cli

@@ -385,7 +385,7 @@ int sweep_drawn(const SweepRun& run, const SweepOptions& o) {
 }
 
 int sweep(const SweepOptions& o) {
-    const api::Json given = read_sweep(o.files, o.fields);
+    const api::Json given = read_over_base(o.files, o.fields, api::sweep_fields());
     api::SweepRequest request = read_request(o, given);
     const api::Format format = api::sweep_format(given).value_or(api::Format::json);
     check(o, format, request);

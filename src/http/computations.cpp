@@ -291,4 +291,17 @@ Response sweep(const Request& r, const Service& service, Stopwatch& watch) {
     return response;
 }
 
+Response continuation(const Request& r, const Service& service, Stopwatch& watch) {
+    const RouteOptions& options = service.options;
+    const auto body_permit = body_permit_for(r, service.admission, options.deadline);
+    Permit permit = permit_for(r, service.admission, watch);  // for reading the request
+    const api::Stop stop = stop_conditions(options.deadline, r, service.admission, permit);
+    api::ContinueRequest request = read_in_time(r, service, permit, [&] {
+        return api::read_continue_request(body_of(r, reading_of(r, options, stop)));
+    });
+    watch.lap("parse", permit.waited());
+    return stream_continuation(
+        std::move(request), options.sweep_deadline, r, service.admission, service.metrics);
+}
+
 }  // namespace vines::http

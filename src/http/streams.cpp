@@ -13,6 +13,7 @@
 #include <thread>
 #include <utility>
 
+#include "api/json_text.hpp"
 #include "http/log.hpp"
 #include "http/memory.hpp"
 #include "http/message.hpp"
@@ -224,65 +225,74 @@ private:
     std::stop_source stop_;
 };
 
-/// The last lines of a sweep, for a client that is still connected.
-std::string last_lines(SweepEnd end, std::size_t done, const std::string& warning) {
-    if (end == SweepEnd::complete)
-        return (warning.empty() ? "" : api::warning_line(warning)) + api::done_line(done);
+/// A computation whose lines are sent while it runs.
+struct LineWork {
+    using Push = std::function<void(const std::string& text)>;
+
+    const char* path;  ///< for the log
+    std::string begin;
+    /// Passes on each line with its end, or a part of a table. False if it was stopped.
+    std::function<bool(api::RunControl& control, const Push& push)> compute;
+    /// Line of progress after `done` lines; empty function for a table.
+    std::function<std::string(std::size_t done, const api::RunControl& control, double seconds)>
+        progress;
+    std::function<std::string(std::size_t done)> complete;  ///< last lines
+    const char* how_to_go_on = "";  ///< after an early end; null: the stream ends without a line
+};
+
+/// The last line of an incomplete stream, for a client that is still connected.
+std::string line_of_end(const LineWork& work, SweepEnd end, std::size_t done) {
+    if (!work.how_to_go_on) return "";
     const bool late = end == SweepEnd::deadline;
     return api::error_line(
         503,
         fmt::format(
-            "the {}; request the missing indices again",
-            late ? "time limit of one sweep is reached" : "server is stopping"),
+            "the {}; {}", late ? "time limit of one sweep is reached" : "server is stopping",
+            work.how_to_go_on),
         done);
 }
 
-class SweepStream {
+class LineStream {
 public:
-    /// `table` formats the points; null: lines of JSON.
-    SweepStream(
-        const api::SweepRequest& request, api::SweepTable* table, double deadline,
-        const StreamOf& of, AdmissionControl& admission, Writer& out)
-        : request_(request),
-          table_(table),
-          admission_(admission),
+    LineStream(
+        const LineWork& work, double deadline, const StreamOf& of, AdmissionControl& admission,
+        Writer& out)
+        : work_(work),
           out_(out),
           id_(of.id),
           control_(admission, of.client, lines_, deadline) {}
 
     SweepEnd run() {
-        if (!out_.write(table_ ? table_->begin() : api::start_line(request_)))
-            return SweepEnd::client_left;
+        if (!out_.write(work_.begin)) return SweepEnd::client_left;
         try {
-            const std::size_t done = points();
-            const SweepEnd end = done == of_          ? SweepEnd::complete
+            const std::size_t done = lines();
+            const SweepEnd end = is_complete_         ? SweepEnd::complete
                                  : control_.is_late() ? SweepEnd::deadline
                                                       : SweepEnd::stopping;
-            const bool sent = connected_ && out_.write(last_text(end, done));
+            const bool sent =
+                connected_ &&
+                out_.write(is_complete_ ? work_.complete(done) : line_of_end(work_, end, done));
             return sent ? end : SweepEnd::client_left;
         } catch (...) {
-            log_failure("/v1/sweep", id_, std::current_exception());
+            log_failure(work_.path, id_, std::current_exception());
             const std::string line = api::error_line(
                 500, "the server failed; the reason is in its log", lines_.take({}).count);
-            return connected_ && (table_ || out_.write(line)) ? SweepEnd::failed
-                                                              : SweepEnd::client_left;
+            return connected_ && (!work_.how_to_go_on || out_.write(line)) ? SweepEnd::failed
+                                                                           : SweepEnd::client_left;
         }
     }
     std::size_t runs() const { return control_.runs; }
     std::size_t impacts() const { return control_.impacts; }
 
 private:
-    /// Computes the points on other threads while this one sends them, and rethrows their
-    /// exceptions. Returns the number of lines sent.
-    std::size_t points() {
+    /// Computes the lines on another thread while this one sends them, and rethrows its exceptions.
+    /// Returns the number of lines sent.
+    std::size_t lines() {
         std::exception_ptr failure;
         std::thread computing([&] {
             try {
-                warning_ = api::run_sweep(
-                    request_, admission_.threads(), control_,
-                    [this](std::size_t index, const std::string& line) {
-                        lines_.push(table_ ? table_->add(index, line) : line + '\n');
-                    });
+                is_complete_ =
+                    work_.compute(control_, [this](const std::string& text) { lines_.push(text); });
             } catch (...) {
                 failure = std::current_exception();
             }
@@ -301,16 +311,17 @@ private:
         return done;
     }
 
-    /// Sends lines as they come, and progress between them; returns their number. Stops the sweep
-    /// once the client has left.
+    /// Sends lines as they come, and progress between them; returns their number. Stops the
+    /// computation once the client has left.
     std::size_t write_lines() {
         auto reported = started_;
         LineQueue::Taken taken;
         do {
             taken = lines_.take(client_check_interval);
             const auto now = Clock::now();
-            if (!table_ && (now - reported >= report_interval || taken.finished)) {
-                taken.text += progress(taken.count, now);
+            if (work_.progress && (now - reported >= report_interval || taken.finished)) {
+                const std::chrono::duration<double> seconds = now - started_;
+                taken.text += work_.progress(taken.count, control_, seconds.count());
                 reported = now;
             }
             connected_ =
@@ -320,33 +331,48 @@ private:
         return taken.count;
     }
 
-    std::string last_text(SweepEnd end, std::size_t done) {
-        if (!table_) return last_lines(end, done, warning_);
-        return end == SweepEnd::complete ? table_->end(warning_) : "";
-    }
-
-    std::string progress(std::size_t done, Clock::time_point now) {
-        const std::chrono::duration<double> seconds = now - started_;
-        return api::progress_line(
-            {.done = done,
-             .of = of_,
-             .runs = control_.runs,
-             .runs_of = request_.plan.runs(),
-             .seconds = seconds.count()});
-    }
-
-    const api::SweepRequest& request_;
-    api::SweepTable* const table_;
-    const std::size_t of_ = request_.plan.lines.size();
+    const LineWork& work_;
     const Clock::time_point started_ = Clock::now();
-    AdmissionControl& admission_;
     Writer& out_;
     LineQueue lines_;
     const std::string id_;
     SweepControl control_;
-    bool connected_ = true;
-    std::string warning_ = {};
+    bool connected_ = true, is_complete_ = false;
 };
+
+/// Computes a sweep's lines, or the rows of `table` unless it is null.
+LineWork work_of(const api::SweepRequest& request, api::SweepTable* table, int threads) {
+    const auto warning = std::make_shared<std::string>();
+    LineWork work{
+        "/v1/sweep",
+        table ? table->begin() : api::start_line(request),
+        [&request, table, threads, warning](api::RunControl& control, const LineWork::Push& push) {
+            std::size_t lines = 0;
+            *warning = api::run_sweep(
+                request, threads, control, [&](std::size_t index, const std::string& line) {
+                    push(table ? table->add(index, line) : line + '\n');
+                    ++lines;
+                });
+            return lines == request.plan.lines.size();
+        },
+        {},
+        [table, warning](std::size_t done) {
+            if (table) return table->end(*warning);
+            return (warning->empty() ? "" : api::warning_line(*warning)) + api::done_line(done);
+        },
+        table ? nullptr : "request the missing indices again"};
+    if (!table)
+        work.progress = [&request](
+                            std::size_t done, const api::RunControl& control, double seconds) {
+            return api::progress_line(
+                {.done = done,
+                 .of = request.plan.lines.size(),
+                 .runs = control.runs,
+                 .runs_of = request.plan.runs(),
+                 .seconds = seconds});
+        };
+    return work;
+}
 
 Response sweep_refusal(const AdmissionControl& admission) {
     if (admission.sweeps_stopped()) return stopping_refusal();
@@ -379,13 +405,46 @@ Response stream_sweep(
         .stream =
             [shared, table, deadline, of = StreamOf(asked), &admission, &metrics,
              sweep_slot](Writer& out) {
-                SweepStream sending(*shared, table.get(), deadline, of, admission, out);
+                const LineWork work = work_of(*shared, table.get(), admission.threads());
+                LineStream sending(work, deadline, of, admission, out);
                 const SweepEnd end = sending.run();
                 metrics.count_sweep(end, sending.runs(), sending.impacts());
                 return table ? end == SweepEnd::complete : end != SweepEnd::client_left;
             },
         .held = table ? 2 * table->bytes() : 0,
         .silent = table != nullptr && form.format != api::Format::csv};
+}
+
+Response stream_continuation(
+    api::ContinueRequest request, double deadline, const Request& asked,
+    AdmissionControl& admission, Metrics& metrics) {
+    const auto shared = std::make_shared<const api::ContinueRequest>(std::move(request));
+    const AdmissionControl::SweepSlot sweep_slot = admission.acquire_sweep(asked.client);
+    if (!sweep_slot) return sweep_refusal(admission);
+    return {
+        .content_type = api::sweep_format_names[0].media_type,
+        .headers = {{"Cache-Control", "no-store"}, {"X-Accel-Buffering", "no"}},
+        .stream = [shared, deadline, of = StreamOf(asked), &admission, &metrics,
+                   sweep_slot](Writer& out) {
+            api::ContinuationCount count;
+            const LineWork work{
+                "/v1/continue",
+                api::json_text(api::continuation_start(*shared)) + '\n',
+                [&](api::RunControl& control, const LineWork::Push& push) {
+                    return api::run_continuation(
+                        *shared, control, count,
+                        [&](const std::string& line) { push(line + '\n'); });
+                },
+                [&](std::size_t, const api::RunControl&, double seconds) {
+                    return api::continuation_progress(count, seconds);
+                },
+                [&](std::size_t) { return api::continuation_done(count); },
+                "continue from the state of a last point, with orbit \"stated\""};
+            LineStream sending(work, deadline, of, admission, out);
+            const SweepEnd end = sending.run();
+            metrics.count_sweep(end, sending.runs(), sending.impacts());
+            return end != SweepEnd::client_left;
+        }};
 }
 
 }  // namespace vines::http

@@ -4,6 +4,7 @@
 
 #include <string>
 
+#include "api/continuation.hpp"
 #include "api/format/sweep_table.hpp"
 #include "api/simulate.hpp"
 #include "api/sweep.hpp"
@@ -28,6 +29,12 @@ struct SweepForm {
 /// and `metrics` must outlive the response.
 Response stream_sweep(
     api::SweepRequest request, SweepForm form, double deadline, const Request& asked,
+    AdmissionControl& admission, Metrics& metrics);
+
+/// The branches of a continuation as a stream of NDJSON lines, which counts as a sweep: the same
+/// slots, deadline and refusals.
+Response stream_continuation(
+    api::ContinueRequest request, double deadline, const Request& asked,
     AdmissionControl& admission, Metrics& metrics);
 
 }  // namespace vines::http

@@ -183,6 +183,30 @@ class Sweeps(WithBothClients):
         self.assertEqual(len(sweep.missing), 4000 - sweep.done)
 
 
+class Continuations(WithBothClients):
+    FIELDS = {
+        "base": {"b": 0.015, "damping": "closed_form"},
+        "parameter": "b",
+        "from_": 0.005,
+        "to": 0.02,
+    }
+
+    def test_a_continuation_has_branches_points_and_special_points(self):
+        for client in self.each():
+            lines = list(client.continue_(**self.FIELDS, switch=1))
+            types = [line.type for line in lines]
+            self.assertEqual(types[0], "branch")
+            self.assertGreater(types.count("point"), 50)
+            kinds = {line.kind: line.b for line in lines if line.type == "special"}
+            self.assertAlmostEqual(kinds["symmetry_breaking"], 7.046736303e-3, delta=1e-12)
+
+    def test_an_invalid_continuation_raises_at_once(self):
+        for client in self.each():
+            with self.assertRaises(vines.Problem) as caught:
+                client.continue_(**{**self.FIELDS, "parameter": "q"})
+            self.assertEqual(caught.exception.errors[0].field, "parameter")
+
+
 class Identifications(WithBothClients):
     def test_a_file_and_its_columns_give_the_same_identification(self):
         with open(RECORD, newline="") as file:

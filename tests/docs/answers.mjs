@@ -65,6 +65,23 @@ export const sweeps = [
   {axes: [{parameter: "y0", values: [0, 0.05, 0]}], cycles: 20},
 ];
 
+export const continuations = [
+  {base: {b: 0.0065, damping: "closed_form"}, parameter: "b", from: 0.0045, to: 0.008, switch: 1},
+  {base: {damping: "closed_form", b: 0.015}, parameter: "b", from: 0.014, to: 0.018},
+  {base: {...platform, b: 0.02}, parameter: "f", from: 13.9, to: 14.1, points: 5},
+  {base: {b: 0.05, G: 0.001}, parameter: "R", from: 0.4, to: 0.8},
+  {
+    base: {damping: "closed_form", b: 0.015},
+    parameter: "b",
+    from: 0.014,
+    to: 0.018,
+    curve: "fold",
+    second: "R",
+    second_from: 0.59,
+    second_to: 0.61,
+  },
+];
+
 const isObject = (value) => value !== null && typeof value === "object" && !Array.isArray(value);
 
 /** Adds the paths of a value's leaves; `opaque` paths are leaves whatever they hold. */
@@ -145,6 +162,28 @@ async function noteSweep(keys, url, request) {
     );
 }
 
+async function noteContinuation(keys, url, request) {
+  const response = await fetch(`${url}/v1/continue`, {
+    method: "POST",
+    body: JSON.stringify(request),
+  });
+  const text = await response.text();
+  assert.equal(response.status, 200, text);
+  for (const line of text
+    .trim()
+    .split("\n")
+    .map((one) => JSON.parse(one))) {
+    delete line[request.parameter];
+    delete line[request.second];
+    if (line.type === "start") {
+      keys.note("parameters", line.parameters, ["origin"]);
+      keys.note("continue.start", line, ["parameters", "request"]);
+    } else if (line.type === "branch") keys.note("continue.branch", line);
+    else if (["point", "special"].includes(line.type)) keys.note("continue.point", line);
+    else keys.note("continue.end", line);
+  }
+}
+
 /** The progress of a long sweep, and the last line of its stream when the service is told to stop. */
 async function noteBrokenSweep(keys) {
   const service = await startService(["--sweeps", "1"]);
@@ -218,6 +257,7 @@ export async function answeredKeys(url) {
   for (const request of [{b: 0.015}, platform])
     noteManifold(keys, await json(url, "/v1/manifold", JSON.stringify(request)));
   for (const request of sweeps) await noteSweep(keys, url, request);
+  for (const request of continuations) await noteContinuation(keys, url, request);
   await noteBrokenSweep(keys);
   const csv = await measured(url, "fig20", 6);
   const identify = "/v1/identify?preset=fig20&b=0.015";

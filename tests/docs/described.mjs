@@ -11,6 +11,7 @@ const listsOfFields = [
   "manifold_fields",
   "sweep_fields",
   "axis_fields",
+  "continue_fields",
   "identify_fields",
   "form_fields",
 ];
@@ -43,6 +44,10 @@ const parts = {
   "sweep.reduced": {of: ["SweepReduction"], swept: []},
   "sweep.progress": {of: ["SweepProgress"]},
   "sweep.end": {of: ["SweepWarning", "SweepDone", "SweepError"]},
+  "continue.start": {of: ["ContinueStart"], opaque: ["parameters", "request"]},
+  "continue.branch": {of: ["ContinueBranch"]},
+  "continue.point": {of: ["ContinuePoint", "ContinueSpecial"], swept: []},
+  "continue.end": {of: ["ContinueProgress", "ContinueDone"]},
   provenance: {of: ["Provenance"], opaque: ["request"]},
   identify: {of: ["Identification"], top: true},
   "identify.signal": {of: ["Signal"]},

@@ -171,6 +171,17 @@ const sweeps = [
     axes: [{parameter: "b", from: 0.003, to: 0.04, count: 13}],
     cycles: 200,
   }),
+  {
+    name: "continue b",
+    path: "/v1/continue",
+    body: {
+      base: {b: 0.015, damping: "closed_form"},
+      parameter: "b",
+      from: 0.0045,
+      to: 0.02,
+      switch: 1,
+    },
+  },
   sweep("impact section", {
     axes: [{parameter: "b", values: [0.008, 0.015, 0.022]}],
     cycles: 100,

@@ -5,7 +5,7 @@ import {tmpdir} from "node:os";
 import {join} from "node:path";
 import {after, before, test} from "node:test";
 import {fileURLToPath, pathToFileURL} from "node:url";
-import {everything, simulations, sweeps, withForce} from "../docs/answers.mjs";
+import {continuations, everything, simulations, sweeps, withForce} from "../docs/answers.mjs";
 import {identifications, requests} from "../golden/requests.mjs";
 import {connect, exchange, until} from "../http/raw.mjs";
 import {measured} from "../record.mjs";
@@ -125,6 +125,7 @@ test("responses to many requests match the document", async () => {
   }
   for (const body of simulations) await checked("/v1/simulate", {body});
   for (const body of sweeps) await checked("/v1/sweep", {body});
+  for (const body of continuations) await checked("/v1/continue", {body});
 });
 
 test("every preset with all parts included matches the document", async () => {

@@ -8,15 +8,19 @@
     for point in vines.sweep(axes=[{"parameter": "b", "from": 0.01, "to": 0.05, "count": 9}]):
         print(point.b, point.regime, point.x_rms)
 
+    for line in vines.continue_(base={"b": 0.015}, parameter="b", from_=0.005, to=0.03):
+        if line.type == "special":
+            print(line.kind, line.b)
+
     found = vines.identify("record.csv", preset="fig20", b=0.015)
     print(found.restitution.plus.R, found.verdict)
 
 The functions send requests to the service at the address in VINES_URL, with the key in VINES_KEY if
 set. Without VINES_URL they run the program in VINES_PROGRAM, or `vines` on the PATH. `Service` and
-`Program` have the same three functions.
+`Program` have the same functions.
 
-`help(vines.SimulateFields)`, `SweepFields` and `IdentifyFields` list the fields with unit, range
-and default; `help(vines.Answer)` describes answers.
+`help(vines.SimulateFields)`, `SweepFields`, `ContinueFields` and `IdentifyFields` list the fields
+with unit, range and default; `help(vines.Answer)` describes answers.
 """
 
 from __future__ import annotations
@@ -26,8 +30,10 @@ from typing import TYPE_CHECKING, Unpack
 
 from ._answer import Answer
 from ._client import Client, Columns
+from ._continuation import Continuation
 from ._fields import (
     Axis,
+    ContinueFields,
     IdentifyFields,
     Perturbation,
     RecordedForcing,
@@ -49,6 +55,8 @@ __all__ = [
     "Answer",
     "Axis",
     "Client",
+    "Continuation",
+    "ContinueFields",
     "FieldError",
     "IdentifyFields",
     "Incomplete",
@@ -65,6 +73,7 @@ __all__ = [
     "SweepBase",
     "SweepFields",
     "client",
+    "continue_",
     "identify",
     "simulate",
     "sweep",
@@ -88,6 +97,11 @@ def simulate(**fields: Unpack[SimulateFields]) -> Answer:
 def sweep(**fields: Unpack[SweepFields]) -> Sweep:
     """`Client.sweep` of the client chosen by the environment."""
     return client().sweep(**fields)
+
+
+def continue_(**fields: Unpack[ContinueFields]) -> Continuation:
+    """`Client.continue_` of the client chosen by the environment."""
+    return client().continue_(**fields)
 
 
 def identify(

@@ -1,4 +1,4 @@
-"""The three requests, independent of how they are sent."""
+"""The four requests, independent of how they are sent."""
 
 from __future__ import annotations
 
@@ -12,7 +12,8 @@ from collections.abc import Iterable, Mapping
 from typing import TYPE_CHECKING, Any, Unpack
 
 from ._answer import Answer, answer_of, body_of, plain
-from ._fields import IdentifyFields, SimulateFields, SweepFields
+from ._continuation import Continuation
+from ._fields import ContinueFields, IdentifyFields, SimulateFields, SweepFields
 from ._problem import PartialAnswer
 from ._sweep import Lines, Sweep
 
@@ -46,7 +47,13 @@ class Client(ABC):
         indices = given.get("indices")
         if indices is not None:
             given["indices"] = indices = [int(i) for i in indices]
-        return Sweep(self._sweep(body_of(given)), indices)
+        return Sweep(self._lines("sweep", body_of(given)), indices)
+
+    def continue_(self, **fields: Unpack[ContinueFields]) -> Continuation:
+        """Follows periodic orbits along a parameter; returns an iterator of branches, points and
+        special points. `ContinueFields` lists the fields. Raises `Problem` at once for an invalid
+        request, and `Incomplete` after the last received line if the computation ends early."""
+        return Continuation(self._lines("continue", body_of(_named(fields))))
 
     def identify(
         self,
@@ -85,7 +92,7 @@ class Client(ABC):
     def _identify_file(self, record: bytes, query: str) -> bytes: ...
 
     @abstractmethod
-    def _sweep(self, body: bytes) -> Lines: ...
+    def _lines(self, verb: str, body: bytes) -> Lines: ...
 
 
 def _named(fields: Mapping[str, Any]) -> dict[str, Any]:

@@ -19,7 +19,7 @@ from ._sweep import Lines
 _COMPLETE = 0
 _USABLE = 3
 
-# The last line of a sweep. It is skipped: the exit code and stderr give the result.
+# The last line of a stream. It is skipped: the exit code and stderr give the result.
 _DONE = b'{"type":"done"'
 
 # Time limit in s for the program to end after SIGTERM.
@@ -55,8 +55,9 @@ class Program(Client):
             return ended.stdout
         raise _problem(ended.returncode, ended.stderr)
 
-    def _sweep(self, body: bytes) -> Lines:
-        command = [self._found(), "sweep", "--threads", str(self._threads)]
+    def _lines(self, verb: str, body: bytes) -> Lines:
+        threads = ["--threads", str(self._threads)] if verb == "sweep" else []
+        command = [self._found(), verb, *threads]
         with tempfile.TemporaryFile() as given, tempfile.TemporaryFile() as said:
             given.write(body)
             given.seek(0)

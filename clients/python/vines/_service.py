@@ -43,8 +43,8 @@ class Service(Client):
     def _identify_file(self, record: bytes, query: str) -> bytes:
         return self._answer(f"/v1/identify?{query}", record, "text/csv")
 
-    def _sweep(self, body: bytes) -> Lines:
-        with self._post("/v1/sweep", body) as response:
+    def _lines(self, verb: str, body: bytes) -> Lines:
+        with self._post(f"/v1/{verb}", body) as response:
             try:
                 for line in response:
                     yield json.loads(line)

@@ -2,6 +2,7 @@
 #include <string_view>
 #include <utility>
 
+#include "api/continuation.hpp"
 #include "api/format/answer_request.hpp"
 #include "api/openapi/parts.hpp"
 #include "api/sweep.hpp"
@@ -42,6 +43,11 @@ constexpr Example requests[] = {
                 "F": 0.0004, "R": 0.4, "b": 0.03}, "starts": "default set",
                 "reduce": "max over f", "cycles": 200,
                 "axes": [{"parameter": "f", "from": 13, "to": 15, "count": 9}]}}})"},
+    {"continue", R"({
+        "clearances": {
+            "summary": "the symmetric two-impact orbit of Table 1, both ends of its stability",
+            "value": {"base": {"damping": "closed_form", "b": 0.015}, "parameter": "b",
+                "from": 0.005, "to": 0.02}}})"},
     {"identify", R"(
         {"impacts": {
             "summary": "a list of impacts, in SI: x in m, velocities in m/s",
@@ -91,6 +97,19 @@ Json point_line() {
     return point;
 }
 
+/// The first special point of the first continuation.
+Json special_line() {
+    Json special;
+    RunControl control;
+    ContinuationCount count;
+    run_continuation(
+        read_continue_request(first_request("continue")), control, count,
+        [&](const std::string& line) {
+            if (special.is_null() && count.specials > 0) special = Json::parse(line);
+        });
+    return special;
+}
+
 }  // namespace
 
 Json request_example(const char* operation) { return example_of(requests, operation); }
@@ -100,6 +119,7 @@ Json answer_example(const char* schema) {
         {"Simulation", answer_to("simulate", "/v1/simulate")},
         {"Manifold", answer_to("manifold", "/v1/manifold")},
         {"SweepLine", point_line()},
+        {"ContinueLine", special_line()},
         {"Identification", answer_to("identify", "/v1/identify")}};
     return computed.contains(schema) ? computed[schema] : example_of(service_answers, schema);
 }

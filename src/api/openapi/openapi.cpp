@@ -21,8 +21,9 @@ struct Operation {
     const char *id, *tag, *summary, *description;
     const char* schema;  ///< of the response; null for plain text
     const char* type = json_type;
-    bool computes = false;  ///< takes fields, has formats, can be queued, sends Server-Timing
-    bool is_open = false;   ///< needs no key
+    bool computes = false;    ///< takes fields, has formats, can be queued, sends Server-Timing
+    bool is_open = false;     ///< needs no key
+    bool has_formats = true;  ///< if it computes: CSV, CBOR and npz, too
 };
 
 Json content_of(const Operation& o) {
@@ -31,7 +32,7 @@ Json content_of(const Operation& o) {
     Json example = o.schema ? answer_example(o.schema) : Json();
     if (!example.is_null()) media["example"] = std::move(example);
     Json content = {{o.type, std::move(media)}};
-    if (!o.computes) return content;
+    if (!o.computes || !o.has_formats) return content;
     for (const FormatName& name : format_names)
         if (name.format != Format::json) content[name.media_type] = {{"schema", text()}};
     return content;
@@ -50,7 +51,8 @@ Json responses(const Operation& o, const std::vector<int>& others, bool reads) {
     std::vector<int> statuses = common_statuses();
     statuses.insert(statuses.end(), others.begin(), others.end());
     if (reads) statuses.push_back(304);
-    if (o.computes) statuses.insert(statuses.end(), {406, 413, 422, 503});
+    if (o.computes) statuses.insert(statuses.end(), {413, 422, 503});
+    if (o.computes && o.has_formats) statuses.push_back(406);
     all.update(responses_of(statuses));
     return all;
 }
@@ -111,6 +113,21 @@ Json sweep_path() {
         "application/x-ndjson"};
     o.computes = true;
     return {{"post", post(o, "SweepRequest")}};
+}
+
+Json continue_path() {
+    Operation o = {
+        "continue",
+        "sweep",
+        "Branches of periodic orbits along a parameter, stable and unstable, as a stream",
+        "A stream of JSON lines: start; for each branch a line branch, its points, its special "
+        "points and its end with the reason, in order; progress every 200 ms; finally done or "
+        "error.",
+        "ContinueLine",
+        "application/x-ndjson"};
+    o.computes = true;
+    o.has_formats = false;
+    return {{"post", post(o, "ContinueRequest")}};
 }
 
 /// The body is JSON with all fields, or a file of columns with the fields in the query.
@@ -175,6 +192,7 @@ Json paths() {
               "Manifold"},
              "ManifoldRequest", manifold_fields())},
         {"/v1/sweep", sweep_path()},
+        {"/v1/continue", continue_path()},
         {"/v1/identify", identify_path()},
         {"/v1/parameters",
          read_path(
@@ -214,7 +232,7 @@ Json all_schemas() {
     Json schemas = Json::object();
     for (const auto add :
          {add_requests, add_simulation, add_systems, add_exponents, add_manifolds, add_sweep_lines,
-          add_identification, add_service})
+          add_continuation_lines, add_identification, add_service})
         add(schemas);
     return schemas;
 }

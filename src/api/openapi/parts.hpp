@@ -8,14 +8,15 @@ namespace vines::api::document {
 
 // Schemas: each function adds those of its file to components/schemas, by name.
 
-void add_requests(Json& schemas);        // requests.cpp
-void add_systems(Json& schemas);         // systems.cpp: parameters and provenance
-void add_exponents(Json& schemas);       // exponents.cpp
-void add_manifolds(Json& schemas);       // simulation.cpp: the part and the response
-void add_simulation(Json& schemas);      // simulation.cpp
-void add_sweep_lines(Json& schemas);     // sweep_lines.cpp
-void add_identification(Json& schemas);  // identification.cpp
-void add_service(Json& schemas);         // service.cpp: tables, presets, version, problems
+void add_requests(Json& schemas);            // requests.cpp
+void add_systems(Json& schemas);             // systems.cpp: parameters and provenance
+void add_exponents(Json& schemas);           // exponents.cpp
+void add_manifolds(Json& schemas);           // simulation.cpp: the part and the response
+void add_simulation(Json& schemas);          // simulation.cpp
+void add_sweep_lines(Json& schemas);         // sweep_lines.cpp
+void add_continuation_lines(Json& schemas);  // continuation_lines.cpp
+void add_identification(Json& schemas);      // identification.cpp
+void add_service(Json& schemas);             // service.cpp: tables, presets, version, problems
 
 // Keys that several responses have.
 
@@ -23,6 +24,8 @@ void add_service(Json& schemas);         // service.cpp: tables, presets, versio
 Keys answer_keys(const std::string& parameters);
 /// The same with provenance.
 Keys sealed_keys(const std::string& parameters);
+/// One of these schemas, selected by the key `type`: {value of type, name of the schema}.
+Json by_type(const std::vector<std::pair<std::string, std::string>>& schemas);
 /// Columns of a Poincare section at impact, without tau.
 Keys impact_section_keys();
 /// Columns of a stroboscopic section, without tau.

@@ -113,6 +113,15 @@ Json sweep_request() {
     return request;
 }
 
+Json continue_request() {
+    Json request = request_of(continue_fields(), {"parameter", "from", "to"});
+    Json& depth = request["properties"]["switch"];
+    Json whole = depth;
+    whole.erase("description");
+    depth = {{"anyOf", {std::move(whole), flag()}}, {"description", depth["description"]}};
+    return request;
+}
+
 }  // namespace
 
 Json query_of(const FieldTable& fields, const Json& example) {
@@ -126,6 +135,7 @@ void add_requests(Json& schemas) {
     schemas["ManifoldRequest"] = request_of(manifold_fields() + form_fields());
     schemas["IdentifyRequest"] = identify_request();
     schemas["SweepRequest"] = sweep_request();
+    schemas["ContinueRequest"] = continue_request();
     schemas["SweepBase"] = request_of(sweep_base_fields());
     schemas["Axis"] = request_of(axis_fields(), {"parameter"});
     schemas["Start"] = request_of(start_fields());

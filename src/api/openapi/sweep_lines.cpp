@@ -185,7 +185,8 @@ Json error_line_schema() {
          {"points", whole(), "lines sent"}});
 }
 
-/// One of these schemas, selected by the key `type`: {value of type, name of the schema}.
+}  // namespace
+
 Json by_type(const std::vector<std::pair<std::string, std::string>>& schemas) {
     Json any = Json::array(), mapping = Json::object();
     for (const auto& [type, name] : schemas) {
@@ -196,8 +197,6 @@ Json by_type(const std::vector<std::pair<std::string, std::string>>& schemas) {
         {"oneOf", std::move(any)},
         {"discriminator", {{"propertyName", "type"}, {"mapping", std::move(mapping)}}}};
 }
-
-}  // namespace
 
 void add_sweep_lines(Json& schemas) {
     schemas["SweepLine"] = by_type(

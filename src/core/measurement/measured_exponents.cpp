@@ -96,7 +96,7 @@ double variance_with_fit(const std::vector<double>& off, std::size_t fitted) {
            (1 - static_cast<double>(fitted) / n);
 }
 
-constexpr double hiding_gap = 0.1;  // fraction of a typical flight
+constexpr double hiding_fraction = 0.1;  // fraction of a typical flight
 
 // A record is representative from the first number of impacts on; from the second on if its jumps
 // are alike (measured_exponents.hpp).
@@ -166,7 +166,7 @@ Continuity continuity_of(
     const double typical_flight = median(flights), typical_speed = median(speeds);
     const auto over_gap = [&](double from, double to) {
         return std::ranges::any_of(gaps, [&](const TimeGap& g) {
-            return g.to - g.from > hiding_gap * typical_flight && g.overlaps(from, to);
+            return g.to - g.from > hiding_fraction * typical_flight && g.overlaps(from, to);
         });
     };
     for (std::size_t i = 0; i < impacts.size(); ++i) {

@@ -49,4 +49,20 @@ Eigen::Vector4d minimum_norm_solution(const Eigen::Matrix4d& matrix, const Eigen
     return solver.solve(right);
 }
 
+Eigen::VectorXd smallest_singular_vector(const Eigen::MatrixXd& matrix) {
+    // Inverse iteration: M^T M v is smallest. The value is smaller than all others by orders of
+    // magnitude, so that a few steps suffice; a pivot of zero becomes one of rounding's size.
+    Eigen::ColPivHouseholderQR<Eigen::MatrixXd> solver(matrix);
+    Eigen::MatrixXd upper = solver.matrixQR().triangularView<Eigen::Upper>();
+    const double rounding = 1e-16 * std::abs(upper(0, 0));
+    for (Eigen::Index k = 0; k < upper.rows(); ++k)
+        if (!(std::abs(upper(k, k)) > rounding)) upper(k, k) = rounding;
+    Eigen::VectorXd v = Eigen::VectorXd::Ones(upper.rows());
+    for (int step = 0; step < 4; ++step) {
+        v = upper.transpose().triangularView<Eigen::Lower>().solve(v);
+        v = upper.triangularView<Eigen::Upper>().solve(v).normalized();
+    }
+    return solver.colsPermutation() * v;
+}
+
 }  // namespace vines

@@ -29,4 +29,7 @@ EigenBasis eigen_basis_of(const Eigen::Matrix4d& matrix);
 /// Singular values below 1e-10 of the largest count as zero.
 Eigen::Vector4d minimum_norm_solution(const Eigen::Matrix4d& matrix, const Eigen::Vector4d& right);
 
+/// Unit vector v with the smallest |matrix v|_2, for a square matrix; its sign is arbitrary.
+Eigen::VectorXd smallest_singular_vector(const Eigen::MatrixXd& matrix);
+
 }  // namespace vines

@@ -1,0 +1,362 @@
+#include "api/continuation.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "api/describe.hpp"
+#include "api/json_text.hpp"
+#include "api/schema/tables.hpp"
+#include "api/version.hpp"
+#include "core/motion/elementary.hpp"
+
+namespace vines::api {
+
+namespace {
+
+// Newton's method for a stated orbit may move the start by this, in units of the motion.
+constexpr double stated_reach = 0.5;
+constexpr int depth_of_true = 2;
+
+/// Numbers of the system, without those of the start.
+std::vector<std::string> continued_names() {
+    std::vector<std::string> names;
+    for (const Field& f : sweep_base_fields())
+        if (f.type == FieldType::number && is_of_system(f)) names.push_back(f.name);
+    return names;
+}
+
+double value_of(const Json& given, const char* name) {
+    return given.contains(name) ? given[name].get<double>()
+                                : find(continue_fields(), name)->fallback.get<double>();
+}
+
+std::string word_of(const Json& given, const char* name) {
+    return given.value(name, find(continue_fields(), name)->fallback.get<std::string>());
+}
+
+/// The parameter's value in the base: given, of its preset, or the default.
+std::optional<double> value_in(const SystemFields& fields, const std::string& parameter) {
+    if (const auto given = fields.*system_number(parameter)) return *given;
+    const ResolvedSystem system = resolve(fields);
+    if (parameter == "R") return system.parameters.R_plus;
+    for (const auto& property : properties::reduced)
+        if (property.quantity.name == parameter) return property.value(system.parameters);
+    if (!system.si) return std::nullopt;
+    for (const auto& property : properties::si)
+        if (property.quantity.name == parameter) return property.value(*system.si);
+    for (const auto& property : properties::derived_si)
+        if (property.quantity.name == parameter) return property.value(*system.si);
+    return std::nullopt;
+}
+
+std::function<std::optional<Parameters>(const std::vector<double>&)> systems_along(
+    const SystemFields& fields, const std::vector<std::string>& parameters) {
+    std::vector<SystemNumber> numbers;
+    for (const std::string& name : parameters) numbers.push_back(system_number(name));
+    return [fields, numbers](const std::vector<double>& values) {
+        SystemFields changed = fields;
+        for (std::size_t i = 0; i < numbers.size(); ++i) changed.*numbers[i] = values[i];
+        const Parameters p = resolve(changed).parameters;
+        return validate(p, default_state(p)).empty() ? std::optional(p) : std::nullopt;
+    };
+}
+
+const char* sentence_of(BranchEnd end) {
+    switch (end) {
+        case BranchEnd::range: return "the parameter reaches the end of its range";
+        case BranchEnd::grazing:
+            return "a grazing contact: no orbit with one impact more or less continues the branch";
+        case BranchEnd::last_impact: return "the last impacts become grazing contacts";
+        case BranchEnd::stick: return "a chatter becomes complete: beyond it the ball sticks";
+        case BranchEnd::parent:
+            return "the branch meets the orbit from which it branches; beyond are its mirror "
+                   "images "
+                   "or shifted copies";
+        case BranchEnd::closed: return "the branch returns to its first orbit";
+        case BranchEnd::most_points: return "the limit of points is reached";
+        case BranchEnd::most_impacts: return "the limit of impacts per period is reached";
+        case BranchEnd::not_decided:
+            return "not decided: Newton's method does not converge, however short the step";
+    }
+    return "";
+}
+
+const char* word_of(BranchEnd end) {
+    constexpr const char* words[] = {"range",  "grazing", "last_impact", "stick",      "parent",
+                                     "closed", "points",  "impacts",     "not_decided"};
+    return words[static_cast<std::size_t>(end)];
+}
+
+class ContinuationLines : public BranchSink {
+public:
+    ContinuationLines(
+        const ContinueRequest& r, ContinuationCount& count,
+        const std::function<void(const std::string&)>& take)
+        : r_(r),
+          count_(count),
+          take_(take) {}
+
+    void branch(const BranchStart& b) override {
+        ++count_.branches;
+        send(
+            {{"type", "branch"},
+             {"branch", b.number},
+             {"from_branch", b.from < 0 ? Json(nullptr) : Json(b.from)},
+             {"begins_at", b.at == SpecialKind::end ? "start" : name_of(b.at)},
+             {"direction", b.direction > 0 ? "up" : "down"}});
+    }
+    void point(int branch, const OrbitPoint& point) override {
+        ++count_.points;
+        send(place("point", branch, point));
+    }
+    void special(int branch, const SpecialPoint& s) override {
+        ++count_.specials;
+        Json line = place("special", branch, s.orbit);
+        line["kind"] = name_of(s.kind);
+        if (s.end) line.update({{"reason", word_of(*s.end)}, {"detail", sentence_of(*s.end)}});
+        if (s.kind == SpecialKind::grazing)
+            line["impacts_beyond"] = s.impacts_after > 0 ? Json(s.impacts_after) : Json(nullptr);
+        if (s.angle) line["angle"] = *s.angle;
+        send(std::move(line));
+    }
+    /// There is no first orbit, or no such point.
+    void no_orbit(const char* reason, const std::string& detail) {
+        ++count_.specials;
+        send(
+            {{"type", "special"},
+             {"branch", nullptr},
+             {r_.parameter, r_.at},
+             {"kind", "end"},
+             {"reason", reason},
+             {"detail", detail}});
+    }
+
+private:
+    Json place(const char* type, int branch, const OrbitPoint& point) const {
+        const auto& m = point.multipliers;
+        Json line = {{"type", type}, {"branch", branch}, {r_.parameter, point.parameters[0]}};
+        if (point.parameters.size() > 1) line[r_.second] = point.parameters[1];
+        line.update(describe(properties::branch_point, point));
+        line["multipliers"] = {
+            {"re", column(m, [](auto value) { return value.real(); })},
+            {"im", column(m, [](auto value) { return value.imag(); })},
+            {"modulus", column(m, elementary::modulus)}};
+        line["state"] = describe(properties::start, point.measures.at_whole_cycle);
+        return line;
+    }
+    void send(Json line) const { take_(json_text(std::move(line))); }
+
+    const ContinueRequest& r_;
+    ContinuationCount& count_;
+    const std::function<void(const std::string&)>& take_;
+};
+
+/// The special points of a kind, instead of lines.
+struct PointsOfKind : BranchSink {
+    explicit PointsOfKind(SpecialKind wanted) : kind(wanted) {}
+    void point(int, const OrbitPoint&) override {}
+    void special(int, const SpecialPoint& special) override {
+        if (special.kind == kind && !special.on.sequence.sides.empty()) found.push_back(special);
+    }
+    const SpecialKind kind;
+    std::vector<SpecialPoint> found;
+};
+
+/// Curves through the special points of the branch. False if stopped.
+bool follow_curves(
+    const ContinueRequest& r, BranchPlan plan, const OrbitStart& start, double length,
+    ContinuationLines& lines) {
+    PointsOfKind points(*r.curve);
+    if (!follow_branches(plan, start, length, points)) return false;
+    if (points.found.empty())
+        lines.no_orbit("no_such_point", "the branch has no special point of the kind of curve");
+    CurvePlan curve = r.curve_plan;
+    curve.stop = plan.stop;
+    int number = 0;
+    for (const SpecialPoint& point : points.found) {
+        if (!follow_curve(curve, point, r.second_at, length, number, lines)) return false;
+        number += 2;
+    }
+    return true;
+}
+
+/// The orbit on which the base settles, or that it states; otherwise reports why there is none.
+std::optional<PeriodicOrbit> first_orbit(
+    const ContinueRequest& r, const std::function<bool()>& stop, ContinuationLines& lines) {
+    const Parameters& p = r.base.system.parameters;
+    std::optional<PeriodicOrbit> orbit;
+    if (r.settles) {
+        const PointResult settled = measure(p, r.base.start, r.settling, stop);
+        if (stop && stop()) return std::nullopt;
+        if (settled.measured) orbit = settled.regime.orbit;
+    } else {
+        const State& s = r.base.start;
+        orbit = find_orbit(p, s, r.period_cycles, scale_of(p, {&s, 1}), stated_reach, stop);
+    }
+    if (!orbit)
+        lines.no_orbit(
+            "no_orbit",
+            r.settles ? "the base does not settle on a periodic orbit within cycles; state one: "
+                        "orbit \"stated\" with its state as start"
+                      : "Newton's method finds no orbit of period_cycles next to the start");
+    else if (orbit->impacts == 0)
+        lines.no_orbit("no_impacts", "the first orbit has no impacts: there is nothing to follow");
+    else if (orbit->sticks > 0)
+        lines.no_orbit(
+            "stick", "not decided: the first orbit has sticking phases, which are not followed");
+    else return orbit;
+    return std::nullopt;
+}
+
+SpecialKind kind_of(const std::string& name) {
+    int kind = 0;
+    while (name != name_of(static_cast<SpecialKind>(kind))) ++kind;
+    return static_cast<SpecialKind>(kind);
+}
+
+void read_curve(ContinueRequest& r, const Json& given, const SystemFields& fields) {
+    for (const char* name : {"second", "second_from", "second_to"})
+        if (!given.contains(name))
+            refuse(std::string("/") + name, "a curve needs second, second_from and second_to");
+    r.curve = kind_of(given["curve"]);
+    r.second = given["second"];
+    const std::vector<std::string> names = continued_names();
+    const bool known = std::ranges::find(names, r.second) != names.end();
+    const auto at = known ? value_in(fields, r.second) : std::nullopt;
+    if (!at || r.second == r.parameter)
+        refuse({{"/second", r.second, names, "second must be another parameter of the base"}});
+    const double from = given["second_from"], to = given["second_to"];
+    if (from == to || *at < std::min(from, to) || *at > std::max(from, to))
+        refuse(
+            {{"/second_from", from, Json::array({*at, to}),
+              "second_from and second_to must differ and enclose the base's " + r.second}});
+    r.second_at = *at;
+    r.curve_plan = {
+        .family =
+            {systems_along(fields, {r.parameter, r.second}),
+             {r.plan.family.unit[0], std::abs(to - from)}},
+        .from = {r.plan.from, from},
+        .to = {r.plan.to, to},
+        .resolution = r.plan.resolution,
+        .most_points = r.plan.most_points};
+}
+
+}  // namespace
+
+ContinueRequest read_continue_request(const Json& object) {
+    Json given = object;
+    if (given.contains("switch") && given["switch"].is_boolean())
+        given["switch"] = given["switch"].get<bool>() ? depth_of_true : 0;
+    std::vector<FieldError> errors = check(continue_fields(), given);
+    for (const char* name : {"parameter", "from", "to"})
+        if (!given.contains(name))
+            errors.push_back(
+                {std::string("/") + name, nullptr, nullptr,
+                 "a continuation needs parameter, from and to"});
+    if (!errors.empty()) refuse(std::move(errors));
+
+    ContinueRequest r;
+    r.given = object;
+    r.parameter = given["parameter"];
+    const std::vector<std::string> names = continued_names();
+    if (std::ranges::find(names, r.parameter) == names.end())
+        refuse(
+            {{"/parameter", r.parameter, names, "there is no parameter of this name to continue"}});
+    const Json base = given.value("base", Json::object());
+    add_errors("/base", check(sweep_base_fields(), base), errors);
+    if (!errors.empty()) refuse(std::move(errors));
+    const MergedFields merged = merge_with_preset(sweep_base_fields(), base);
+    SystemFields fields = system_fields(merged.fields);
+    const auto at = value_in(fields, r.parameter);
+    if (!at)
+        refuse(
+            "/base", r.parameter + " is a parameter of a system in SI: the base must be one, too");
+    r.at = *at;
+    Json whole = base;
+    whole[r.parameter] = r.at;
+    r.base = read_started_system(whole);
+    add_errors("/base", r.base.errors, errors);
+    const double from = given["from"], to = given["to"];
+    if (from == to || r.at < std::min(from, to) || r.at > std::max(from, to))
+        errors.push_back(
+            {"/from", from, Json::array({r.at, to}),
+             "from and to must differ and enclose the base's " + r.parameter});
+    if (!errors.empty()) refuse(std::move(errors));
+    r.plan = {
+        .family = {systems_along(fields, {r.parameter}), {std::abs(to - from)}},
+        .from = from,
+        .to = to,
+        .resolution = value_of(given, "resolution"),
+        .most_points = static_cast<long>(value_of(given, "points")),
+        .switches = static_cast<int>(value_of(given, "switch"))};
+    for (const double end : {from, to})
+        if (!r.plan.family.system_at({end}))
+            errors.push_back(
+                {end == from ? "/from" : "/to", end, nullptr,
+                 "the base forms no valid system with this " + r.parameter});
+    if (!errors.empty()) refuse(std::move(errors));
+    if (given.contains("curve")) read_curve(r, given, fields);
+    r.settles = word_of(given, "orbit") == "settled";
+    r.period_cycles = static_cast<int>(value_of(given, "period_cycles"));
+    r.settling = {
+        .transient_cycles = value_of(given, "transient_cycles"),
+        .cycles = value_of(given, "cycles"),
+        .max_impacts = r.base.max_impacts};
+    return r;
+}
+
+Json continuation_start(const ContinueRequest& r) {
+    return {
+        {"type", "start"},
+        {"version", version()},
+        {"commit", commit()},
+        {"parameter", r.parameter},
+        {"from", r.plan.from},
+        {"to", r.plan.to},
+        {"parameters", describe_system(r.base.system)},
+        {"warnings", r.base.system.notes},
+        {"request", r.given}};
+}
+
+std::string continuation_progress(const ContinuationCount& count, double seconds) {
+    const std::size_t done = count.points;
+    return json_text(
+               {{"type", "progress"},
+                {"done", done},
+                {"per_second", seconds > 0 ? static_cast<double>(done) / seconds : 0}}) +
+           "\n";
+}
+
+std::string continuation_done(const ContinuationCount& count) {
+    return json_text(
+               {{"type", "done"},
+                {"points", count.points.load()},
+                {"specials", count.specials.load()},
+                {"branches", count.branches.load()}}) +
+           "\n";
+}
+
+bool run_continuation(
+    const ContinueRequest& r, RunControl& control, ContinuationCount& count,
+    const std::function<void(const std::string& line)>& take) {
+    const ComputePermit permit(control);
+    bool stopped = false;
+    const auto stop = [&] { return stopped = stopped || control.stop_or_yield(); };
+    ContinuationLines lines(r, count, take);
+    const auto orbit = first_orbit(r, stop, lines);
+    ++control.runs;
+    if (!orbit) return !stopped;
+    const Parameters& p = r.base.system.parameters;
+    const double length = scale_of(p, whole_cycle_states(p, *orbit)).x;
+    const auto start = orbit_start(p, *orbit, length, r.plan.family, {r.at});
+    BranchPlan plan = r.plan;
+    plan.stop = stop;
+    if (!start) {
+        lines.no_orbit("not_decided", "not decided: the first orbit's impacts are not periodic");
+        return true;
+    }
+    return r.curve ? follow_curves(r, plan, *start, length, lines)
+                   : follow_branches(plan, *start, length, lines);
+}
+
+}  // namespace vines::api

@@ -1,0 +1,77 @@
+// Requests of /v1/continue, and the lines of its NDJSON stream: start, branch, point, special,
+// progress, done, error.
+#pragma once
+
+#include <atomic>
+#include <functional>
+
+#include "api/properties.hpp"
+#include "api/request.hpp"
+#include "core/continuation/curve.hpp"
+#include "core/sweep/sweep.hpp"
+
+namespace vines::api {
+
+struct ContinueRequest {
+    Json given;  ///< as requested
+    std::string parameter;
+    StartedSystem base;
+    double at;  ///< the parameter's value in the base
+    BranchPlan plan;
+    bool settles;       ///< the first orbit is the one on which the base settles
+    int period_cycles;  ///< else that of the stated one
+    PointOptions settling;
+    std::optional<SpecialKind> curve;  ///< follow these points in two parameters
+    std::string second;                ///< of a curve: name of the second parameter
+    double second_at = 0;              ///< its value in the base
+    CurvePlan curve_plan;
+};
+
+/// Problem 422 naming every invalid field.
+ContinueRequest read_continue_request(const Json& object);
+
+/// Numbers of lines so far; another thread can read them.
+struct ContinuationCount {
+    std::atomic<std::size_t> branches = 0, points = 0, specials = 0;
+};
+
+/// Computes on the calling thread, with one permit. Passes each line of the result, without line
+/// end, to take(). False if stopped before the end.
+bool run_continuation(
+    const ContinueRequest& request, vines::RunControl& control, ContinuationCount& count,
+    const std::function<void(const std::string& line)>& take);
+
+/// {type: start, version, commit, parameter, from, to, parameters, warnings, request}.
+Json continuation_start(const ContinueRequest& request);
+
+/// {type: progress, done, per_second}: points so far. With line end.
+std::string continuation_progress(const ContinuationCount& count, double seconds);
+/// {type: done, points, specials, branches}. With line end.
+std::string continuation_done(const ContinuationCount& count);
+
+namespace properties {
+
+/// Plain values of an orbit on a branch; `share_impacts` can be null.
+inline constexpr Property<OrbitPoint> branch_point[] = {
+    {{"stable", "true if all multipliers lie inside the unit circle", flag},
+     at<&OrbitPoint::stable>},
+    {{"z", "impacts per forcing cycle"},
+     [](const OrbitPoint& o) {
+         return Json(static_cast<double>(o.sequence.impacts()) / o.sequence.cycles());
+     }},
+    {{"period_cycles", "period in forcing cycles", whole},
+     [](const OrbitPoint& o) { return Json(o.sequence.cycles()); }},
+    {{"impacts", "impacts per period", whole},
+     [](const OrbitPoint& o) { return Json(o.sequence.impacts()); }},
+    {{"symmetric", "true if a shift by half a period gives the mirror image", flag},
+     [](const OrbitPoint& o) { return Json(o.sequence.mirrored); }},
+    {{"x_max", "maximum of |x|, m"}, [](const OrbitPoint& o) { return json_of(o.measures.x_max); }},
+    {{"x_rms", "rms of x, m"}, [](const OrbitPoint& o) { return json_of(o.measures.x_rms); }},
+    {{"share_impacts", "fraction of the dissipated energy; null if none is dissipated",
+      number_or_null},
+     [](const OrbitPoint& o) { return json_of(o.measures.share_impacts); }},
+};
+
+}  // namespace properties
+
+}  // namespace vines::api

@@ -1,0 +1,66 @@
+// A point of a branch with what the next step needs, and its relatives: the orbit of twice the
+// period that begins where a multiplier is -1, and the one of half the period where it ends.
+#pragma once
+
+#include "core/continuation/arclength.hpp"
+#include "core/continuation/orbit_check.hpp"
+
+namespace vines {
+
+struct BranchNode {
+    CurvePoint at;
+    OrbitValues values;
+    /// Of the transfer matrix, by descending modulus: over half a period if it is mirrored.
+    std::array<std::complex<double>, 4> multipliers;
+    // Test functions, which change sign at special points.
+    double fold;      ///< component of the tangent along the parameter
+    double doubling;  ///< product of (multiplier + 1)
+    double torus;     ///< product of (multiplier_i multiplier_j - 1), i < j
+
+    double parameter() const { return at.z(at.z.size() - 1); }  ///< in its unit
+    /// A multiplier of a complex pair of modulus 1; empty if there is none.
+    std::optional<std::complex<double>> unit_pair() const;
+};
+
+/// Product of (m_i m_j - 1), i < j.
+double torus_test(const std::array<std::complex<double>, 4>& multipliers);
+
+CurveEquations as_curve(const OrbitEquations& equations);  ///< refers to them
+
+/// Empty without a point, or if it is no orbit.
+std::optional<BranchNode> node_of(const OrbitEquations& equations, std::optional<CurvePoint> at);
+/// The node at the arclength h after a.
+std::optional<BranchNode> node_after(
+    const OrbitEquations& equations, const CurvePoint& a, double h);
+/// The node next to z with this parameter, in its unit; its tangent along direction (1, -1).
+std::optional<BranchNode> node_at_parameter(
+    const OrbitEquations& equations, const Unknowns& z, double parameter, int direction);
+
+/// An orbit with its equations.
+struct Relative {
+    OrbitEquations equations;
+    BranchNode node;
+};
+
+/// True if an orbit is another one passed twice, or with its mirror image.
+bool repeats_itself(const OrbitEquations& equations, const Unknowns& z);
+
+/// A point of the branch of doubled orbits (ImpactSequence::doubled) that begins at a node with the
+/// multiplier -1. Both directions of that branch are the same orbits: mirror twins, or one period
+/// later.
+std::optional<Relative> doubled_branch(const OrbitEquations& equations, const BranchNode& node);
+
+/// The end of a branch of doubled orbits near a node: the orbit whose double it is, where its
+/// multiplier is -1. Empty if there is none within `within` of the unknowns.
+std::optional<Relative> parent_orbit(
+    const OrbitEquations& equations, const BranchNode& near, double within);
+
+/// The node beyond a grazing contact: with that contact as an impact of zero speed, or without the
+/// impact that has become one. Empty if neither direction has an orbit.
+std::optional<Relative> beyond_grazing(
+    const OrbitEquations& equations, const BranchNode& last, const SequenceFault& fault);
+/// The sequence and the unknowns there, not yet solved.
+std::optional<OrbitStart> changed_sequence(
+    const OrbitEquations& equations, const Unknowns& z, const SequenceFault& fault);
+
+}  // namespace vines

@@ -1,0 +1,124 @@
+#include "core/continuation/curve.hpp"
+
+#include <Eigen/LU>
+#include <algorithm>
+#include <cmath>
+
+#include "core/continuation/branch_node.hpp"
+
+namespace vines {
+
+namespace {
+
+// Arclengths of the first, the longest and the shortest step, and the largest angle's cosine.
+constexpr double first_curve_arc = 1e-3, longest_curve_arc = 0.1, shortest_curve_arc = 1e-9;
+constexpr double curve_bend = 0.95, curve_growth = 1.5;
+// Step of the central differences of a test function, whose derivative affects the number of
+// Newton's steps alone.
+constexpr double test_step = 1e-6;
+
+/// The test function of a kind of special point; it is zero there.
+struct SpecialTest {
+    const OrbitEquations& equations;
+    SpecialKind kind;
+    std::size_t impact;  ///< of kind grazing: the impact without speed
+
+    std::optional<double> operator()(const Unknowns& z) const {
+        const auto values = equations.values(z);
+        if (!values) return std::nullopt;
+        if (kind == SpecialKind::grazing) return values->approach[impact] / equations.length();
+        const Matrix4 T = values->transfer;
+        if (kind == SpecialKind::fold) return (Matrix4::Identity() - T).determinant();
+        if (kind == SpecialKind::torus) return torus_test(sorted_eigenvalues(values->transfer));
+        return (Matrix4::Identity() + T).determinant();
+    }
+};
+
+CurveEquations with_test(const OrbitEquations& equations, const SpecialTest& test) {
+    return [&equations, &test](
+               const Unknowns& z, Eigen::VectorXd& residual, Eigen::MatrixXd* jacobian) {
+        const Eigen::Index m = equations.equations();
+        Eigen::MatrixXd J;
+        const auto values = jacobian ? equations.values(z, J) : equations.values(z);
+        const auto at = test(z);
+        if (!values || !at) return false;
+        residual.resize(m + 1);
+        residual << values->residual, *at;
+        if (!jacobian) return true;
+        jacobian->resize(m + 1, z.size());
+        jacobian->topRows(m) = J;
+        for (Eigen::Index c = 0; c < z.size(); ++c) {
+            Unknowns more = z, less = z;
+            more(c) += test_step;
+            less(c) -= test_step;
+            const auto above = test(more), below = test(less);
+            if (!above || !below) return false;
+            (*jacobian)(m, c) = (*above - *below) / (2 * test_step);
+        }
+        return true;
+    };
+}
+
+/// The check of an orbit, for which an impact without speed is one.
+OrbitCheck check_special(const SpecialTest& test, const Unknowns& z) {
+    auto approach = test.equations.values(z)->approach;
+    if (test.kind == SpecialKind::grazing) approach[test.impact] = 1e-300;
+    return check_orbit(test.equations, z, approach);
+}
+
+}  // namespace
+
+bool follow_curve(
+    const CurvePlan& plan, const SpecialPoint& point, double second, double length, int number,
+    BranchSink& sink) {
+    const OrbitEquations equations(point.on.sequence, plan.family, length);
+    const SpecialTest test{equations, point.kind, point.impact};
+    const CurveEquations curve = with_test(equations, test);
+    Unknowns z(point.on.z.size() + 1);
+    z << point.on.z, second / plan.family.unit[1];
+    z(z.size() - 2) = point.orbit.parameters[0] / plan.family.unit[0];
+    const Eigen::VectorXd along = Eigen::VectorXd::Unit(z.size(), z.size() - 1);
+    const auto begin = point_in_plane(curve, z, along, along.dot(z));
+    for (const int direction : {1, -1}) {
+        sink.branch({number, -1, point.kind, direction});
+        const auto orbit_at = [&](const Unknowns& u, const OrbitCheck& check) {
+            return orbit_point(equations, u, *equations.values(u), check.measures);
+        };
+        if (!begin) {
+            sink.special(number++, {SpecialKind::end, point.orbit, BranchEnd::not_decided});
+            continue;
+        }
+        CurvePoint a = *begin;
+        a.tangent *= direction;
+        OrbitCheck check = check_special(test, a.z);
+        std::optional<BranchEnd> end;
+        double h = first_curve_arc;
+        for (long points = 0; !end; ++points) {
+            if (plan.stop && plan.stop()) return false;
+            sink.point(number, orbit_at(a.z, check));
+            if (points + 1 >= plan.most_points) end = BranchEnd::most_points;
+            const double most = a.tangent.tail<2>().cwiseAbs().maxCoeff();
+            h = std::min({h, longest_curve_arc, plan.resolution / most});
+            std::optional<CurvePoint> b;
+            for (; !b && h > shortest_curve_arc; h *= b ? 1 : 0.5) {
+                b = point_in_plane(curve, a.z + h * a.tangent, a.tangent, a.tangent.dot(a.z) + h);
+                if (b && !(b->tangent.dot(a.tangent) > curve_bend)) b.reset();
+            }
+            if (!b) end = end.value_or(BranchEnd::not_decided);
+            if (end) break;
+            const auto at = equations.parameters(b->z);
+            for (int i = 0; i < 2; ++i)
+                if (at[i] > std::max(plan.from[i], plan.to[i]) ||
+                    at[i] < std::min(plan.from[i], plan.to[i]))
+                    end = BranchEnd::range;
+            check = check_special(test, b->z);
+            if (check.fault) end = BranchEnd::grazing;
+            if (!end) a = *b;
+            h *= curve_growth;
+        }
+        sink.special(number++, {SpecialKind::end, orbit_at(a.z, check_special(test, a.z)), *end});
+    }
+    return true;
+}
+
+}  // namespace vines

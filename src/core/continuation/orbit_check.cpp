@@ -1,0 +1,159 @@
+#include "core/continuation/orbit_check.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/measures/energy.hpp"
+#include "core/motion/record.hpp"
+
+namespace vines {
+
+namespace {
+
+using OrbitFlight = OrbitEquations::BetweenImpacts;
+
+// Largest difference of a contact's tau between the equations and the search, in cycles: far above
+// rounding, also at grazing, far below a flight.
+constexpr double same_contact = 1e-6;
+// Approach speeds whose square is below this, in units of b, lead less than 1e-13 b beyond a wall
+// that accelerates by 0.01 b or more.
+constexpr double shallow = 1e-15;
+
+/// The first contact of a flight within `limit`.
+std::optional<Contact> first_contact(
+    const Flow& flow, const OrbitFlight& f, double b, double limit) {
+    // Without relative speed, up to rounding at a grazing contact, two derivatives vanish.
+    const bool leaves = f.side * f.relative_speed < 0;
+    FlightStart start{
+        f.oscillation(),
+        f.x - f.side * b,
+        f.x_dot - f.relative_speed,
+        f.side,
+        leaves ? f.relative_speed : 0,
+        leaves ? 1 : 2};
+    std::vector<GrazingPoint> grazing;
+    for (double passed = 0; passed < limit; passed += flow.reach()) {
+        auto contact =
+            fast_contact(flow, start, b, std::min(limit - passed, flow.reach()), grazing);
+        if (contact) {
+            contact->s += passed;
+            return contact;
+        }
+        start.lo = flow.at(start.lo, Flow::cells);
+        start.y += start.y_dot * flow.reach();
+        start.side = start.zeros = 0;
+    }
+    return std::nullopt;
+}
+
+std::optional<SequenceFault> sequence_fault(
+    const OrbitEquations& equations, const Parameters& p, const std::vector<OrbitFlight>& flights,
+    const std::vector<double>& approach) {
+    using Kind = SequenceFault::Kind;
+    for (std::size_t k = 0; k < approach.size(); ++k)
+        if (!(approach[k] > 0)) return SequenceFault{Kind::missing, k};
+    const auto flow = Flow::shared_free(p);
+    const double tolerance = same_contact * p.cycle();
+    for (std::size_t k = 0; k + 1 < flights.size(); ++k) {
+        const OrbitFlight& f = flights[k];
+        if (f.relative_speed == 0 && f.side * flow->acceleration(f.oscillation()) > 0)
+            return SequenceFault{Kind::stick, k};
+        const auto contact = first_contact(*flow, f, p.b, f.s + tolerance);
+        // The search does not see contacts that are shallower than the rounding of positions.
+        if (!contact && approach[k] * approach[k] < shallow * p.b * p.b) continue;
+        if (!contact) return SequenceFault{Kind::missing, k};
+        if (contact->s < f.s - tolerance || contact->side != equations.sequence().side_after(k))
+            return SequenceFault{Kind::contact, k, contact->s, contact->side};
+    }
+    return std::nullopt;
+}
+
+Oscillation opposite(const Oscillation& o) { return {-o.x, -o.x_dot, -o.sin_theta, -o.cos_theta}; }
+
+/// Passes the flights and impacts of a period, which begins at tau, to the observer.
+void replay(
+    const OrbitEquations& equations, const Parameters& p, const std::vector<OrbitFlight>& flights,
+    double tau, Observer& observer) {
+    const auto flow = Flow::shared_free(p);
+    const ImpactSequence& sequence = equations.sequence();
+    for (const int sign : {1, -1}) {
+        if (sign < 0 && !sequence.mirrored) return;
+        for (std::size_t k = 0; k < sequence.size(); ++k) {
+            const OrbitFlight& f = flights[k];
+            const Oscillation start = sign > 0 ? f.oscillation() : opposite(f.oscillation());
+            observer.on_stretch(
+                {*flow, tau, f.s, start, sign * (f.x - f.side * p.b),
+                 sign * (f.x_dot - f.relative_speed), 0});
+            tau += f.s;
+            const Oscillation end = flow->after(start, f.s);
+            const double approach = end.x_dot - sign * (f.x_dot - f.relative_speed);
+            observer.on_impact(impact_at(
+                p, {f.s, sign * sequence.side_after(k), end, approach}, flow->acceleration(end),
+                tau));
+        }
+    }
+}
+
+/// The state at the time s <= the period after the first impact.
+State state_after(
+    const OrbitEquations& equations, const Parameters& p, const std::vector<OrbitFlight>& flights,
+    double s) {
+    const auto flow = Flow::shared_free(p);
+    const double duration = equations.sequence().half_cycles * 0.5 * p.cycle();
+    const double sign = s > duration ? -1 : 1;
+    if (s > duration) s -= duration;
+    std::size_t k = 0;
+    for (; k + 2 < flights.size() && s > flights[k].s; ++k) s -= flights[k].s;
+    const OrbitFlight& f = flights[k];
+    const Oscillation o = flow->after(f.oscillation(), std::max(s, 0.0));
+    const double y_dot = f.x_dot - f.relative_speed;
+    return {sign * o.x_dot, sign * o.x, sign * y_dot, sign * (f.x - f.side * p.b + y_dot * s)};
+}
+
+}  // namespace
+
+OrbitCheck check_orbit(
+    const OrbitEquations& equations, const Unknowns& z, const std::vector<double>& approach) {
+    const Parameters p = *equations.system(z);
+    const std::vector<OrbitFlight> flights = equations.flights(z, p);
+    OrbitCheck check{sequence_fault(equations, p, flights, approach)};
+    const double period = equations.sequence().cycles() * p.cycle();
+    double tau = std::fmod((z(0) - p.phi()) / p.Omega, p.cycle());
+    if (tau < 0) tau += p.cycle();
+    // The last impact belongs to the period, however tau is rounded.
+    Energy energy(p, tau, tau + period + same_contact);
+    replay(equations, p, flights, tau, energy);
+    const EnergyBalance balance = energy.balance({tau, tau + period});
+    check.measures = {
+        state_after(equations, p, flights, p.cycle() - tau), balance.peak, balance.rms,
+        balance.share_impacts};
+    return check;
+}
+
+std::optional<OrbitStart> orbit_start(
+    const Parameters& p, const PeriodicOrbit& orbit, double length, const ParameterFamily& family,
+    const std::vector<double>& values) {
+    if (orbit.sticks > 0 || orbit.impacts == 0) return std::nullopt;
+    ImpactRecord record;
+    Observer* const observers[] = {&record};
+    follow(p, orbit.state, orbit.tau, (orbit.cycles + 0.5) * p.cycle(), {}, observers);
+    std::vector<Impact> impacts = record.entries;
+    const auto all = static_cast<std::size_t>(orbit.impacts);
+    if (impacts.size() <= all) return std::nullopt;
+    OrbitStart start;
+    start.sequence.mirrored = orbit.symmetric && all % 2 == 0;
+    start.sequence.half_cycles = (start.sequence.mirrored ? 1 : 2) * orbit.cycles;
+    const std::size_t n = start.sequence.mirrored ? all / 2 : all;
+    start.z.resize(static_cast<Eigen::Index>(n + 4 + values.size()));
+    start.z.head<4>() << impacts[0].phase(), impacts[0].x / length, impacts[0].x_dot_after / length,
+        impacts[0].relative_speed_after / length;
+    for (std::size_t k = 0; k < n; ++k) {
+        start.sequence.sides.push_back(impacts[k].side);
+        start.z(static_cast<Eigen::Index>(4 + k)) = impacts[k + 1].tau - impacts[k].tau;
+    }
+    for (std::size_t i = 0; i < values.size(); ++i)
+        start.z(static_cast<Eigen::Index>(4 + n + i)) = values[i] / family.unit[i];
+    return start;
+}
+
+}  // namespace vines

@@ -1,0 +1,305 @@
+#include <doctest/doctest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "../support.hpp"
+#include "core/continuation/arc.hpp"
+#include "core/continuation/branch.hpp"
+#include "core/measures/energy.hpp"
+#include "core/stability/orbit.hpp"
+
+using namespace vines;
+using namespace vines::test;
+
+namespace {
+
+struct Recorded : BranchSink {
+    struct Point {
+        int branch;
+        OrbitPoint orbit;
+    };
+    struct Special {
+        int branch;
+        SpecialPoint point;
+    };
+    std::vector<BranchStart> branches;
+    std::vector<Point> points;
+    std::vector<Special> specials;
+
+    void branch(const BranchStart& start) override { branches.push_back(start); }
+    void point(int branch, const OrbitPoint& point) override { points.push_back({branch, point}); }
+    void special(int branch, const SpecialPoint& special) override {
+        specials.push_back({branch, special});
+    }
+    /// The parameter at the first special point of this kind; NaN if there is none.
+    double at(SpecialKind kind) const {
+        for (const Special& s : specials)
+            if (s.point.kind == kind) return s.point.orbit.parameters[0];
+        return vines::nan;
+    }
+    /// Reasons of the ends, by branch.
+    std::vector<BranchEnd> ends() const {
+        std::vector<BranchEnd> all;
+        for (const Special& s : specials)
+            if (s.point.end) all.push_back(*s.point.end);
+        return all;
+    }
+};
+
+using Change = std::function<void(Parameters&, double)>;
+
+void change_b(Parameters& p, double b) { p.b = b; }
+void change_R(Parameters& p, double R) { p.R_plus = p.R_minus = R; }
+
+/// The orbit on which a system settles from the default start.
+std::optional<PeriodicOrbit> settled_orbit(const Parameters& p, int cycles) {
+    const State s = simulate(p, default_state(p), {1000 * p.cycle(), 1000000, {}}, {}).state;
+    return find_orbit(p, s, cycles, scale_of(p, {&s, 1}), 0.5, {});
+}
+
+Recorded continued(
+    const Parameters& p, const Change& change, double at, double from, double to, int switches = 0,
+    int cycles = 1) {
+    BranchPlan plan{
+        .family =
+            {[&](const std::vector<double>& values) {
+                 Parameters changed = p;
+                 change(changed, values[0]);
+                 return is_physical(changed) ? std::optional(changed) : std::nullopt;
+             },
+             {std::abs(to - from)}},
+        .from = from,
+        .to = to,
+        .switches = switches};
+    const auto orbit = settled_orbit(p, cycles);
+    REQUIRE(orbit);
+    const double length = scale_of(p, whole_cycle_states(p, *orbit)).x;
+    const auto start = orbit_start(p, *orbit, length, plan.family, {at});
+    REQUIRE(start);
+    Recorded recorded;
+    CHECK(follow_branches(plan, *start, length, recorded));
+    return recorded;
+}
+
+Recorded table1_by_b(int switches = 0) {
+    return continued(table1(0.015, Damping::closed_form), change_b, 0.015, 0.004, 0.03, switches);
+}
+
+}  // namespace
+
+TEST_CASE("an arc is the flow's motion, and its derivatives are differences of arcs") {
+    for (const auto damping : {Damping::equation_of_motion, Damping::closed_form}) {
+        Parameters p = table1(0.015, damping);
+        p.Omega = 1.07;
+        const Flow::Coefficients law = Flow::free_coefficients(p);
+        const Flow flow = Flow::free(p);
+        const Oscillation start{0.002, -0.003, std::sin(0.7), std::cos(0.7)};
+        for (const double s : {1e-7, 0.3, 3.1, 12.0}) {
+            CAPTURE(s);
+            const Arc arc = arc_over(law, start, s);
+            const Oscillation end = flow.after(start, s);
+            const Transfer transfer = flow.transfer(s);
+            CHECK(std::abs(arc.end.x - end.x) < 1e-16);
+            CHECK(std::abs(arc.end.x_dot - end.x_dot) < 1e-16);
+            CHECK(std::abs(arc.end.sin_theta - end.sin_theta) < 1e-14);
+            CHECK(std::abs(arc.transfer.a11 - transfer.a11) < 1e-13);
+            CHECK(std::abs(arc.transfer.a12 - transfer.a12) < 1e-13);
+            CHECK(std::abs(arc.transfer.a21 - transfer.a21) < 1e-13);
+            CHECK(std::abs(arc.transfer.a22 - transfer.a22) < 1e-13);
+            CHECK(std::abs(arc.bend * s - (end.x - start.x - start.x_dot * s)) < 1e-16);
+            const auto turned = [&](double by) {
+                return arc_over(
+                    law, {start.x, start.x_dot, std::sin(0.7 + by), std::cos(0.7 + by)}, s);
+            };
+            const double h = 1e-5;
+            const Arc more = turned(h), less = turned(-h);
+            CHECK(std::abs((more.end.x - less.end.x) / (2 * h) - arc.x_by_theta) < 1e-11);
+            CHECK(
+                std::abs((more.end.x_dot - less.end.x_dot) / (2 * h) - arc.x_dot_by_theta) < 1e-11);
+        }
+        // The bend of a short flight: x''/2 s, to its own relative accuracy.
+        CHECK(
+            arc_over(law, start, 1e-9).bend ==
+            doctest::Approx(0.5e-9 * flow.acceleration(start)).epsilon(1e-8));
+    }
+}
+
+TEST_CASE("the Jacobian matrix of an orbit's equations is their difference quotient") {
+    Parameters p = table1(0.0052, Damping::closed_form);
+    std::mt19937_64 engine(7);
+    p.table_plus = random_table(engine, 0.01);
+    const ParameterFamily family{
+        [&](const std::vector<double>& values) {
+            Parameters changed = p;
+            changed.Omega = values[0];
+            return std::optional(changed);
+        },
+        {0.2}};
+    for (const bool mirrored : {false, true}) {
+        // Not an orbit: the equations hold for any unknowns.
+        const OrbitEquations equations({{1, -1, -1}, mirrored, mirrored ? 3 : 2}, family, 0.003);
+        Unknowns z(8);
+        z << 0.4, 0.7, -0.9, -1.1, 2.1, 1.7, 2.4, 1 / 0.2;
+        Eigen::MatrixXd J;
+        const auto at = equations.values(z, J);
+        REQUIRE(at);
+        for (Eigen::Index c = 0; c < 8; ++c) {
+            CAPTURE(c);
+            Unknowns more = z, less = z;
+            more(c) += 1e-6;
+            less(c) -= 1e-6;
+            const Eigen::VectorXd quotient =
+                (equations.values(more)->residual - equations.values(less)->residual) / 2e-6;
+            CHECK((J.col(c) - quotient).cwiseAbs().maxCoeff() < 2e-8 * (1 + quotient.norm()));
+        }
+    }
+}
+
+// docs/physics.md: the half-period map of the symmetric motion in closed form, in 30 digits.
+TEST_CASE("the limits of the symmetric motion of Table 1 are those of its closed form") {
+    const Recorded r = table1_by_b();
+    CHECK(std::abs(r.at(SpecialKind::symmetry_breaking) - 7.046736303e-3) < 1e-12);
+    CHECK(std::abs(r.at(SpecialKind::torus) - 16.286026400e-3) < 1e-12);
+    CHECK(std::abs(r.at(SpecialKind::fold) - 17.274734144e-3) < 1e-12);
+    // The unstable part ends where the ball rests in the middle and the oscillator's free amplitude
+    // is b: both impacts become grazing contacts.
+    CHECK(
+        std::abs(r.at(SpecialKind::grazing) - *free_amplitude(table1(0.01, Damping::closed_form))) <
+        1e-10);
+    CHECK(r.ends() == std::vector{BranchEnd::last_impact, BranchEnd::range});
+}
+
+TEST_CASE("points are orbits of the simulated motion, with its multipliers") {
+    const Recorded r = table1_by_b(1);
+    CHECK(r.points.size() > 100);
+    for (const auto& [branch, orbit] : r.points) {
+        Parameters p = table1(orbit.parameters[0], Damping::closed_form);
+        CAPTURE(p.b);
+        if (elementary::modulus(orbit.multipliers[0]) > 1e4) continue;
+        const State& s = orbit.measures.at_whole_cycle;
+        const auto found =
+            find_orbit(p, s, orbit.sequence.cycles(), scale_of(p, {&s, 1}), 1e-6, {});
+        REQUIRE(found);
+        CHECK(found->impacts == orbit.sequence.impacts());
+        CHECK(found->symmetric == orbit.sequence.mirrored);
+        for (int k = 0; k < 2; ++k)
+            CHECK(
+                elementary::modulus(found->multipliers[k]) ==
+                doctest::Approx(elementary::modulus(orbit.multipliers[k])).epsilon(1e-6));
+        Energy energy(p, 0, orbit.sequence.cycles() * p.cycle());
+        Observer* const observers[] = {&energy};
+        follow(p, s, 0, orbit.sequence.cycles() * p.cycle(), {}, observers);
+        const EnergyBalance balance = energy.balance({0, orbit.sequence.cycles() * p.cycle()});
+        CHECK(orbit.measures.x_max == doctest::Approx(balance.peak).epsilon(1e-7));
+        CHECK(orbit.measures.x_rms == doctest::Approx(balance.rms).epsilon(1e-7));
+        CHECK(
+            *orbit.measures.share_impacts == doctest::Approx(*balance.share_impacts).epsilon(1e-6));
+    }
+}
+
+TEST_CASE("a branch that begins at a broken symmetry returns to it, and is found from elsewhere") {
+    const Recorded whole = table1_by_b(1);
+    const auto begun =
+        std::ranges::find(whole.branches, SpecialKind::symmetry_breaking, &BranchStart::at);
+    REQUIRE(begun != whole.branches.end());
+    const auto flip = std::ranges::find_if(whole.specials, [&](const auto& s) {
+        return s.branch == begun->number && s.point.kind == SpecialKind::flip;
+    });
+    REQUIRE(flip != whole.specials.end());
+    const Recorded twin =
+        continued(table1(0.0065, Damping::closed_form), change_b, 0.0065, 0.0052, 0.02);
+    CHECK(std::abs(twin.at(SpecialKind::flip) - flip->point.orbit.parameters[0]) < 1e-13);
+    CHECK(std::abs(twin.at(SpecialKind::symmetry_breaking) - 7.046736303e-3) < 1e-12);
+    CHECK(twin.ends() == std::vector{BranchEnd::parent, BranchEnd::range});
+}
+
+TEST_CASE("below a flip the motion settles on twice the period, above it on the period") {
+    const Recorded r =
+        continued(table1(0.0065, Damping::closed_form), change_b, 0.0065, 0.0054, 0.007);
+    const double b = r.at(SpecialKind::flip);
+    const auto period = [&](double at) {
+        const Parameters p = table1(at, Damping::closed_form);
+        const State s = simulate(p, default_state(p), {40000 * p.cycle(), 10000000, {}}, {}).state;
+        const auto once = follow(p, s, 0, p.cycle(), {}),
+                   again = follow(p, s, 0, 2 * p.cycle(), {});
+        return distance(*again, s, scale_of(p, {&s, 1})) > 1e-9  ? 0
+               : distance(*once, s, scale_of(p, {&s, 1})) < 1e-9 ? 1
+                                                                 : 2;
+    };
+    CHECK(period(b + 4e-7) == 1);
+    CHECK(period(b - 4e-7) == 2);
+}
+
+TEST_CASE("where a contact becomes grazing the branch continues with one impact more") {
+    const Recorded r =
+        continued(table1(0.0065, Damping::closed_form), change_b, 0.0065, 0.004, 0.007);
+    const auto grazing = std::ranges::find_if(
+        r.specials, [](const auto& s) { return s.point.kind == SpecialKind::grazing; });
+    REQUIRE(grazing != r.specials.end());
+    CHECK(grazing->point.impacts_after == grazing->point.orbit.sequence.impacts() + 1);
+    // Found from the other side, where the impact exists.
+    const Recorded other =
+        continued(table1(0.005, Damping::closed_form), change_b, 0.005, 0.004, 0.007);
+    const auto lost = std::ranges::find_if(
+        other.specials, [](const auto& s) { return s.point.kind == SpecialKind::grazing; });
+    REQUIRE(lost != other.specials.end());
+    CHECK(lost->point.orbit.sequence.impacts() == grazing->point.impacts_after);
+    CHECK(std::abs(lost->point.orbit.parameters[0] - grazing->point.orbit.parameters[0]) < 1e-10);
+    // The largest distance from the wall at the contact, in a simulation: zero up to rounding.
+    for (const auto& recorded : {r, other})
+        for (const auto& [branch, orbit] : recorded.points) CHECK(orbit.sequence.impacts() <= 3);
+}
+
+TEST_CASE("a branch that returns to its start is reported once, as closed") {
+    Parameters p = table1(0.015, Damping::closed_form);
+    const Recorded r =
+        continued(p, [](Parameters& q, double Omega) { q.Omega = Omega; }, 1, 0.9, 1.1);
+    CHECK(r.ends() == std::vector{BranchEnd::closed});
+    CHECK(std::ranges::count_if(r.specials, [](const auto& s) {
+              return s.point.kind == SpecialKind::fold;
+          }) == 2);
+}
+
+TEST_CASE("folds and tori are the same along b and along R") {
+    const Recorded by_R = continued(table1(0.015, Damping::closed_form), change_R, 0.6, 0.1, 0.95);
+    for (const auto kind : {SpecialKind::fold, SpecialKind::torus}) {
+        Parameters p = table1(0.015, Damping::closed_form);
+        const double R = by_R.at(kind);
+        REQUIRE(R < 0.6);
+        // From an orbit at that R, for a b at which it is stable.
+        p.R_plus = p.R_minus = R;
+        p.b = 0.012;
+        const Recorded by_b = continued(p, change_b, 0.012, 0.008, 0.02);
+        CHECK(std::abs(by_b.at(kind) - 0.015) < 1e-12);
+    }
+}
+
+TEST_CASE("limits of points and a stop request end a computation") {
+    const Parameters p = table1(0.015, Damping::closed_form);
+    BranchPlan plan{
+        .family =
+            {[&](const std::vector<double>& values) {
+                 Parameters changed = p;
+                 changed.b = values[0];
+                 return std::optional(changed);
+             },
+             {0.02}},
+        .from = 0.005,
+        .to = 0.025,
+        .most_points = 5};
+    const auto orbit = settled_orbit(p, 1);
+    REQUIRE(orbit);
+    const auto start = orbit_start(p, *orbit, 0.003, plan.family, {p.b});
+    REQUIRE(start);
+    Recorded few;
+    CHECK(follow_branches(plan, *start, 0.003, few));
+    CHECK(few.ends() == std::vector{BranchEnd::most_points, BranchEnd::most_points});
+    CHECK(few.points.size() <= 10);
+    int calls = 0;
+    plan.stop = [&] { return ++calls > 3; };
+    Recorded stopped;
+    CHECK(!follow_branches(plan, *start, 0.003, stopped));
+    CHECK(stopped.ends().empty());
+}
