@@ -276,6 +276,10 @@ ContinueRequest read_continue_request(const Json& object) {
     whole[r.parameter] = r.at;
     r.base = read_started_system(whole);
     add_errors("/base", r.base.errors, errors);
+    if (!r.base.system.parameters.has_straight_flights())
+        errors.push_back(
+            {"/base", nullptr, nullptr,
+             "orbits are continued for a ball without gravity and friction"});
     const double from = given["from"], to = given["to"];
     if (from == to || r.at < std::min(from, to) || r.at > std::max(from, to))
         errors.push_back(

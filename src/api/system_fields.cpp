@@ -43,15 +43,16 @@ const std::map<std::string, SystemNumber> numbers = {
 
 constexpr double standard_gravity = 9.80665;  // m/s^2
 
-/// Nullopt if not given.
+/// Nullopt if not given or not a table.
 std::optional<RestitutionField> restitution_field(const Json& fields, const char* name) {
     if (!fields.contains(name)) return std::nullopt;
     const Json& f = fields[name];
     const bool in_si = f.contains("speed_m_s");
+    const Json speed = f.value(in_si ? "speed_m_s" : "speed", Json::array()),
+               R = f.value("R", Json::array());
+    if (R.empty() || speed.size() != R.size()) return std::nullopt;
     return RestitutionField{
-        {f[in_si ? "speed_m_s" : "speed"].get<std::vector<double>>(),
-         f["R"].get<std::vector<double>>()},
-        in_si};
+        {speed.get<std::vector<double>>(), R.get<std::vector<double>>()}, in_si};
 }
 
 /// Gravity and friction of the ball, and its walls.

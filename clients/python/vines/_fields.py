@@ -425,6 +425,52 @@ class SweepFields(TypedDict, total=False):
     reduce: str
     indices: Iterable[int]
 
+class ContinueFields(TypedDict, total=False):
+    """Fields of a continuation.
+
+    base: fields of /v1/simulate: system, reduced or SI, start, preset; it also sets the
+        parameter's value at which the continuation starts; default: {}
+    parameter: name of a numeric parameter of the system, dimensionless or SI; default: required
+    from_: one end of the parameter's range; default: required; -1e+300 to 1e+300
+    to: the other end; default: required; -1e+300 to 1e+300
+    orbit: the first orbit. settled: the one on which the base's motion settles, which is
+        stable; stated: the one next to the base's start, which can be unstable; default:
+        "settled"
+    period_cycles: period of the stated orbit in forcing cycles, or a multiple of it
+        (dimensionless); 1 to 64; default: 1
+    transient_cycles: cycles before the search for the settled orbit (dimensionless); 0 to
+        1e+06; default: 200
+    cycles: further cycles in which the motion must settle (dimensionless); 1 to 1e+06; default:
+        1000
+    resolution: largest step of the parameter as a fraction of its range; steps are shorter
+        where the orbit changes fast (dimensionless); 1e-05 to 1; default: 0.01
+    points: largest number of points of a branch (dimensionless); 2 to 100000; default: 2000
+    switch: depth of branch switching: 1 also follows the branches that begin at flips and
+        symmetry breakings, 2 those that begin on these, and so on; true is 2 (dimensionless)
+    curve: follow the special points of this kind, instead of the branch, in two parameters;
+        default: none
+    second: of a curve: name of the second parameter; default: required for a curve
+    second_from: of a curve: one end of its range; default: required for a curve; -1e+300 to
+        1e+300
+    second_to: of a curve: the other end; default: required for a curve; -1e+300 to 1e+300
+    """
+
+    base: SweepBase
+    parameter: str
+    from_: float
+    to: float
+    orbit: Literal["settled", "stated"]
+    period_cycles: int
+    transient_cycles: int
+    cycles: int
+    resolution: float
+    points: int
+    switch: int | bool
+    curve: Literal["fold", "flip", "symmetry_breaking", "torus", "grazing"]
+    second: str
+    second_from: float
+    second_to: float
+
 class IdentifyFields(TypedDict, total=False):
     """Fields of an identification.
 
