@@ -38,8 +38,8 @@ int continue_branches(const ContinueOptions& o) {
 
 Command add_continue(CLI::App& app) {
     const auto options = std::make_shared<ContinueOptions>();
-    CLI::App* command = app.add_subcommand(
-        "continue", "follows periodic orbits along a parameter: POST /v1/continue");
+    CLI::App* command =
+        app.add_subcommand("continue", "branches of periodic orbits: POST /v1/continue");
     add_files(*command, options->files);
     add_request_fields(*command, options->fields);
     return with_exit_codes(

@@ -149,7 +149,7 @@ public:
             // Estrin's scheme: three levels of operations instead of eleven.
             static_assert(short_pairs == 6);
             const double q = d * d, q_squared = q * q, q_fourth = q_squared * q_squared;
-            const auto value = [=](const ShortCoefficients& c) {
+            const auto value = [=](const ShortCoefficients& c) __attribute__((always_inline)) {
                 const auto pair = [&c](Eigen::Index k) { return c.segment<2>(2 * k); };
                 const Eigen::Array2d sum = pair(0) + pair(1) * q +
                                            (pair(2) + pair(3) * q) * q_squared +
