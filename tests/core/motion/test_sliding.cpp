@@ -146,9 +146,10 @@ struct Rests : Observer {
 
 TEST_CASE("impacts under gravity and friction are those of a general integrator") {
     int all_rests = 0, all_sticks = 0;
-    for (const auto& [gravity, friction] :
+    for (const auto& laws :
          {std::pair{0., 0.}, std::pair{0.02, 0.}, std::pair{-0.01, 0.}, std::pair{0., 0.004},
           std::pair{0.015, 0.003}, std::pair{0.01, 0.012}, std::pair{0., 0.015}}) {
+        const double gravity = laws.first, friction = laws.second;
         CAPTURE(gravity);
         CAPTURE(friction);
         const Parameters p = machine(gravity, friction);
@@ -197,9 +198,11 @@ struct Product : Observer {
 }  // namespace
 
 TEST_CASE("the transfer matrices under gravity and friction are the derivatives of whole runs") {
-    for (const auto& [gravity, friction, until] :
+    for (const auto& laws :
          {std::tuple{0.01, 0., 6.}, std::tuple{0., 0.004, 6.}, std::tuple{0.003, 0.015, 7.},
           std::tuple{-0.004, 0.012, 7.}}) {
+        const double gravity = std::get<0>(laws), friction = std::get<1>(laws),
+                     until = std::get<2>(laws);
         CAPTURE(gravity);
         CAPTURE(friction);
         const Parameters p = machine(gravity, friction);
