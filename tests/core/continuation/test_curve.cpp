@@ -54,11 +54,13 @@ TEST_CASE("a curve of special points passes through those of other branches") {
         SpecialKind kind;
         double b, from, to;
     };
-    for (const auto& [kind, b, from, to] :
+    for (const Case& c :
          {Case{SpecialKind::fold, 0.014, 0.008, 0.03}, Case{SpecialKind::torus, 0.014, 0.008, 0.03},
           Case{SpecialKind::symmetry_breaking, 0.01, 0.005, 0.012},
           Case{SpecialKind::flip, 0.0065, 0.0045, 0.007},
           Case{SpecialKind::grazing, 0.0065, 0.0045, 0.007}}) {
+        const SpecialKind kind = c.kind;
+        const double b = c.b, from = c.from, to = c.to;
         CAPTURE(std::string(name_of(kind)));
         const Collected branch = branch_along_b(b, 0.6, from, to);
         const SpecialPoint* const begin = branch.first(kind);
