@@ -61,11 +61,10 @@ def main() -> None:
 
 def module(schemas: dict[str, Any]) -> str:
     fields = schemas["SimulateRequest"]["properties"]
-    objects = [(name, fields[field]) for field, name in NESTED.items() if field in fields]
-    objects += [(name, schemas[name]) for name in OBJECTS]
-    objects = [pair for k, pair in enumerate(objects) if pair[0] not in dict(objects[:k])]
+    objects = {name: fields[field] for field, name in NESTED.items()}
+    objects |= {name: schemas[name] for name in OBJECTS}
     parts = [HEAD, number_lists(schemas)]
-    parts += [functional(name, schema) for name, schema in objects]
+    parts += [functional(name, schema) for name, schema in objects.items()]
     parts += [declared(name, schemas[schema], what) for name, schema, what in KEYWORDS]
     return "\n\n".join(part.strip("\n") for part in parts) + "\n"
 

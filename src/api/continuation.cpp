@@ -119,7 +119,7 @@ public:
         if (s.angle) line["angle"] = *s.angle;
         send(std::move(line));
     }
-    /// There is no first orbit, or no such point.
+    /// Reports why the continuation has no first orbit or no point for a curve.
     void no_orbit(const char* reason, const std::string& detail) {
         ++count_.specials;
         send(

@@ -53,6 +53,13 @@ void check_si_is_whole(const MergedFields& l, bool forcing_fitted) {
     if (!errors.empty()) refuse(std::move(errors));
 }
 
+/// Index of the first number of a list that is not above its predecessor; the length if all are.
+std::size_t first_not_ascending(const Json& list) {
+    std::size_t i = 1;
+    while (i < list.size() && list[i].get<double>() > list[i - 1].get<double>()) ++i;
+    return i;
+}
+
 /// Errors of a table of R.
 void check_restitution(const MergedFields& l, const std::string& name, bool si) {
     if (!l.has(name)) return;
@@ -76,13 +83,12 @@ void check_restitution(const MergedFields& l, const std::string& name, bool si) 
             "has too few or too many points");
     if (speed.size() != R.size())
         fail("/R", R.size(), speed.size(), "needs as many values of R as speeds");
-    for (std::size_t i = 0; i < speed.size() && errors.empty(); ++i) {
-        const double w = speed[i].get<double>();
-        if (!(w >= 0) || (i > 0 && !(w > speed[i - 1].get<double>())))
-            fail(
-                "/" + column + "/" + std::to_string(i), speed[i], nullptr,
-                "needs speeds >= 0 in ascending order");
-    }
+    if (!errors.empty()) refuse(std::move(errors));
+    const std::size_t wrong = speed[0] >= 0 ? first_not_ascending(speed) : 0;
+    if (wrong < speed.size())
+        fail(
+            "/" + column + "/" + std::to_string(wrong), speed[wrong], nullptr,
+            "needs speeds >= 0 in ascending order");
     for (std::size_t i = 0; i < R.size() && errors.empty(); ++i)
         if (const double r = R[i].get<double>(); !(r >= 0 && r <= 1))
             fail("/R/" + std::to_string(i), R[i], Json::array({0, 1}), "needs R in [0, 1]");
@@ -249,12 +255,11 @@ std::shared_ptr<const Load> read_load(const MergedFields& l, const SiParameters&
                  unit = columns[0] == "acceleration_m_s2" ? omega0 * omega0
                         : columns[0] == "force_N"         ? si.k1
                                                           : 1;
-    for (std::size_t i = 0; i < tau.size() && errors.empty(); ++i) {
-        if (i > 0 && !(time[i].get<double>() > time[i - 1].get<double>()))
-            fail("/time_s/" + std::to_string(i), time[i], nullptr, "needs ascending times");
-        tau[i] = (tau[i] - begin) * omega0;
-    }
     if (!errors.empty()) refuse(std::move(errors));
+    if (const std::size_t wrong = first_not_ascending(time); wrong < time.size())
+        fail("/time_s/" + std::to_string(wrong), time[wrong], nullptr, "needs ascending times");
+    if (!errors.empty()) refuse(std::move(errors));
+    for (double& t : tau) t = (t - begin) * omega0;
     for (double& value : values) value /= unit;
     const LoadKind kind = columns[0] == "acceleration_m_s2" ? LoadKind::base_acceleration
                           : columns[0] == "force_N"         ? LoadKind::force
@@ -275,8 +280,7 @@ void apply_load(const MergedFields& l, System& system) {
     p.G = system.si->F = 0;
     p.Omega = 1;
     system.si->f = system.si->f0();
-    for (const char* name : {"G", "Omega"}) system.origin[name] = "replaced by forcing";
-    for (const char* name : {"F", "f"}) system.origin[name] = "replaced by forcing";
+    for (const char* name : {"G", "Omega", "F", "f"}) system.origin[name] = "replaced by forcing";
     const double far = p.load->largest_base_displacement();
     if (far > far_away * p.b)
         system.notes.push_back(

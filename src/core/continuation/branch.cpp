@@ -42,7 +42,7 @@ OrbitPoint orbit_point(const OrbitEquations& equations, const BranchNode& node) 
 /// Follows one direction of one branch.
 class BranchFollower {
 public:
-    /// What a step results in.
+    /// Result of a step.
     struct Step {
         std::optional<BranchEnd> end = {};
         std::optional<Relative> onto = {};  ///< continue there

@@ -39,7 +39,8 @@ struct OrbitPoint {
     std::vector<double> parameters;
     ImpactSequence sequence;
     Unknowns z;
-    /// Of a whole period, by descending modulus. Those below 1e-10 of the largest are rounding.
+    /// Floquet multipliers of a whole period, by descending modulus. Those below 1e-10 of the
+    /// largest are rounding errors.
     std::array<std::complex<double>, 4> multipliers;
     OrbitMeasures measures;
 

@@ -10,7 +10,8 @@ namespace vines {
 struct BranchNode {
     CurvePoint at;
     OrbitValues values;
-    /// Of the transfer matrix, by descending modulus: over half a period if it is mirrored.
+    /// Eigenvalues of the transfer matrix, by descending modulus: over half a period if the orbit
+    /// is mirrored.
     std::array<std::complex<double>, 4> multipliers;
     // Test functions, which change sign at special points.
     double fold;      ///< component of the tangent along the parameter

@@ -23,6 +23,11 @@ double mean_relative_speed(const BetweenImpacts& f, const Arc& arc) {
     return f.relative_speed + arc.bend;
 }
 
+/// x'' at the end of a flight, before the impact.
+double x_ddot_at_end(const Flow::Coefficients& law, const Arc& arc) {
+    return law[2] * arc.end.sin_theta - law[0] * arc.end.x - law[1] * arc.end.x_dot;
+}
+
 /// The flight after an impact at its end.
 BetweenImpacts after_impact(
     const Parameters& p, const BetweenImpacts& f, const Arc& arc, int side, double approach,
@@ -42,17 +47,15 @@ using Derivatives = Eigen::Matrix<double, 4, Eigen::Dynamic, Eigen::RowMajor>;
 /// Carries derivatives over a flight and its impact; `approach` is x' - y' before it. Returns the
 /// derivative of x - y at the contact.
 Eigen::RowVectorXd carry_derivatives(
-    const Parameters& p, const BetweenImpacts& f, const Arc& arc, double approach, int side,
-    Eigen::Index s_column, Derivatives& d) {
+    const Parameters& p, const Flow::Coefficients& law, const BetweenImpacts& f, const Arc& arc,
+    double approach, int side, Eigen::Index s_column, Derivatives& d) {
     const Transfer& a = arc.transfer;
-    const double x_ddot = Flow::free_coefficients(p)[2] * arc.end.sin_theta - arc.end.x -
-                          2 * p.zeta() * arc.end.x_dot;
     const Eigen::RowVectorXd theta = d.row(0), x = d.row(1), x_dot = d.row(2), r = d.row(3);
     Eigen::RowVectorXd x_end = a.a22 * x + a.a21 * x_dot + arc.x_by_theta * theta,
                        x_dot_end = a.a12 * x + a.a11 * x_dot + arc.x_dot_by_theta * theta;
     Eigen::RowVectorXd gap = f.s * r + x_end - x - f.s * x_dot;
     x_end(s_column) += arc.end.x_dot;
-    x_dot_end(s_column) += x_ddot;
+    x_dot_end(s_column) += x_ddot_at_end(law, arc);
     gap(s_column) += approach;
     const Eigen::RowVectorXd approach_rate = r + x_dot_end - x_dot;
     const double R_speed = p.restitution_derivative(side, std::abs(approach));
@@ -65,13 +68,11 @@ Eigen::RowVectorXd carry_derivatives(
 
 /// Applies the transfer matrix of a flight and its impact (30).
 void carry_transfer(
-    const Parameters& p, const BetweenImpacts& f, const Arc& arc, double approach, int side,
-    Frame& transfer) {
-    carry(transfer, Leg{arc.transfer, f.s, -2 * p.zeta() * f.s, 1, false}, p.epsilon);
-    const double x_ddot = Flow::free_coefficients(p)[2] * arc.end.sin_theta - arc.end.x -
-                          2 * p.zeta() * arc.end.x_dot;
-    transfer =
-        saltation(p, impact_at(p, {f.s, side, arc.end, approach}, x_ddot, 0)).times(transfer);
+    const Parameters& p, const Flow::Coefficients& law, const BetweenImpacts& f, const Arc& arc,
+    double approach, int side, Frame& transfer) {
+    carry(transfer, Leg{arc.transfer, f.s, -law[1] * f.s, 1, false}, p.epsilon);
+    const Impact impact = impact_at(p, {f.s, side, arc.end, approach}, x_ddot_at_end(law, arc), 0);
+    transfer = saltation(p, impact).times(transfer);
 }
 
 }  // namespace
@@ -149,15 +150,15 @@ std::optional<OrbitValues> OrbitEquations::evaluated(
         const Arc arc = arc_over(law, f.oscillation(), f.s);
         const double approach = f.relative_speed + arc.gain,
                      R = p.restitution(side, std::abs(approach));
-        // Of a return to the same wall the mean speed, which has no zero at s = 0.
+        // For a return to the same wall, the mean speed stands for x - y: it is not zero at s = 0.
         const double mean = mean_relative_speed(f, arc), of = f.side == side ? f.s : 1,
                      miss = f.side == side ? mean : (f.side - side) * p.b + mean * f.s;
         out.residual(k) = miss / length_;
         out.approach.push_back(side * approach);
-        carry_transfer(p, f, arc, approach, side, out.transfer);
+        carry_transfer(p, law, f, arc, approach, side, out.transfer);
         if (jacobian) {
             jacobian->row(k).head(equations()) =
-                carry_derivatives(p, f, arc, approach, side, 4 + k, d) / (of * length_);
+                carry_derivatives(p, law, f, arc, approach, side, 4 + k, d) / (of * length_);
             if (f.side == side) (*jacobian)(k, 4 + k) -= mean / (f.s * length_);
         }
         f = after_impact(p, f, arc, side, approach, R);

@@ -139,11 +139,7 @@ struct CellSearch {
     std::vector<GrazingPoint>& grazing;
 
     /// Coefficients of the ball's path about the left end of cell k.
-    Cubic ball_from(int k) const {
-        const Cubic y = start.ball();
-        const double s = k * h;
-        return {y.at(s), y.rate(s), y.c2 + 3 * y.c3 * s, y.c3};
-    }
+    Cubic ball_from(int k) const { return start.ball().about(k * h); }
 
     /// The most common case of rule 4: g' has no zero in cell k, and g ends beyond the wall
     /// ahead.

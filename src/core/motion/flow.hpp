@@ -33,6 +33,8 @@ struct Cubic {
     double at(double s) const { return c0 + s * (c1 + s * (c2 + s * c3)); }
     double rate(double s) const { return c1 + s * (2 * c2 + s * (3 * c3)); }
     double second(double s) const { return 2 * c2 + s * (6 * c3); }
+    /// The same polynomial as a function of the time since s.
+    Cubic about(double s) const { return {at(s), rate(s), c2 + 3 * c3 * s, c3}; }
     bool is_zero() const { return c0 == 0 && c1 == 0 && c2 == 0 && c3 == 0; }
 };
 

@@ -84,14 +84,14 @@ Saltation saltation(const Parameters& p, const Impact& i) {
         .r_y = -jump_y_dot * kappa - friction};
 }
 
-Saltation saltation(const Parameters& p, const Slip& slip) {
-    const double jump_y_dot = (1 - slip.ratio) / (1 + p.epsilon);
+Saltation saltation(double epsilon, const Slip& slip) {
+    const double jump_y_dot = (1 - slip.ratio) / (1 + epsilon);
     return {
         .R = -1,
         .R_speed = -slip.ratio,
         .jump_x = 0,
         .jump_y = 0,
-        .jump_x_dot = p.epsilon * jump_y_dot,
+        .jump_x_dot = epsilon * jump_y_dot,
         .jump_y_dot = jump_y_dot,
         .r_x = 0,
         .r_y = 0};

@@ -90,7 +90,7 @@ Eigen::Vector4d wall_normal();
 
 /// Saltation matrix of a slip: multiplies deviations of x' - y' by `ratio`, and leaves those of the
 /// positions and of the centre of mass unchanged.
-Saltation saltation(const Parameters& parameters, const Slip& slip);
+Saltation saltation(double epsilon, const Slip& slip);
 
 /// Saltation matrix of an impact. M has eigenvalues of moduli 1, 1, R, R_speed.
 Saltation saltation(const Parameters& parameters, const Impact& impact);

@@ -40,18 +40,12 @@ std::size_t Load::interval_at(double tau) const {
     return after == tau_.begin() ? 0 : static_cast<std::size_t>(after - tau_.begin()) - 1;
 }
 
-namespace {
-
-Cubic about(const Cubic& c, double s) { return {c.at(s), c.rate(s), c.c2 + 3 * c.c3 * s, c.c3}; }
-
-}  // namespace
-
 Cubic Load::base(std::size_t interval, double from) const {
-    return moves_base() ? about(pieces_[interval], from - tau_[interval]) : Cubic{};
+    return moves_base() ? pieces_[interval].about(from - tau_[interval]) : Cubic{};
 }
 
 Cubic Load::force(std::size_t interval, double from, double damping) const {
-    const Cubic c = about(pieces_[interval], from - tau_[interval]);
+    const Cubic c = pieces_[interval].about(from - tau_[interval]);
     if (!moves_base()) return c;
     return {c.c0 + damping * c.c1, c.c1 + 2 * damping * c.c2, c.c2 + 3 * damping * c.c3, c.c3};
 }

@@ -4,6 +4,7 @@
 #include <cstddef>
 #include <vector>
 
+#include "core/motion/elementary.hpp"
 #include "core/motion/flow.hpp"
 
 namespace vines {
@@ -18,15 +19,14 @@ enum class LoadKind {
 /// force is zero; a displacement stays. The motion of the base is a cubic in each interval.
 class Load {
 public:
-    /// As many values as times, in tau; at least two.
+    /// `tau`: times of the samples; `values`: one for each time. At least two samples.
     Load(LoadKind kind, const std::vector<double>& tau, const std::vector<double>& values);
 
     /// The number of the interval that begins at or before tau >= 0.
     std::size_t interval_at(double tau) const;
-    double begin_of(std::size_t interval) const { return tau_[interval]; }
     /// Infinity for the last interval, which follows the record.
     double end_of(std::size_t interval) const {
-        return interval + 1 < tau_.size() ? tau_[interval + 1] : infinite;
+        return interval + 1 < tau_.size() ? tau_[interval + 1] : infinity;
     }
     /// Displacement of the base as a function of the time since `from`; zero for a force.
     Cubic base(std::size_t interval, double from) const;
@@ -40,7 +40,6 @@ public:
     double largest_base_displacement() const { return largest_; }  ///< at the samples, m
 
 private:
-    static constexpr double infinite = 1e300;
     const LoadKind kind_;
     std::vector<double> tau_;
     std::vector<Cubic> pieces_;  // base or force by the time since the interval's beginning

@@ -75,7 +75,7 @@ void Run::begin_sliding(int direction) {
     f.shift = particular_solution(free_, force);
 }
 
-/// What load and gravity add to the joint motion of both masses.
+/// The polynomial that load and gravity add to the flow's joint motion of both masses.
 Cubic Run::joint_shift() const {
     Cubic force = forces_ && forces_->loading ? forces_->loading->force : Cubic{};
     force.c0 += p_.epsilon * p_.gravity;
@@ -181,16 +181,20 @@ void Run::fly_to(const std::optional<Contact>& contact, const Transfer* over) {
     const bool ends_interval = p_.load && limit == until_next_interval();
     pass(free_, limit, 0, over);
     if (limit == rest) end_ = End::tau_end;
-    y_ += limit * (y_dot_ + 0.5 * y_ddot() * limit);
-    y_dot_ += y_ddot() * limit;
-    lo_ = with_shift(
-        limit == free_.reach() ? free_.at(of_flow(), Flow::cells)
-                               : free_.after(of_flow(), std::max(0.0, limit)),
-        limit);
+    move_freely(
+        limit, limit == free_.reach() ? free_.at(of_flow(), Flow::cells)
+                                      : free_.after(of_flow(), std::max(0.0, limit)));
     slip_zeros_ = 0;
     side_ = 0;
     bounce_limit_ -= limit;
     if (ends_interval && !end_) begin_next_interval();
+}
+
+/// Sets the state after a free flight of duration s, given the flow's.
+void Run::move_freely(double s, const Oscillation& flow_after) {
+    y_ += s * (y_dot_ + 0.5 * y_ddot() * s);
+    y_dot_ += y_ddot() * s;
+    lo_ = with_shift(flow_after, s);
 }
 
 void Run::graze(double tau, int side) {
@@ -211,8 +215,7 @@ void Run::stop_sliding(double s) {
     const Oscillation end = free_.after(of_flow(), s);
     const double before = relative_acceleration(end, s);
     pass(free_, s, 0, nullptr);
-    y_ += s * (y_dot_ + 0.5 * y_ddot() * s);
-    lo_ = with_shift(end, s);
+    move_freely(s, end);
     y_dot_ = lo_.x_dot;
     relative_speed_ = 0;
     side_ = 0;
@@ -231,8 +234,8 @@ void Run::stop_sliding(double s) {
 }
 
 void Run::strike(const Contact& contact, double relative_acceleration) {
-    const double y_ddot = forces_ ? forces_->y_ddot : 0;
-    const Impact i = impact_at(p_, contact, relative_acceleration + y_ddot, clock_.tau(), y_ddot);
+    const Impact i =
+        impact_at(p_, contact, relative_acceleration + y_ddot(), clock_.tau(), y_ddot());
     const bool pressed = i.side * relative_acceleration > 0 && contact.s < bounce_limit_;
     chatter_ = i.side == last_side_ && pressed ? chatter_ + 1 : 1;
     last_side_ = i.side;

@@ -81,7 +81,7 @@ private:
         return o;
     }
     double y_ddot() const { return forces_ ? forces_->y_ddot : 0; }
-    /// x'' - y'' of the free ball after s, and the rate of x'' at once.
+    /// x'' - y'' of the free ball after s.
     double relative_acceleration(const Oscillation& flow_after, double s) const {
         const double x_ddot = free_.acceleration(flow_after);
         return forces_ ? x_ddot + forces_->shift.second(s) - forces_->y_ddot : x_ddot;
@@ -92,6 +92,7 @@ private:
     double until_next_interval() const;  ///< of the load
     double until_boundary(double rest, const Flow& flow) const;
     void begin_next_interval();
+    void move_freely(double s, const Oscillation& flow_after);
     void stop_sliding(double s);
     double pull_together() const;
     void rest_inside();

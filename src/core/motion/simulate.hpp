@@ -15,7 +15,7 @@
 
 namespace vines {
 
-/// What a recorded load does, as functions of the time s since the last event.
+/// A recorded load's force and base displacement, as functions of the time s since the last event.
 struct Loading {
     Cubic force;  ///< right-hand side of x'' + 2 zeta x' + x
     Cubic base;   ///< displacement of the base; zero for a force on the oscillator
@@ -25,7 +25,7 @@ struct Loading {
 struct Forces {
     double y_ddot = 0;          ///< of a free ball, constant
     bool rests_inside = false;  ///< friction holds the ball inside the cavity
-    /// What the forces on the oscillator add to the flow's motion: x(s) = flow's x(s) + shift(s).
+    /// Contribution of the forces on the oscillator to its motion: x(s) = flow's x(s) + shift(s).
     Cubic shift;
     std::optional<Loading> loading;
 };

@@ -33,11 +33,7 @@ Leg leg_of(const Stretch& s) {
     return {*s.transfer, s.duration, -s.flow.damping() * s.duration, 1, sticking};
 }
 
-Saltation slip_of(const Leg& leg, double epsilon) {
-    Parameters p;
-    p.epsilon = epsilon;
-    return saltation(p, Slip{0, leg.slip});
-}
+Saltation slip_of(const Leg& leg, double epsilon) { return saltation(epsilon, Slip{0, leg.slip}); }
 
 namespace {
 

@@ -49,7 +49,7 @@ public:
         for (long part = 0; part < leg.parts; ++part) carry(matrix, leg, p_.epsilon);
     }
     void on_impact(const Impact& impact) override { matrix = saltation(p_, impact).times(matrix); }
-    void on_slip(const Slip& slip) override { matrix = saltation(p_, slip).times(matrix); }
+    void on_slip(const Slip& slip) override { matrix = saltation(p_.epsilon, slip).times(matrix); }
 
     Frame matrix = Frame::Identity();
 
@@ -63,7 +63,7 @@ public:
     explicit Powers(const Parameters& p) : product(p.epsilon), p_(p) {}
     void on_stretch(const Stretch& stretch) override { product.pass(leg_of(stretch)); }
     void on_impact(const Impact& impact) override { product.strike(saltation(p_, impact)); }
-    void on_slip(const Slip& slip) override { product.strike(saltation(p_, slip)); }
+    void on_slip(const Slip& slip) override { product.strike(saltation(p_.epsilon, slip)); }
 
     PowerProduct product;
 

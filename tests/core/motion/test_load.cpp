@@ -8,9 +8,10 @@
 #include "core/measures/energy.hpp"
 #include "core/motion/load.hpp"
 #include "core/motion/record.hpp"
-#include "core/stability/exterior.hpp"
+#include "whole_run.hpp"
 
 using namespace vines;
+using namespace vines::test;
 
 namespace {
 
@@ -116,28 +117,13 @@ TEST_CASE("the energy and the deviations of a loaded motion balance") {
         const EnergyBalance balance = energy.balance({0, 45});
         CHECK(std::abs(balance.residual) < 1e-12 * std::max(balance.input, balance.damper));
         CHECK(balance.friction > 0);
-        struct Product : Observer {
-            explicit Product(const Parameters& of) : p(of) {}
-            void on_stretch(const Stretch& s) override {
-                m = transfer_of(leg_of(s), p.epsilon) * m;
-            }
-            void on_impact(const Impact& i) override { m = saltation(p, i).matrix() * m; }
-            void on_slip(const Slip& s) override { m = saltation(p, s).matrix() * m; }
-            const Parameters& p;
-            Matrix4 m = Matrix4::Identity();
-        } product(p);
+        WholeRunProduct product(p);
         Observer* const with[] = {&product};
-        const Eigen::Vector4d start = vector_of({0, 0, 0.01, 0.001});
-        constexpr double until = 9, h = 1e-6;
-        simulate(p, state_of(start), {until, 1000, {}}, with);
-        for (int k = 0; k < 4; ++k) {
-            const auto run = [&](double by) {
-                const Eigen::Vector4d from = start + by * Eigen::Vector4d::Unit(k);
-                return vector_of(simulate(p, state_of(from), {until, 1000, {}}, {}).state);
-            };
-            const Eigen::Vector4d derivative =
-                (8 * (run(h) - run(-h)) - (run(2 * h) - run(-2 * h))) / (12 * h);
-            CHECK((derivative - product.m.col(k)).norm() < 1e-6 * (1 + product.m.norm()));
-        }
+        const State start{0, 0, 0.01, 0.001};
+        constexpr double until = 9;
+        simulate(p, start, {until, 1000, {}}, with);
+        const Matrix4 derivative = derivative_of_run(p, start, until);
+        for (int k = 0; k < 4; ++k)
+            CHECK((derivative.col(k) - product.m.col(k)).norm() < 1e-6 * (1 + product.m.norm()));
     }
 }

@@ -12,8 +12,10 @@
 #include "core/stability/exterior.hpp"
 #include "core/stability/linear.hpp"
 #include "core/stability/lyapunov.hpp"
+#include "whole_run.hpp"
 
 using namespace vines;
+using namespace vines::test;
 
 namespace {
 
@@ -183,20 +185,6 @@ TEST_CASE("impacts under gravity and friction are those of a general integrator"
     CHECK(all_sticks > 2);
 }
 
-namespace {
-
-/// Product of all transfer matrices of a run.
-struct Product : Observer {
-    explicit Product(const Parameters& parameters) : p(parameters) {}
-    void on_stretch(const Stretch& s) override { m = transfer_of(leg_of(s), p.epsilon) * m; }
-    void on_impact(const Impact& i) override { m = saltation(p, i).matrix() * m; }
-    void on_slip(const Slip& s) override { m = saltation(p, s).matrix() * m; }
-    const Parameters p;
-    Matrix4 m = Matrix4::Identity();
-};
-
-}  // namespace
-
 TEST_CASE("the transfer matrices under gravity and friction are the derivatives of whole runs") {
     for (const auto& laws :
          {std::tuple{0.01, 0., 6.}, std::tuple{0., 0.004, 6.}, std::tuple{0.003, 0.015, 7.},
@@ -206,25 +194,16 @@ TEST_CASE("the transfer matrices under gravity and friction are the derivatives 
         CAPTURE(gravity);
         CAPTURE(friction);
         const Parameters p = machine(gravity, friction);
-        const Eigen::Vector4d start = vector_of({0.01, 0.002, -0.02, 0.005});
-        Product product(p);
+        const State start{0.01, 0.002, -0.02, 0.005};
+        WholeRunProduct product(p);
         Rests rests;
         Observer* const observers[] = {&product, &rests};
-        simulate(p, state_of(start), {until, 1000, {}}, observers);
+        simulate(p, start, {until, 1000, {}}, observers);
         CHECK(rests.at_wall == 0);
         CHECK((friction == 0 || rests.slips + rests.inside > 0));
-        constexpr double h = 1e-6;
-        for (int k = 0; k < 4; ++k) {
-            const auto run = [&](double by) {
-                return vector_of(
-                    simulate(
-                        p, state_of(start + by * Eigen::Vector4d::Unit(k)), {until, 1000, {}}, {})
-                        .state);
-            };
-            const Eigen::Vector4d derivative =
-                (8 * (run(h) - run(-h)) - (run(2 * h) - run(-2 * h))) / (12 * h);
-            CHECK((derivative - product.m.col(k)).norm() < 1e-7 * (1 + product.m.norm()));
-        }
+        const Matrix4 derivative = derivative_of_run(p, start, until);
+        for (int k = 0; k < 4; ++k)
+            CHECK((derivative.col(k) - product.m.col(k)).norm() < 1e-7 * (1 + product.m.norm()));
     }
 }
 

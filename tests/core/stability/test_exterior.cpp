@@ -68,7 +68,7 @@ Leg random_leg(std::mt19937_64& engine, const Parameters& p, Kind kind) {
 Saltation random_strike(std::mt19937_64& engine, Parameters p) {
     if (p.R_plus > 0 && engine() % 2) p.table_plus = p.table_minus = random_table(engine, 0.5);
     const auto u = [&] { return uniform(engine, -1, 1); };
-    if (engine() % 3 == 0) return saltation(p, Slip{0, u()});
+    if (engine() % 3 == 0) return saltation(p.epsilon, Slip{0, u()});
     const double angle = u();
     Contact c{0, u() < 0 ? -1 : 1, {u(), u(), std::sin(angle), std::cos(angle)}, 0};
     c.relative_speed = c.side * uniform(engine, 0.1, 1);
