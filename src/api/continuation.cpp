@@ -164,7 +164,7 @@ struct PointsOfKind : BranchSink {
 
 /// Curves through the special points of the branch. False if stopped.
 bool follow_curves(
-    const ContinueRequest& r, BranchPlan plan, const OrbitStart& start, double length,
+    const ContinueRequest& r, const BranchPlan& plan, const OrbitStart& start, double length,
     ContinuationLines& lines) {
     PointsOfKind points(*r.curve);
     if (!follow_branches(plan, start, length, points)) return false;
@@ -241,22 +241,9 @@ void read_curve(ContinueRequest& r, const Json& given, const SystemFields& field
         .most_points = r.plan.most_points};
 }
 
-}  // namespace
-
-ContinueRequest read_continue_request(const Json& object) {
-    Json given = object;
-    if (given.contains("switch") && given["switch"].is_boolean())
-        given["switch"] = given["switch"].get<bool>() ? depth_of_true : 0;
-    std::vector<FieldError> errors = check(continue_fields(), given);
-    for (const char* name : {"parameter", "from", "to"})
-        if (!given.contains(name))
-            errors.push_back(
-                {std::string("/") + name, nullptr, nullptr,
-                 "a continuation needs parameter, from and to"});
-    if (!errors.empty()) refuse(std::move(errors));
-
-    ContinueRequest r;
-    r.given = object;
+/// Its parameter, its base and the range of the parameter. Returns the fields of the base's system.
+SystemFields read_family(ContinueRequest& r, const Json& given) {
+    std::vector<FieldError> errors;
     r.parameter = given["parameter"];
     const std::vector<std::string> names = continued_names();
     if (std::ranges::find(names, r.parameter) == names.end())
@@ -265,8 +252,7 @@ ContinueRequest read_continue_request(const Json& object) {
     const Json base = given.value("base", Json::object());
     add_errors("/base", check(sweep_base_fields(), base), errors);
     if (!errors.empty()) refuse(std::move(errors));
-    const MergedFields merged = merge_with_preset(sweep_base_fields(), base);
-    SystemFields fields = system_fields(merged.fields);
+    SystemFields fields = system_fields(merge_with_preset(sweep_base_fields(), base).fields);
     const auto at = value_in(fields, r.parameter);
     if (!at)
         refuse(
@@ -286,6 +272,27 @@ ContinueRequest read_continue_request(const Json& object) {
             {"/from", from, Json::array({r.at, to}),
              "from and to must differ and enclose the base's " + r.parameter});
     if (!errors.empty()) refuse(std::move(errors));
+    return fields;
+}
+
+}  // namespace
+
+ContinueRequest read_continue_request(const Json& object) {
+    Json given = object;
+    if (given.contains("switch") && given["switch"].is_boolean())
+        given["switch"] = given["switch"].get<bool>() ? depth_of_true : 0;
+    std::vector<FieldError> errors = check(continue_fields(), given);
+    for (const char* name : {"parameter", "from", "to"})
+        if (!given.contains(name))
+            errors.push_back(
+                {std::string("/") + name, nullptr, nullptr,
+                 "a continuation needs parameter, from and to"});
+    if (!errors.empty()) refuse(std::move(errors));
+
+    ContinueRequest r;
+    r.given = object;
+    const SystemFields fields = read_family(r, given);
+    const double from = given["from"], to = given["to"];
     r.plan = {
         .family = {systems_along(fields, {r.parameter}), {std::abs(to - from)}},
         .from = from,
