@@ -12,7 +12,9 @@ namespace {
 
 // g is the standard gravity.
 const std::vector<Unit> acceleration_units = {
-    {"m/s2", 1, {"m/s2", "m_s2", "ms-2", "m/s/s"}}, {"g", 9.80665, {"g"}}};
+    {"m/s2", 1, {"m/s2", "m_s2", "ms-2", "m/s/s"}},
+    {"mm/s2", 1e-3, {"mm/s2", "mm_s2", "mms-2", "mm/s/s"}},
+    {"g", 9.80665, {"g"}}};
 
 /// Adapts a field of /v1/simulate to a record: some of the system is measured, not given.
 void adapt_to_record(Field& f) {
@@ -96,7 +98,21 @@ FieldTable make_identify_fields() {
             "samples; direct_exponents, exponents with histories by the direct method of the paper",
         .fallback = Json::array(),
         .choices = {"motion", "direct_exponents"}};
-    return table + grouped("output", {include}) + grouped("record", record_rows());
+    Field uncertainty = {
+        .name = "uncertainty",
+        .type = FieldType::object,
+        .description =
+            "relative standard errors of the given m1, c1, k1 and m2; for a record they "
+            "become part of the standard errors of b, R and the other fitted values",
+        .fallback_note = "0: exact"};
+    for (const char* name : {"m1", "c1", "k1", "m2"})
+        uncertainty.fields.push_back(
+            {.name = name,
+             .description = std::string("relative standard error of ") + name,
+             .fallback = 0,
+             .range = Range{0, 0.5}});
+    return table + grouped("output", {include}) + grouped("record", record_rows()) +
+           grouped("record", {uncertainty});
 }
 
 }  // namespace
@@ -105,7 +121,7 @@ const Channel time_channel{
     .name = "time",
     .column = "time_s",
     .beginnings = {"time", "t"},
-    .units = {{"s", 1, {"s", "sec"}}, {"ms", 1e-3, {"ms", "msec"}}},
+    .units = {{"s", 1, {"s", "sec", "hh:mm:ss"}}, {"ms", 1e-3, {"ms", "msec"}}},
     .quantity = "time"};
 const Channel displacement_channel{
     .name = "displacement",
