@@ -206,7 +206,8 @@ std::vector<FittedEffect> tested_effects(
                 u == Unknown::force_sin || u == Unknown::force_cos)
                 most = std::max(most, std::abs(effect.change[k]) / state.fit.errors[k]);
         }
-        if (most > matters) found.push_back(effect);
+        // A slope of R leaves its mean as it is.
+        if (most > matters || c.effect == Effect::R_varies) found.push_back(effect);
     }
     return found;
 }
