@@ -85,12 +85,9 @@ IdentifyRequest read_fields(const Json& given, bool with_record, bool forcing_fi
         std::sort(m.impact_times.begin(), m.impact_times.end());
     }
     m.fixed = fixed_of(merged.words("fixed"));
-    if (merged.has("uncertainty")) {
-        const Json& given = merged.fields["uncertainty"];
-        m.uncertainty = {
-            given.value("m1", 0.0), given.value("c1", 0.0), given.value("k1", 0.0),
-            given.value("m2", 0.0)};
-    }
+    m.uncertainty = {
+        merged.number("m1_uncertainty"), merged.number("c1_uncertainty"),
+        merged.number("k1_uncertainty"), merged.number("m2_uncertainty")};
     if (with_record)
         for (const double hertz : {50, 60})
             m.mains.push_back(2 * std::numbers::pi * hertz / r.system.si->omega0());

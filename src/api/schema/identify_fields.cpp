@@ -3,6 +3,8 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include <utility>
+
 #include "api/schema/enum_names.hpp"
 #include "api/schema/tables.hpp"
 
@@ -98,21 +100,17 @@ FieldTable make_identify_fields() {
             "samples; direct_exponents, exponents with histories by the direct method of the paper",
         .fallback = Json::array(),
         .choices = {"motion", "direct_exponents"}};
-    Field uncertainty = {
-        .name = "uncertainty",
-        .type = FieldType::object,
-        .description =
-            "relative standard errors of the given m1, c1, k1 and m2; for a record they "
-            "become part of the standard errors of b, R and the other fitted values",
-        .fallback_note = "0: exact"};
+    std::vector<Field> uncertainties;
     for (const char* name : {"m1", "c1", "k1", "m2"})
-        uncertainty.fields.push_back(
-            {.name = name,
-             .description = std::string("relative standard error of ") + name,
+        uncertainties.push_back(
+            {.name = std::string(name) + "_uncertainty",
+             .description = std::string("relative standard error of the given ") + name +
+                            "; for a record it becomes part of the standard errors of b, R and "
+                            "the other fitted values",
              .fallback = 0,
              .range = Range{0, 0.5}});
     return table + grouped("output", {include}) + grouped("record", record_rows()) +
-           grouped("record", {uncertainty});
+           grouped("record", std::move(uncertainties));
 }
 
 }  // namespace
