@@ -58,6 +58,10 @@ void add_forcing(Json& j, const JointFit& fit, const Parameters& p) {
         fit.forcing.phase.has_value());
 }
 
+// Smaller relative variations of the forcing are not reported: in a record without noise they are
+// numerical errors.
+constexpr double steadiest_forcing = 1e-4;
+
 /// What an effect outside the model is, with its size.
 std::string effect_size_text(const FittedEffect& e, const JointFit& fit, double omega0) {
     const double amplitude =
@@ -153,7 +157,9 @@ void add_fitted_warnings(
         warnings.push_back(fmt::format(
             "the forcing has f = {:.6g} Hz, not f = {:.6g} Hz",
             hertz(fit.values[Unknown::Omega], omega0), hertz(given[Unknown::Omega], omega0)));
-    for (const FittedEffect& e : fit.effects) warnings.push_back(effect_text(e, fit, omega0));
+    for (const FittedEffect& e : fit.effects)
+        if (e.effect != Effect::forcing_varies || e.size > steadiest_forcing)
+            warnings.push_back(effect_text(e, fit, omega0));
     // The search fits the oscillator only where the record contradicts it.
     if (!fit.fixed[Unknown::stiffness] || !fit.fixed[Unknown::damping])
         warnings.push_back(fmt::format(

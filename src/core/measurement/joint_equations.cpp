@@ -3,6 +3,7 @@
 #include <Eigen/SparseCholesky>
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 
 #include "core/measurement/robust.hpp"
 
@@ -238,7 +239,7 @@ void add_mass_rows(
                 by_first * state.effects->flight(i - 1, -1) +
                 by_second * state.effects->flight(i, 1);
             by_effects(state.effects->first_of(Effect::R_varies)) +=
-                by_R * (std::abs(r.approach) - state.effects->typical_speed);
+                by_R * (std::abs(r.approach) - state.effects->mean_speed);
             if (const Eigen::Index at = state.effects->first_of(Effect::given_mass_ratio); at >= 0)
                 by_effects(at) +=
                     by_second == state.fit.epsilon ? (r.momentum - r.jump) / state.fit.epsilon : 0;
@@ -268,7 +269,9 @@ void add_mass_flights(JointFitState& state, const Borders& borders) {
         momentum.push_back(r.momentum), restitution.push_back(r.restitution);
         jump.push_back(std::abs(r.jump)), approach.push_back(std::abs(r.approach));
     }
-    if (state.effects) state.effects->typical_speed = median(approach);
+    if (state.effects && !approach.empty())
+        state.effects->mean_speed = std::accumulate(approach.begin(), approach.end(), 0.0) /
+                                    static_cast<double>(approach.size());
     // The scatter of the residuals, with a lower bound since no wall is perfectly constant.
     const double of_momentum = std::max(
                      robust_deviation(std::move(momentum)),

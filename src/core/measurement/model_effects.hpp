@@ -43,7 +43,7 @@ public:
         std::size_t i, double tau, const MotionRow& row, double OscillatorMotion::* member);
     /// Of y' at the start (+1) or the end (-1) of the flight between borders p and p + 1.
     double flight(std::size_t p, double sign) const;
-    double typical_speed = 0;  ///< median of |x' - y'| before the impacts
+    double mean_speed = 0;  ///< mean of |x' - y'| before the impacts
 
     /// First column of an effect; -1 if it is not tested.
     Eigen::Index first_of(Effect effect) const;
