@@ -334,8 +334,7 @@ Csv parse_csv(std::string_view bytes, const ReadLimits& limits) {
         }
         split_cells(line->text, *separator, cells);
         if (cells.empty()) continue;
-        if (!cells[0].text.empty() &&
-            std::isalpha(static_cast<unsigned char>(cells[0].text[0])) &&
+        if (!cells[0].text.empty() && std::isalpha(static_cast<unsigned char>(cells[0].text[0])) &&
             !has_number(cells, *separator)) {
             if (!footer) footer = line;
             continue;
