@@ -199,6 +199,8 @@ inline constexpr Property<Perturbation> perturbation_columns[] = {
 inline constexpr Property<std::vector<IdentifiedImpact>> identified_wall_columns[] = {
     {quantity.tau, of_each<&IdentifiedImpact::tau>},
     {quantity.side.with("wall"), of_each<&IdentifiedImpact::side>},
+    {quantity.tau_error.with("standard error of the time; null in a list or if hidden"),
+     of_each<&IdentifiedImpact::tau_error>},
 };
 
 inline constexpr Property<std::vector<IdentifiedImpact>> identified_columns[] = {

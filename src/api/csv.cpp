@@ -6,11 +6,13 @@
 #include <algorithm>
 #include <cctype>
 #include <charconv>
+#include <chrono>
 #include <cmath>
 #include <optional>
 #include <set>
 
 #include "api/text_encoding.hpp"
+#include "core/motion/elementary.hpp"
 
 namespace vines::api {
 
@@ -97,13 +99,53 @@ std::vector<Cell> cells_of(std::string_view line, char separator) {
     return cells;
 }
 
-/// nullopt if the cell is not a number.
+/// Seconds of a time stamp hh:mm:ss, with a fraction or none, after a date yyyy-mm-dd (ISO 8601,
+/// counted from 2020) or none; nullopt for other text.
+std::optional<double> seconds_of_stamp(std::string_view text) {
+    int parts[6] = {2020, 1, 1, 0, 0, 0};
+    const auto read = [&](int part, std::size_t digits) {
+        const auto [end, error] =
+            std::from_chars(text.data(), text.data() + std::min(digits, text.size()), parts[part]);
+        if (error != std::errc() || end != text.data() + digits) return false;
+        text.remove_prefix(digits);
+        return true;
+    };
+    const auto skip = [&](std::string_view signs) {
+        if (text.empty() || signs.find(text[0]) == signs.npos) return false;
+        text.remove_prefix(1);
+        return true;
+    };
+    const bool dated = text.size() > 10 && text[4] == '-';
+    if (dated && !(read(0, 4) && skip("-") && read(1, 2) && skip("-") && read(2, 2) && skip("T ")))
+        return std::nullopt;
+    if (text.ends_with('Z')) text.remove_suffix(1);
+    if (!(read(3, 2) && skip(":") && read(4, 2) && skip(":") && read(5, 2))) return std::nullopt;
+    double fraction = 0;
+    if (!text.empty()) {
+        const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), fraction);
+        if (text[0] != '.' || error != std::errc() || end != text.data() + text.size())
+            return std::nullopt;
+    }
+    using namespace std::chrono;
+    const sys_days day = year(parts[0]) / parts[1] / parts[2], origin = year(2020) / 1 / 1;
+    return fraction + 86400.0 * static_cast<double>((day - origin).count()) + 3600.0 * parts[3] +
+           60.0 * parts[4] + parts[5];
+}
+
+/// nullopt if the cell is neither a number nor a time stamp.
 std::optional<double> number_of(const Cell& cell, char separator) {
     std::string_view text = cell.text;
     std::string copy;
     if ((separator != ',' || cell.is_quoted) && text.find(',') != text.npos) {
         copy = text;
         std::replace(copy.begin(), copy.end(), ',', '.');
+        text = copy;
+    }
+    if (text.find(':') != text.npos) return seconds_of_stamp(text);
+    // Fortran's exponent
+    if (const std::size_t at = text.find_first_of("dD"); at != text.npos && at > 0) {
+        copy = text;
+        copy[at] = 'e';
         text = copy;
     }
     if (text.starts_with('+') && !text.starts_with("+-")) text.remove_prefix(1);
@@ -124,8 +166,9 @@ std::optional<double> number_of(const Cell& cell, char separator) {
           shown, nullptr, where + ": " + what}});
 }
 
+/// NaN for an empty cell.
 double number_in(const Cell& cell, char separator, std::size_t line, const std::string& column) {
-    if (cell.text.empty()) fault(line, column, cell.text, "a number is missing");
+    if (cell.text.empty()) return nan;
     const std::optional<double> value = number_of(cell, separator);
     if (!value) {
         std::string what = "\"";  // not operator+: g++ 12 warns of it at -O3, without a reason
@@ -213,10 +256,9 @@ public:
         }
         if (!last.empty() && !has_number(last, separator))
             fault_of_length(first, count, last.size());
-        fault(
-            first.number, "", first.text,
-            "a line above the numbers must name the columns, for example "
-            "time_s,displacement_m,acceleration_m_s2");
+        std::vector<CsvColumn> numbered;
+        for (std::size_t k = 1; k <= count; ++k) numbered.push_back({std::to_string(k), {}, {}});
+        return numbered;
     }
 
 private:
@@ -270,6 +312,7 @@ Csv parse_csv(std::string_view bytes, const ReadLimits& limits) {
     std::optional<char> declared, separator;
     std::vector<Cell> cells;
     DecimalSigns signs;
+    std::optional<CsvLine> footer;
     while (const auto line = lines.next()) {
         cancel.step();
         if (trimmed(line->text).empty()) continue;
@@ -291,10 +334,16 @@ Csv parse_csv(std::string_view bytes, const ReadLimits& limits) {
         }
         split_cells(line->text, *separator, cells);
         if (cells.empty()) continue;
+        if (!cells[0].text.empty() && std::isalpha(static_cast<unsigned char>(cells[0].text[0])) &&
+            !has_number(cells, *separator)) {
+            if (!footer) footer = line;
+            continue;
+        }
+        if (footer) fault(footer->number, "", footer->text, "is text, but lines of numbers follow");
         if (cells.size() != csv.columns.size()) {
             // Trailing empty cells are dropped; a missing last value is reported as such.
-            if (cells.size() + 1 == csv.columns.size() && line->text.back() == *separator)
-                cells.push_back({});
+            if (cells.size() < csv.columns.size() && line->text.back() == *separator)
+                cells.resize(csv.columns.size());
             else fault_of_length(*line, cells.size(), csv.columns.size());
         }
         if ((numbers += cells.size()) > limits.most_numbers)
@@ -318,6 +367,19 @@ Csv parse_csv(std::string_view bytes, const ReadLimits& limits) {
     return csv;
 }
 
+void refuse_unnamed(const Csv& csv) {
+    fault(
+        csv.lines[0], "", csv.columns[0].name,
+        "a line above the numbers must name the columns, for example "
+        "time_s,displacement_m,acceleration_m_s2, or the request gives their positions: "
+        "time_column = 1, displacement_column = 2");
+}
+
+void refuse_missing_numbers(const CsvColumn& column, const std::vector<std::uint32_t>& lines) {
+    for (std::size_t k = 0; k < lines.size(); ++k)
+        if (std::isnan(column.values[k])) fault(lines[k], column.name, "", "a number is missing");
+}
+
 std::string unit_spelling(std::string_view text) {
     if (text.size() > longest_unit) return "?";
     std::string spelling(text);
@@ -337,16 +399,17 @@ std::string unit_spelling(std::string_view text) {
 
 bool is_foreign_unit(std::string_view text) {
     static const std::set<std::string, std::less<>> foreign = {
-        "nm",  "cm", "dm", "km", "mil", "in", "inch", "ft",    "us",    "ns",
-        "min", "h",  "hz", "v",  "mv",  "mg", "gal",  "cm/s2", "mm/s2", "ft/s2",
-        "s",   "ms", "m",  "mm", "um",  "g",  "m/s",  "mm/s"};
+        "nm",    "cm",  "dm", "km", "mil", "in", "inch", "ft",  "us",
+        "ns",    "min", "h",  "hz", "v",   "mv", "mg",   "gal", "cm/s2",
+        "ft/s2", "s",   "ms", "m",  "mm",  "um", "g",    "m/s", "mm/s"};
     return foreign.contains(unit_spelling(text));
 }
 
 bool is_unit(std::string_view text) {
     static const std::set<std::string, std::less<>> others = {
-        "",  "-",   "1",    "sec",     "msec", "m/s2", "m_s2", "ms-2", "m/s/s", "n",
-        "a", "deg", "degc", "\u00b0c", "k",    "pa",   "bar",  "%",    "rad",   "kn"};
+        "",      "-",       "1",     "sec",   "msec",  "m/s2",   "m_s2", "ms-2",
+        "m/s/s", "n",       "mm/s2", "mm_s2", "mms-2", "mm/s/s", "a",    "deg",
+        "degc",  "\u00b0c", "k",     "pa",    "bar",   "%",      "rad",  "kn"};
     return is_foreign_unit(text) || others.contains(unit_spelling(text));
 }
 

@@ -58,6 +58,64 @@ void add_forcing(Json& j, const JointFit& fit, const Parameters& p) {
         fit.forcing.phase.has_value());
 }
 
+// Smaller relative variations of the forcing are not reported: in a record without noise they are
+// numerical errors.
+constexpr double steadiest_forcing = 1e-4;
+
+/// What an effect outside the model is, with its size.
+std::string effect_size_text(const FittedEffect& e, const JointFit& fit, double omega0) {
+    const double amplitude =
+        elementary::hypot(fit.values[Unknown::force_sin], fit.values[Unknown::force_cos]);
+    // Amplitude at which the stiffness is compared, m.
+    constexpr double compared = 0.01;
+    switch (e.effect) {
+        case Effect::second_harmonic:
+        case Effect::third_harmonic:
+            return fmt::format(
+                "the forcing contains {} f with {:.2g} % of its amplitude",
+                e.effect == Effect::second_harmonic ? 2 : 3, 100 * e.size / amplitude);
+        case Effect::forcing_varies:
+            return fmt::format(
+                "amplitude or phase of the forcing vary during the record, by about {:.2g} %",
+                100 * e.size);
+        case Effect::stiffness_varies:
+            return fmt::format(
+                "the stiffness changes with the amplitude, by about {:.2g} % at 10 mm",
+                75 * e.size * compared * compared);
+        case Effect::displacement_drifts:
+            return fmt::format(
+                "the displacement drifts by about {:.2g} um, other than linearly", 1e6 * e.size);
+        case Effect::high_pass:
+            return fmt::format(
+                "the acceleration seems to have a high pass at {:.2g} Hz", hertz(e.size, omega0));
+        case Effect::clocks_differ:
+            return fmt::format(
+                "the clocks of the two channels differ by {:.2g} ppm", 1e6 * e.size / fit.length);
+        case Effect::friction:
+            return fmt::format(
+                "friction slows the ball, by about {:.2g} m/s^2", e.size * omega0 * omega0);
+        case Effect::R_varies:
+            return fmt::format(
+                "R changes with the relative speed, by {:.2g} per m/s", e.size / omega0);
+        case Effect::hum: return fmt::format("the record has a hum of {:.2g} um", 1e6 * e.size);
+        case Effect::given_mass_ratio:
+        case Effect::given_oscillator: break;
+    }
+    return "";
+}
+
+/// The same with its consequence.
+std::string effect_text(const FittedEffect& e, const JointFit& fit, double omega0) {
+    const auto percent = [&](Unknown u) {
+        return 100 * std::abs(e.change[static_cast<std::size_t>(u)] / fit.values[u]);
+    };
+    return effect_size_text(e, fit, omega0) +
+           fmt::format(
+               ", which the model does not contain: the standard errors include the change that it "
+               "would cause, {:.2g} % of b, {:.2g} % of R at +b and {:.2g} % at -b",
+               percent(Unknown::b), percent(Unknown::R_plus), percent(Unknown::R_minus));
+}
+
 }  // namespace
 
 FixedUnknowns fixed_of(const std::set<std::string>& names) {
@@ -99,6 +157,9 @@ void add_fitted_warnings(
         warnings.push_back(fmt::format(
             "the forcing has f = {:.6g} Hz, not f = {:.6g} Hz",
             hertz(fit.values[Unknown::Omega], omega0), hertz(given[Unknown::Omega], omega0)));
+    for (const FittedEffect& e : fit.effects)
+        if (e.effect != Effect::forcing_varies || e.size > steadiest_forcing)
+            warnings.push_back(effect_text(e, fit, omega0));
     // The search fits the oscillator only where the record contradicts it.
     if (!fit.fixed[Unknown::stiffness] || !fit.fixed[Unknown::damping])
         warnings.push_back(fmt::format(

@@ -2,10 +2,12 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
 #include "api/identify_parts.hpp"
 #include "api/parse.hpp"
 #include "api/schema/check.hpp"
+#include "core/measurement/hum.hpp"
 
 namespace vines::api {
 
@@ -83,6 +85,12 @@ IdentifyRequest read_fields(const Json& given, bool with_record, bool forcing_fi
         std::sort(m.impact_times.begin(), m.impact_times.end());
     }
     m.fixed = fixed_of(merged.words("fixed"));
+    m.uncertainty = {
+        merged.number("m1_uncertainty"), merged.number("c1_uncertainty"),
+        merged.number("k1_uncertainty"), merged.number("m2_uncertainty")};
+    if (with_record)
+        for (const double hertz : {50, 60})
+            m.mains.push_back(2 * std::numbers::pi * hertz / r.system.si->omega0());
     m.estimators = read_estimators(merged);
     m.estimators.qr = true;  // the verdict needs it
     r.include = merged.words("include");
@@ -138,6 +146,9 @@ void read_record(IdentifyRequest& r, const Json& fields, Csv csv, CancelCheck& c
     const RecordColumn time = find_column(columns, fields, time_channel),
                        x = find_column(columns, fields, displacement_channel),
                        a = find_column(columns, fields, acceleration_channel);
+    if (!time.column && !csv.lines.empty() && columns[0].name == "1") refuse_unnamed(csv);
+    for (const RecordColumn* c : {&time, &x, &a})
+        if (c->column) refuse_missing_numbers(*c->column, csv.lines);
     if (!time.column)
         refuse(
             {{"/record", names_of(columns), nullptr,
@@ -165,6 +176,15 @@ void read_record(IdentifyRequest& r, const Json& fields, Csv csv, CancelCheck& c
     change_each(record.x, cancel, [&](double v) { return v * x.factor; });
     change_each(record.x_ddot, cancel, [&](double v) { return v * a.factor / (omega0 * omega0); });
     note_flaws(record, omega0, r.notes);
+    for (const Hum& hum : remove_hum(record, r.measurement.mains)) {
+        r.notes.push_back(fmt::format(
+            "a hum of {:.3g} {} at {:.4g} Hz was removed from the {}",
+            hum.amplitude * (hum.in_displacement ? 1e6 : omega0 * omega0),
+            hum.in_displacement ? "um" : "m/s^2", hum.Omega * omega0 / (2 * std::numbers::pi),
+            hum.in_displacement ? "displacement" : "acceleration"));
+        for (double& Omega : r.measurement.mains)
+            if (std::abs(hum.Omega / Omega - 1) < 0.01) Omega = hum.Omega;
+    }
     cancel.step(record.tau.size());
     if (!x.column)
         r.notes.push_back(

@@ -30,10 +30,16 @@ std::optional<MeasuredForcing> measured_forcing(
             "/record/" + shortened(force.column->name),
             "the record has a channel of the base, " + shortened(base.column->name) +
                 ", and one of a force: the model has one forcing");
-    std::vector<double> seconds;
-    for (const double t : time.column->values) seconds.push_back(t * time.factor);
+    // A slower channel has empty cells.
+    std::vector<double> seconds, values;
+    for (std::size_t k = 0; k < time.column->values.size(); ++k) {
+        if (std::isnan(channel.column->values[k] + time.column->values[k])) continue;
+        seconds.push_back(time.column->values[k] * time.factor);
+        values.push_back(channel.column->values[k]);
+    }
     const std::optional<Harmonic> h =
-        harmonic_of(seconds, channel.column->values, [&] { cancel.step(seconds.size()); });
+        seconds.empty() ? std::nullopt
+                        : harmonic_of(seconds, values, [&] { cancel.step(seconds.size()); });
     if (!h)
         refuse(
             "/record/" + shortened(channel.column->name),

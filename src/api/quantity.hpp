@@ -62,6 +62,8 @@ struct Quantity {
 struct Quantities {
     using enum ValueType;
     Quantity tau{"tau", "time", number, "time_s", -1};
+    Quantity tau_error{
+        "tau_error", "standard error of the time", number_or_null, "time_error_s", -1};
     Quantity tau_start{"tau_start", "start", number, "time_start_s", -1};
     Quantity tau_end{"tau_end", "end", number, "time_end_s", -1};
     Quantity tau_half{

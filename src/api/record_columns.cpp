@@ -134,8 +134,16 @@ RecordColumn find_column(
     const std::string field = q.name + "_column";
     if (fields.contains(field)) {
         const std::string wanted = fields[field];
-        const RecordColumn column =
+        RecordColumn column =
             found([&](std::string_view name) { return is_same_name(name, wanted); });
+        // The name without its unit.
+        if (!column.column)
+            column = found([&](std::string_view name) {
+                const auto suffix = suffix_of(q, std::string(name));
+                return suffix && known(q, suffix->text) && name.size() > wanted.size() &&
+                       begins_with(name, wanted) &&
+                       std::string_view("_ ([").find(name[wanted.size()]) != std::string_view::npos;
+            });
         if (column.column) return column;
         refuse({{"/" + field, wanted, names_of(columns), "the record has no column of this name"}});
     }
@@ -144,12 +152,20 @@ RecordColumn find_column(
         column.column)
         return column;
     for (const std::string& beginning : q.beginnings) {
-        const RecordColumn column = found([&](std::string_view name) {
+        const auto fits = [&](std::string_view name) {
             return begins_with(name, beginning) &&
                    (name.size() == beginning.size() ||
-                    std::string_view("_ ([").find(name[beginning.size()]) != std::string::npos);
-        });
-        if (column.column) return column;
+                    std::string_view("_ ([").find(name[beginning.size()]) !=
+                        std::string_view::npos);
+        };
+        Json candidates = Json::array();
+        for (const CsvColumn& c : columns)
+            if (fits(c.name)) candidates.push_back(shortened(c.name));
+        if (candidates.size() > 1)
+            refuse(
+                {{"/" + field, nullptr, candidates,
+                  "several columns can be the " + q.quantity + ": choose one by " + field}});
+        if (const RecordColumn column = found(fits); column.column) return column;
     }
     return {nullptr, 1};
 }

@@ -153,6 +153,8 @@ const char* text_of(BFault fault) {
         case BFault::no_flight: return "no impact is next to one on the other wall";
         case BFault::negative: return "it would be negative";
         case BFault::scattered: return "the impacts give different values";
+        case BFault::doubtful:
+            return "the impacts or the model are doubtful, and R is withheld, too";
     }
     return "";
 }

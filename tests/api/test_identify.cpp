@@ -221,12 +221,17 @@ TEST_CASE("errors of a record are named with line and column") {
     CHECK(
         detail(replaced_line(csv, 7, "0.003,,1")) ==
         "line 7, column displacement_m: a number is missing");
+    CHECK(detail(replaced_line(csv, 7, ",1,1")) == "line 7, column time_s: a number is missing");
     CHECK(
         detail(replaced_line(csv, 7, "0.0001,1e-3,1"))
             .find("line 7, column of time: time must increase") == 0);
     CHECK(
         detail(csv.substr(header.size()))
             .find("line 1: a line above the numbers must name the columns") == 0);
+    CHECK(
+        detail("time_s,displacement 1_mm,displacement 2_mm\n0,1,2\n")
+            .find("several columns can be the displacement: choose one by displacement_column") ==
+        0);
     CHECK(detail("") == "the record is empty: it needs a header and lines of numbers");
     CHECK(detail(header + "0,0,0\n1,0,0\n").find("at least 100") != std::string::npos);
     CHECK(

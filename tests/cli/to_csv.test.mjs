@@ -87,12 +87,68 @@ test("a MAT file's vectors and its matrices' columns are channels; the time must
   assert.deepEqual(converted(at("r.mat"), "displacement_m=x:1", "--rate", "4").lines[3], "0.5,3");
 });
 
+test("the fields of a MAT file's structs are channels", () => {
+  const made = spawnSync(
+    python,
+    [
+      "-c",
+      "import sys, scipy.io; scipy.io.savemat(sys.argv[1], " +
+        "{'run': {'time': [0, .5, 1], 'laser': {'mm': [1, 2, 3]}}})",
+      at("s.mat"),
+    ],
+    {encoding: "utf8"},
+  );
+  assert.equal(made.status, 0, made.stderr);
+  assert.deepEqual(
+    converted(at("s.mat"), "time_s=run.time", "displacement_mm=run.laser.mm").lines,
+    ["time_s,displacement_mm", "0,1", "0.5,2", "1,3"],
+  );
+});
+
+test("options can stand between the columns", () => {
+  writeFileSync(at("o.wav"), wav(2000, [[100, -5]]));
+  assert.deepEqual(
+    converted(at("o.wav"), "displacement_mm=1", "--rate", "10", "acceleration_g=2").lines,
+    ["time_s,displacement_mm,acceleration_g", "0,100,-5"],
+  );
+});
+
+test("a LabVIEW .lvm file is read without its comments, with its decimal sign and step", () => {
+  writeFileSync(
+    at("r.lvm"),
+    [
+      "LabVIEW Measurement",
+      "Separator\tTab",
+      "Decimal_Separator\t,",
+      "***End_of_Header***",
+      "",
+      "Channels\t2\t\t",
+      "Y_Unit_Label\tmm\tg\t",
+      "Delta_X\t0,000500\t0,000500\t",
+      "***End_of_Header***\t\t\t",
+      "X_Value\tLaser\tPiezo\tComment",
+      "\t1,5\t-2,5\tstart",
+      "\t1,6\t-2,6",
+      "",
+    ].join("\r\n"),
+  );
+  assert.deepEqual(converted(at("r.lvm")).lines, [
+    "1: Laser [mm], 2 samples, 2000 Hz",
+    "2: Piezo [g], 2 samples, 2000 Hz",
+  ]);
+  assert.deepEqual(converted(at("r.lvm"), "displacement_mm=Laser", "acceleration_g=Piezo").lines, [
+    "time_s,displacement_mm,acceleration_g",
+    "0,1.5,-2.5",
+    "0.0005,1.6,-2.6",
+  ]);
+});
+
 test("a missing file, or one of another kind, is refused in one sentence", () => {
   writeFileSync(at("broken.wav"), "no sound");
   writeFileSync(at("r.xls"), "");
   for (const [file, message] of [
     ["broken.wav", /^to-csv: broken\.wav cannot be read: /],
-    ["r.xls", /^to-csv: r\.xls: known are \.wav, \.mat, \.tdms, \.uff/],
+    ["r.xls", /^to-csv: r\.xls: known are \.wav, \.mat, \.tdms, \.lvm, \.uff/],
     ["none.mat", /^to-csv: there is no file /],
   ]) {
     const {status, message: actual} = converted(at(file));

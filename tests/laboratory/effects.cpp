@@ -5,7 +5,7 @@
 
 namespace vines::test {
 
-std::vector<Effect> laboratory_effects() {
+std::vector<LaboratoryEffect> laboratory_effects() {
     return {
         {"nothing", {}},
         {"noise of 20 um", {.noise_x = 20e-6}},

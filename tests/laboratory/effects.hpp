@@ -8,7 +8,7 @@
 
 namespace vines::test {
 
-struct Effect {
+struct LaboratoryEffect {
     std::string name;
     Sensors sensors;
     GivenErrors given_errors = {};
@@ -16,6 +16,6 @@ struct Effect {
 };
 
 /// The effects in the table of docs/measurements.md.
-std::vector<Effect> laboratory_effects();
+std::vector<LaboratoryEffect> laboratory_effects();
 
 }  // namespace vines::test

@@ -3,6 +3,8 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include <utility>
+
 #include "api/schema/enum_names.hpp"
 #include "api/schema/tables.hpp"
 
@@ -12,7 +14,9 @@ namespace {
 
 // g is the standard gravity.
 const std::vector<Unit> acceleration_units = {
-    {"m/s2", 1, {"m/s2", "m_s2", "ms-2", "m/s/s"}}, {"g", 9.80665, {"g"}}};
+    {"m/s2", 1, {"m/s2", "m_s2", "ms-2", "m/s/s"}},
+    {"mm/s2", 1e-3, {"mm/s2", "mm_s2", "mms-2", "mm/s/s"}},
+    {"g", 9.80665, {"g"}}};
 
 /// Adapts a field of /v1/simulate to a record: some of the system is measured, not given.
 void adapt_to_record(Field& f) {
@@ -96,7 +100,17 @@ FieldTable make_identify_fields() {
             "samples; direct_exponents, exponents with histories by the direct method of the paper",
         .fallback = Json::array(),
         .choices = {"motion", "direct_exponents"}};
-    return table + grouped("output", {include}) + grouped("record", record_rows());
+    std::vector<Field> uncertainties;
+    for (const char* name : {"m1", "c1", "k1", "m2"})
+        uncertainties.push_back(
+            {.name = std::string(name) + "_uncertainty",
+             .description = std::string("relative standard error of the given ") + name +
+                            "; for a record it becomes part of the standard errors of b, R and "
+                            "the other fitted values",
+             .fallback = 0,
+             .range = Range{0, 0.5}});
+    return table + grouped("output", {include}) + grouped("record", record_rows()) +
+           grouped("record", std::move(uncertainties));
 }
 
 }  // namespace
@@ -105,7 +119,7 @@ const Channel time_channel{
     .name = "time",
     .column = "time_s",
     .beginnings = {"time", "t"},
-    .units = {{"s", 1, {"s", "sec"}}, {"ms", 1e-3, {"ms", "msec"}}},
+    .units = {{"s", 1, {"s", "sec", "hh:mm:ss"}}, {"ms", 1e-3, {"ms", "msec"}}},
     .quantity = "time"};
 const Channel displacement_channel{
     .name = "displacement",

@@ -109,15 +109,16 @@ PulseExtent unknown_extent(const RecordStatistics& statistics) {
     return {first_spoiled_steps * statistics.step, first_spoiled_steps * statistics.step};
 }
 
-FirstCandidates first_candidates(const ImpactSearchInput& in) {
+FirstCandidates first_candidates(const ImpactSearchInput& in, bool events_first) {
     PulseEvents seen{{}, unknown_extent(in.statistics)};
     if (!in.record.x_ddot.empty())
         seen = pulse_events(in, pulse_signal(in), in.bad.a_without_clipped());
     std::vector<Candidate>& events = seen.events;
     FirstCandidates first{{}, seen.extent, 0};
-    add_kinks(in, first.candidates);
+    if (events_first && events.empty()) return first;
+    if (!events_first) add_kinks(in, first.candidates);
     if (events.empty()) return first;
-    if (are_sharp(first.candidates)) {
+    if (!events_first && are_sharp(first.candidates)) {
         const bool by_chance = static_cast<double>(events.size()) >
                                most_events_a_kink * static_cast<double>(first.candidates.size());
         if (!by_chance) {

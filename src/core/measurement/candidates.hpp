@@ -111,9 +111,9 @@ struct FirstCandidates {
 };
 
 /// If the displacement is precise enough for its kinks to show all impacts, the kinks are the
-/// candidates, each with its nearest event. Otherwise all events are candidates, and the kinks
-/// between them.
-FirstCandidates first_candidates(const ImpactSearchInput& in);
+/// candidates, each with its nearest event. Otherwise, or with `events_first`, all events are
+/// candidates, and the kinks between them.
+FirstCandidates first_candidates(const ImpactSearchInput& in, bool events_first = false);
 
 /// Initial estimate of the pulses' extent.
 PulseExtent unknown_extent(const RecordStatistics& statistics);

@@ -14,7 +14,7 @@ namespace vines {
 namespace {
 
 // Search range on either side of the given frequency, relative.
-constexpr double widest = 0.01;
+constexpr double widest = 0.05;
 // Step of the search: the phase slip between the record's middle and its ends, rad.
 constexpr double slip = 0.4;
 // Longest piece, in cycles: within a piece the phase slip is neglected.

@@ -35,6 +35,7 @@ struct IdentifiedImpact {
     double tau;
     int side;
     double x, x_dot_before, x_dot_after, x_ddot_before;
+    double tau_error = nan;  ///< standard error of the time; NaN in a list
     /// NaN where there is no impact on that side.
     double y_dot_before = nan;
     double y_dot_after = nan;

@@ -130,8 +130,8 @@ double b_of(const Parameters& p, const FoundImpacts& f, const Identification& wi
     const bool fitted =
         f.with_mass && !f.fit.fixed[Unknown::b] && with_given.b_fault == BFault::none;
     const double b = f.fit.values[Unknown::b], off = std::abs(b - p.b);
-    const bool contradicts = off > b_sigmas * f.fit.errors[Unknown::b] && off > least_of_b * p.b &&
-                             off < most_of_b * p.b;
+    const bool contradicts = off > b_sigmas * f.fit.errors_within_model[Unknown::b] &&
+                             off > least_of_b * p.b && off < most_of_b * p.b;
     return fitted && contradicts ? b : p.b;
 }
 
@@ -219,7 +219,7 @@ std::vector<FittedImpact> direct_motion(
                                r, tau, sample(end),
                                sample(std::min(latest, end + difference_span)) - 1);
         FittedImpact motion{};
-        motion.tau = tau;
+        motion.tau = tau, motion.tau_error = nan;
         motion.x = 0.5 * (before.x + after.x);
         motion.x_dot_before = before.x_dot, motion.x_dot_after = after.x_dot;
         motion.x_ddot_before = before.x_ddot, motion.x_ddot_after = after.x_ddot;

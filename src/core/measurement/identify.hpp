@@ -22,7 +22,8 @@ enum class BFault {
     none,
     no_flight,  ///< no impact has a neighbour on the other wall
     negative,   ///< b would be negative
-    scattered   ///< the impacts give different values
+    scattered,  ///< the impacts give different values
+    doubtful    ///< the record or its impacts leave a doubt
 };
 
 struct Identification {

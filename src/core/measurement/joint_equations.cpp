@@ -3,6 +3,7 @@
 #include <Eigen/SparseCholesky>
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 
 #include "core/measurement/robust.hpp"
 
@@ -35,17 +36,37 @@ double& JointEquations::entry(Eigen::Index row, Eigen::Index column) {
 
 void JointEquations::add(
     std::size_t interval, const Eigen::RowVector2d& by_start, const UnknownRow& by_unknowns,
-    double left, double weight) {
+    double left, double weight, const Eigen::VectorXd* by_effects) {
     OfInterval& e = own_[interval];
     e.N.noalias() += weight * by_start.transpose() * by_start;
     e.C.noalias() += weight * by_start.transpose() * by_unknowns;
     e.g.noalias() += (weight * left) * by_start.transpose();
     N_.noalias() += weight * by_unknowns.transpose() * by_unknowns;
     g_.noalias() += (weight * left) * by_unknowns.transpose();
+    if (!by_effects) return;
+    effects.mixed.middleRows<2>(start_of(interval)) +=
+        weight * by_start.transpose() * by_effects->transpose();
+    effects.mixed.middleRows<sensed>(unknown_at(0)) +=
+        weight * by_unknowns.transpose() * by_effects->transpose();
+    add_squares(*by_effects, left, weight);
 }
 
-void JointEquations::add(const std::vector<Term>& row, double left, double weight) {
+void JointEquations::collect_effects(Eigen::Index sizes) {
+    effects.mixed = Eigen::MatrixXd::Zero(size_, sizes);
+    effects.squares = Eigen::MatrixXd::Zero(sizes, sizes);
+    effects.right = Eigen::VectorXd::Zero(sizes);
+}
+
+void JointEquations::add_squares(const Eigen::VectorXd& by_effects, double left, double weight) {
+    effects.squares.selfadjointView<Eigen::Lower>().rankUpdate(by_effects, weight);
+    effects.right += weight * left * by_effects;
+}
+
+void JointEquations::add(
+    const std::vector<Term>& row, double left, double weight, const Eigen::VectorXd* by_effects) {
+    if (by_effects) add_squares(*by_effects, left, weight);
     for (const Term& a : row) {
+        if (by_effects) effects.mixed.row(a.at) += weight * a.by * by_effects->transpose();
         right_(a.at) += weight * a.by * left;
         for (const Term& b : row)
             if (b.at <= a.at) entry(a.at, b.at) += weight * a.by * b.by;
@@ -82,6 +103,41 @@ void JointEquations::gather() {
         entry(k, k) += k < 2 * intervals_ ? ridge_ : ridge_of_others * ridge_;
 }
 
+namespace {
+
+/// Diagonal of the inverse Z of L D L^T from the entries of Z on the pattern of L, last column
+/// first (Takahashi, Fagan and Chen, 1973): Z = D^-1 L^-1 + (1 - L^T) Z. The rows of a column are
+/// in ascending order, and a column's rows below row i are among the rows of column i.
+Eigen::VectorXd inverse_diagonal(const Eigen::SparseMatrix<double>& L, const Eigen::VectorXd& D) {
+    const int *begin = L.outerIndexPtr(), *row = L.innerIndexPtr();
+    const double* l = L.valuePtr();
+    std::vector<double> z(static_cast<std::size_t>(L.nonZeros()));
+    Eigen::VectorXd diagonal(D.size());
+    std::vector<double> sums;
+    for (Eigen::Index j = D.size(); j-- > 0;) {
+        const int first = begin[j], last = begin[j + 1];
+        sums.assign(static_cast<std::size_t>(last - first), 0);
+        for (int a = first; a < last; ++a) {
+            sums[static_cast<std::size_t>(a - first)] += l[a] * diagonal(row[a]);
+            int q = begin[row[a]];
+            for (int b = a + 1; b < last; ++b) {
+                while (row[q] < row[b]) ++q;
+                const double mixed = z[static_cast<std::size_t>(q)];
+                sums[static_cast<std::size_t>(a - first)] += l[b] * mixed;
+                sums[static_cast<std::size_t>(b - first)] += l[a] * mixed;
+            }
+        }
+        diagonal(j) = 1 / D(j);
+        for (int a = first; a < last; ++a) {
+            z[static_cast<std::size_t>(a)] = -sums[static_cast<std::size_t>(a - first)];
+            diagonal(j) -= l[a] * z[static_cast<std::size_t>(a)];
+        }
+    }
+    return diagonal;
+}
+
+}  // namespace
+
 bool JointEquations::solve() {
     gather();
     matrix_.makeCompressed();
@@ -89,19 +145,22 @@ bool JointEquations::solve() {
     matrix_ = {};
     if (solver.info() != Eigen::Success) return false;
     step = solver.solve(right_);
-    Eigen::MatrixXd units = Eigen::MatrixXd::Zero(size_, globals);
-    units.bottomRows<globals>().setIdentity();
-    const Eigen::MatrixXd columns = solver.solve(units);
-    for (std::size_t k = 0; k < unknowns; ++k)
-        errors[k] = std::sqrt(columns(unknown_at(k), static_cast<Eigen::Index>(k)));
-    return step.allFinite() && columns.allFinite();
+    if (effects.mixed.size() > 0) effects.solved = solver.solve(effects.mixed);
+    const Eigen::VectorXd variances =
+        inverse_diagonal(solver.matrixL().nestedExpression(), solver.vectorD());
+    const auto error_of = [&](Eigen::Index entry) {
+        return std::sqrt(variances(solver.permutationP().indices()(entry)));
+    };
+    for (std::size_t k = 0; k < unknowns; ++k) errors[k] = error_of(unknown_at(k));
+    for (std::size_t k = 0; k + 1 < own_.size(); ++k) time_errors.push_back(error_of(time_of(k)));
+    return step.allFinite() && variances.allFinite();
 }
 
 namespace {
 
 // Lower bounds relative to the typical jump and the typical approach speed: no real impact follows
 // eqs. (36) and (4) more closely.
-constexpr double least_momentum = 2e-3, least_restitution = 5e-3;
+constexpr double least_momentum = 2e-4, least_restitution = 5e-4;
 
 using Borders = std::vector<FittedBorder>;
 
@@ -171,8 +230,20 @@ void add_mass_rows(
     const FittedBorder& m = impacts[i];
     const Unknown wall = restitution_at((*state.sides)[i]);
     const MassFlight first(state, impacts, i - 1), second(state, impacts, i);
+    Eigen::VectorXd by_effects;
     const auto add = [&](double by_after, double by_before, double by_first, double by_second,
                          double by_R, double residual, double weight) {
+        if (state.effects) {
+            by_effects = by_before * m.before_by_effects;
+            by_effects(state.effects->first_of(Effect::friction)) +=
+                by_first * state.effects->flight(i - 1, -1) +
+                by_second * state.effects->flight(i, 1);
+            by_effects(state.effects->first_of(Effect::R_varies)) +=
+                by_R * (std::abs(r.approach) - state.effects->mean_speed);
+            if (const Eigen::Index at = state.effects->first_of(Effect::given_mass_ratio); at >= 0)
+                by_effects(at) +=
+                    by_second == state.fit.epsilon ? (r.momentum - r.jump) / state.fit.epsilon : 0;
+        }
         std::vector<JointEquations::Term> row = {
             {e.start_of(i + 1) + 1, by_after},
             {e.start_of(i), by_before * m.before_by_start(0)},
@@ -182,7 +253,7 @@ void add_mass_rows(
         first.add_to(row, state, by_first);
         second.add_to(row, state, by_second);
         if (by_R != 0 && !state.fit.fixed[wall]) row.push_back({e.unknown_at(wall), by_R});
-        e.add(row, -residual, weight);
+        e.add(row, -residual, weight, state.effects ? &by_effects : nullptr);
     };
     const double R = state.fit.values[wall], epsilon = state.fit.epsilon;
     add(1, -1, -epsilon, epsilon, 0, r.momentum, momentum_weight);
@@ -198,6 +269,9 @@ void add_mass_flights(JointFitState& state, const Borders& borders) {
         momentum.push_back(r.momentum), restitution.push_back(r.restitution);
         jump.push_back(std::abs(r.jump)), approach.push_back(std::abs(r.approach));
     }
+    if (state.effects && !approach.empty())
+        state.effects->mean_speed = std::accumulate(approach.begin(), approach.end(), 0.0) /
+                                    static_cast<double>(approach.size());
     // The scatter of the residuals, with a lower bound since no wall is perfectly constant.
     const double of_momentum = std::max(
                      robust_deviation(std::move(momentum)),

@@ -9,9 +9,16 @@
 #include <vector>
 
 #include "core/measurement/joint_fit.hpp"
+#include "core/measurement/model_effects.hpp"
 #include "core/motion/elementary.hpp"
 
 namespace vines {
+
+/// Sums with the derivatives by the sizes of effects outside the model (model_effects.hpp).
+struct EffectSums {
+    Eigen::MatrixXd mixed, squares, solved;  ///< B, R^T W R (lower part), N^-1 B
+    Eigen::VectorXd right;                   ///< R^T W r
+};
 
 class JointEquations {
 public:
@@ -32,11 +39,13 @@ public:
     /// Adds a sample of an interval: derivatives, residual and weight.
     void add(
         std::size_t interval, const Eigen::RowVector2d& by_start, const UnknownRow& by_unknowns,
-        double left, double weight);
+        double left, double weight, const Eigen::VectorXd* by_effects = nullptr);
     /// Appends the derivatives by the record's unknowns, multiplied by `times`.
     void append(const UnknownRow& by_unknowns, double times, std::vector<Term>& row) const;
     /// Adds a residual that depends on few unknowns.
-    void add(const std::vector<Term>& row, double left, double weight);
+    void add(
+        const std::vector<Term>& row, double left, double weight,
+        const Eigen::VectorXd* by_effects = nullptr);
     /// Adds a prior: `left` is the prior mean minus the value.
     void add_prior(std::size_t unknown, double left, double weight);
 
@@ -57,11 +66,17 @@ public:
     /// Sets step and errors. Call once; false if the matrix has no factorisation.
     bool solve();
 
-    Eigen::VectorXd step;    ///< of all unknowns
-    UnknownValues errors{};  ///< standard errors of the record's unknowns
+    /// Collects sums with this many sizes of effects from now on.
+    void collect_effects(Eigen::Index sizes);
+    EffectSums effects;
+
+    Eigen::VectorXd step;             ///< of all unknowns
+    UnknownValues errors{};           ///< standard errors of the record's unknowns
+    std::vector<double> time_errors;  ///< standard errors of the borders' times
 
 private:
     void gather();
+    void add_squares(const Eigen::VectorXd& by_effects, double left, double weight);
     double& entry(Eigen::Index row, Eigen::Index column);
 
     double ridge_;
@@ -90,8 +105,10 @@ struct JointFitState : JointFitInput {
     bool is_first_step = false;
     JointEquations equations{0, 0};  ///< of the current step
     std::vector<JointEquations::OfInterval> interval_equations =
-        {};  ///< of the last step that was solved
+        {};                                ///< of the last step that was solved
+    std::vector<double> time_errors = {};  ///< of the last step that was solved
     JointFit fit = {};
+    EffectDerivatives* effects = nullptr;  ///< in the step that tests effects outside the model
 
     IntervalFlows flows() const { return {fit.values, !fit.fixed.oscillator(), fit.epsilon}; }
     /// Moving mass in an interval, divided by m1.
@@ -112,6 +129,7 @@ struct FittedBorder : FittedImpact {
     /// Derivative of x_dot_before by the first interval's start.
     Eigen::RowVector2d before_by_start;
     UnknownRow before_by_unknowns;
+    Eigen::VectorXd before_by_effects = {};  ///< with JointFitState::effects
 };
 
 /// Calls visit(k, i, motion) for each of ascending times, with the MotionRow of interval i at

@@ -180,6 +180,27 @@ void keep_errors(JointFitState& state) {
     for (std::size_t k = 0; k < unknowns; ++k)
         state.fit.errors[k] = state.fit.fixed[k] ? 0 : state.equations.errors[k];
     state.interval_equations = std::move(state.equations.own());
+    state.time_errors = std::move(state.equations.time_errors);
+}
+
+/// Tests the effects outside the model and widens the errors by the changes they would cause.
+void test_effects(JointFitState& state) {
+    EffectDerivatives derivatives(state);
+    state.effects = &derivatives;
+    const UnknownValues plain = state.fit.errors;
+    set_equations(state);
+    if (!state.equations.solve()) return;
+    // evaluate_residual() scaled the errors.
+    const double factor = plain[static_cast<std::size_t>(Unknown::Omega)] /
+                          state.equations.errors[static_cast<std::size_t>(Unknown::Omega)];
+    state.fit.effects =
+        tested_effects(state, derivatives, std::isfinite(factor) && factor > 1 ? factor : 1);
+    for (const FittedEffect& e : state.fit.effects)
+        for (std::size_t k = 0; k < unknowns; ++k)
+            state.fit.errors[k] = elementary::hypot(state.fit.errors[k], e.change[k]);
+    const UnknownValues given = propagated_uncertainty(state, derivatives);
+    for (std::size_t k = 0; k < unknowns; ++k)
+        state.fit.errors[k] = elementary::hypot(state.fit.errors[k], given[k]);
 }
 
 }  // namespace
@@ -211,7 +232,9 @@ FittedImpact JointFitState::motion_at_border(std::size_t k, const MotionRow& end
         .x_ddot_after = acceleration_at(to),
         .x_jump = nan,
         .x_jump_error = nan,
-        .x_dot_jump_error = nan};
+        .x_dot_before_error = nan,
+        .x_dot_after_error = nan,
+        .tau_error = nan};
 }
 
 JointFit fit_jointly(
@@ -234,6 +257,8 @@ JointFit fit_jointly(
     }
     evaluate_impacts(state);
     evaluate_residual(state);
+    state.fit.errors_within_model = state.fit.errors;
+    if (input.tests_effects && state.fit.converged) test_effects(state);
     return std::move(state.fit);
 }
 

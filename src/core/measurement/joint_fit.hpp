@@ -40,11 +40,46 @@ struct FittedImpact {
     Border border;
     double x, x_dot_before, x_dot_after, x_ddot_before, x_ddot_after;
     // Results of the adjacent intervals, each fitted separately:
-    double x_jump, x_jump_error;  ///< jump of x, and its standard error
-    double x_dot_jump_error;      ///< standard error of the jump of x'
+    double x_jump, x_jump_error;                   ///< jump of x, and its standard error
+    double x_dot_before_error, x_dot_after_error;  ///< standard errors of x' on either side
+    double tau_error;                              ///< standard error of the time, from all data
 
     double jump() const { return x_dot_after - x_dot_before; }
+    /// Standard error of the jump of x', from the adjacent intervals.
+    double jump_error() const { return elementary::hypot(x_dot_before_error, x_dot_after_error); }
     bool is_impact() const { return border == Border::impact; }
+};
+
+/// Effects outside the model that a record can show (model_effects.hpp).
+enum class Effect {
+    second_harmonic,      ///< forcing at 2 Omega
+    third_harmonic,       ///< forcing at 3 Omega
+    forcing_varies,       ///< amplitude or phase of the forcing
+    stiffness_varies,     ///< with the amplitude: -size x^3 in eq. (2)
+    displacement_drifts,  ///< other than linearly
+    high_pass,            ///< of the accelerometer; size: its corner, per unit of tau
+    clocks_differ,        ///< size: growth of the displacement's delay over the record, tau
+    friction,             ///< of the ball; size: its deceleration, m
+    R_varies,             ///< with the relative speed; size: slope, per m per unit of tau
+    hum,                  ///< at a frequency of the mains; size: amplitude, m
+    // Errors of the given values, which no test shows:
+    given_mass_ratio,
+    given_oscillator
+};
+
+/// Relative standard errors of given values; they become part of the errors of fitted ones.
+struct GivenUncertainty {
+    double m1 = 0, c1 = 0, k1 = 0, m2 = 0;
+
+    bool any() const { return m1 > 0 || c1 > 0 || k1 > 0 || m2 > 0; }
+};
+
+/// An effect that the residual shows.
+struct FittedEffect {
+    Effect effect;
+    double size, error;  ///< size: norm of its unknowns, with its standard error
+    /// Change of the unknowns that including the effect would cause; part of their errors.
+    UnknownValues change;
 };
 
 /// Positions in m, derivatives by tau.
@@ -52,8 +87,10 @@ struct JointFit {
     double tau_middle = 0, length = 1;  ///< of the record
     double epsilon = 0;
     UnknownValues values{}, errors{};  ///< standard errors, increased by the misfit
-    FixedUnknowns fixed{};             ///< unknowns that were not fitted
-    KnownForcing forcing;              ///< given amplitude and phase of the forcing
+    /// The same without the effects outside the model and the errors of given values.
+    UnknownValues errors_within_model{};
+    FixedUnknowns fixed{};  ///< unknowns that were not fitted
+    KnownForcing forcing;   ///< given amplitude and phase of the forcing
     std::vector<FittedInterval> intervals;
     std::vector<FittedImpact> impacts;  ///< one fewer than intervals
     /// Residual of each sample: of the displacement in the sensor's own scale, of the acceleration
@@ -64,6 +101,7 @@ struct JointFit {
     /// Standard deviation of the residual divided by that of its part unrelated to the motion
     /// (joint_fit_residual.cpp): 1 if the fit explains everything.
     double misfit_x = 0, misfit_a = 0;
+    std::vector<FittedEffect> effects = {};  ///< with JointFitInput::tests_effects
     bool converged = false;
 };
 
@@ -87,6 +125,10 @@ struct JointFitInput {
     KnownForcing forcing = {};
     const Sides* sides = nullptr;  ///< walls of the borders: the mass takes part; null: it does not
     bool one_step = false;         ///< take one step from a previous fit: approximates its result
+    /// Test the effects outside the model. `mains`: frequencies of the mains, like Omega.
+    bool tests_effects = false;
+    std::vector<double> mains = {};
+    GivenUncertainty uncertainty = {};
 };
 
 /// `impacts`: in order, within the record; JointFit::impacts has an entry for each. `values`:
@@ -96,7 +138,7 @@ JointFit fit_jointly(
     const JointFitInput& input, const std::vector<ImpactTime>& impacts, const UnknownValues& values,
     const JointFit* before);
 
-/// The Omega within 1 % of the given one at which a forcing of constant amplitude and phase
+/// The Omega within 5 % of the given one at which a forcing of constant amplitude and phase
 /// explains the record best. `times`: of the impacts.
 double scanned_frequency(const JointFitInput& input, const std::vector<double>& times);
 

@@ -71,7 +71,8 @@ void add_displacement(JointFitState& state, const IntervalFlows& flows) {
             clear_held(state, by_unknowns);
             state.equations.add(
                 i, by_start, by_unknowns, left,
-                state.weight(left, state.statistics.x.noise, state.scale_x));
+                state.weight(left, state.statistics.x.noise, state.scale_x),
+                state.effects ? &state.effects->displacement(i, r.tau[k], row) : nullptr);
         });
 }
 
@@ -94,7 +95,8 @@ void add_acceleration(JointFitState& state, const IntervalFlows& flows) {
             clear_held(state, by_unknowns);
             state.equations.add(
                 i, by_start, by_unknowns, left,
-                state.weight(left, state.statistics.x_ddot.noise, state.scale_a));
+                state.weight(left, state.statistics.x_ddot.noise, state.scale_a),
+                state.effects ? &state.effects->acceleration(i, r.tau[k], row) : nullptr);
         });
 }
 
@@ -105,6 +107,8 @@ FittedBorder fitted_border(const JointFitState& state, std::size_t k, const Moti
         state.motion_at_border(k, row), border.border == Border::impact && !border.sticks, {}, {}};
     take_derivatives(row, &OscillatorMotion::x_dot, m.before_by_start, m.before_by_unknowns);
     clear_held(state, m.before_by_unknowns);
+    if (state.effects)
+        m.before_by_effects = state.effects->motion(k, m.tau, row, &OscillatorMotion::x_dot);
     return m;
 }
 
@@ -126,7 +130,10 @@ void add_border_condition(
         terms.push_back(
             {equations.start_of(k + 1) + (member == &OscillatorMotion::x_dot ? 1 : 0), -1});
     equations.append(by_unknowns, 1, terms);
-    equations.add(terms, left, weight);
+    equations.add(
+        terms, left, weight,
+        state.effects ? &state.effects->motion(k, state.fit.intervals[k + 1].tau, row, member)
+                      : nullptr);
 }
 
 double jerk_at(
@@ -229,6 +236,7 @@ double JointFitState::weight(double left, double noise, double scale) const {
 
 void set_equations(JointFitState& state) {
     state.equations = {state.fit.intervals.size(), state.ridge};
+    if (state.effects) state.equations.collect_effects(state.effects->size());
     const IntervalFlows flows = state.flows();
     if (!state.record.x.empty()) add_displacement(state, flows);
     if (!state.record.x_ddot.empty()) add_acceleration(state, flows);

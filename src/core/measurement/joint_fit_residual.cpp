@@ -128,8 +128,9 @@ void evaluate_impacts(JointFitState& state) {
         FittedImpact& m = state.fit.impacts.emplace_back(state.motion_at_border(k, row));
         m.x_jump = row.value.x + by_x * moved - own[k + 1](0);
         m.x_jump_error = error(by_x * covariance[k] * by_x.transpose() + covariance[k + 1](0, 0));
-        m.x_dot_jump_error =
-            error(by_x_dot * covariance[k] * by_x_dot.transpose() + covariance[k + 1](1, 1));
+        m.x_dot_before_error = error(by_x_dot * covariance[k] * by_x_dot.transpose());
+        m.x_dot_after_error = error(covariance[k + 1](1, 1));
+        if (k < state.time_errors.size()) m.tau_error = state.time_errors[k];
     }
 }
 
@@ -148,6 +149,7 @@ void evaluate_residual(JointFitState& state) {
     evaluate(fit.a_residual, state.statistics.x_ddot, state.bad.a, fit.noise_a, fit.misfit_a);
     // The larger factor of both sensors, at least 1, applies to all errors.
     for (double& e : fit.errors) e *= error_factor;
+    for (FittedImpact& i : fit.impacts) i.tau_error *= error_factor;
 }
 
 }  // namespace vines

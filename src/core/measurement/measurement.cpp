@@ -13,6 +13,8 @@ namespace {
 
 /// Far above the impacts in a record of minutes.
 constexpr long most_forward_impacts = 100000;
+/// With this many impacts the mass takes part in the fit, unless that fails.
+constexpr std::size_t enough_for_mass = 8;
 
 /// The stretches, split at impacts whose relative speed is unknown.
 std::vector<KnownStretch> with_speeds(
@@ -103,6 +105,22 @@ IdentifiedExponents judged_exponents(
     return judged;
 }
 
+/// Removes b, R and the error of the forcing where a doubt about the impacts or the model remains,
+/// or where they were fitted without the mass: their errors would not cover it.
+void withhold_values(
+    const std::vector<Doubt>& doubts, bool is_incomplete, FoundImpacts& refined,
+    Identification& found) {
+    const bool about_b_alone =
+        std::ranges::all_of(doubts, [](Doubt d) { return d == Doubt::b_disagrees; });
+    const bool without_mass = !refined.with_mass && refined.fit.impacts.size() >= enough_for_mass;
+    if (about_b_alone && !is_incomplete && !without_mass) return;
+    for (const Unknown u : {Unknown::b, Unknown::R_plus, Unknown::R_minus})
+        refined.fit.values[u] = nan;
+    refined.fit.errors[Unknown::force_sin] = refined.fit.errors[Unknown::force_cos] = infinity;
+    found.b_fitted = found.b_error = nan, found.b_fault = BFault::doubtful;
+    for (Restitution* wall : {&found.plus, &found.minus}) wall->R = wall->error = nan;
+}
+
 }  // namespace
 
 double Measurement::step() const {
@@ -150,6 +168,7 @@ MeasurementResult evaluate_measurement(const Measurement& m, const Identificatio
                       : std::nullopt;
     auto forward =
         system ? forward_run(*system, found, m.record.tau.back(), progress) : std::nullopt;
+    if (refined) withhold_values(doubts, continuity.is_incomplete(), *refined, found);
     return {
         .parameters = p,
         .found = std::move(found),

@@ -2,7 +2,6 @@
 
 #include <Eigen/SparseCholesky>
 #include <algorithm>
-#include <array>
 #include <cmath>
 
 #include "core/measurement/candidates.hpp"
@@ -108,40 +107,39 @@ double kink_extent(const ImpactSearchInput& in, const JointFit& fit) {
 
 namespace {
 
-// Points of a template per sampling step.
-constexpr int points_per_step = 8;
-constexpr std::size_t most_points = 1200;
+// Points of a template per sampling step: one for each ten impacts, between these bounds.
+constexpr std::size_t least_points_per_step = 8, most_points_per_step = 24;
+constexpr std::size_t most_points = 2400;
+// Bins of the scatter per sampling step, and the fewest samples of a bin.
+constexpr double scatter_bins_per_step = 2;
+constexpr std::size_t fewest_of_scatter = 5;
 // Smoothness of a template: weight of its squared second differences, relative to a sample.
 constexpr double smoothness = 0.02;
 // Number of reweighted fits; samples further off than this many scatters get less weight.
 constexpr int curve_rounds = 3;
 constexpr double outlier_scatters = 2.5;
-// Minimum number of impacts for a template.
+// Minimum number of impacts for a template, and the largest relative error of their jumps.
 constexpr std::size_t fewest_impacts = 8;
-// Number of trial times on either side of an impact, and their range in steps.
-constexpr int trial_times = 48;
-constexpr double reach_steps = 1.5;
-// Least information of a useful pulse, in 1/step^2: its standard error is at most one step.
-constexpr double least_information = 1;
-
+constexpr double most_jump_error = 0.2;
 /// Residual of the acceleration after an impact, per unit of its jump.
 struct PulseSample {
     double since, value, weight;
 };
 
 std::vector<PulseSample> samples_of(
-    const ImpactSearchInput& in, const JointFit& fit, double begin, double length,
-    const PulseExtent& extent) {
+    const ImpactSearchInput& in, const JointFit& fit, const std::vector<double>& times,
+    double begin, double length, const PulseExtent& extent) {
     const MeasuredRecord& r = in.record;
     std::vector<PulseSample> samples;
     double total = 0;
     for (std::size_t i = 0; i < fit.impacts.size(); ++i) {
-        if (!fit.impacts[i].is_impact()) continue;
-        const double tau = fit.impacts[i].tau, jump = fit.impacts[i].jump();
+        const double tau = times[i], jump = fit.impacts[i].jump();
+        if (!fit.impacts[i].is_impact() ||
+            !(fit.impacts[i].jump_error() < most_jump_error * std::abs(jump)))
+            continue;
         // Excludes samples spoiled by the neighbouring impacts.
-        const double start = i > 0 ? fit.impacts[i - 1].tau + extent.after : -infinity,
-                     end = i + 1 < fit.impacts.size() ? fit.impacts[i + 1].tau - extent.before
-                                                      : infinity;
+        const double start = i > 0 ? times[i - 1] + extent.after : -infinity,
+                     end = i + 1 < times.size() ? times[i + 1] - extent.before : infinity;
         for (std::size_t k = first_index(r, std::max(start, tau + begin));
              k < r.tau.size() && r.tau[k] < std::min(end, tau + begin + length); ++k) {
             if (in.bad.a[k]) continue;
@@ -169,6 +167,24 @@ public:
         std::vector<double> left;
         for (const PulseSample& s : samples) left.push_back(left_of(s));
         return std::max(robust_deviation(std::move(left)), 1e-300);
+    }
+    /// The same for each of `bins` bins of width `width`, without the noise; that of all samples
+    /// for a bin with few.
+    std::vector<double> scatters_of(
+        const std::vector<PulseSample>& samples, std::size_t bins, double width,
+        double noise) const {
+        std::vector<std::vector<double>> left(bins);
+        for (const PulseSample& s : samples)
+            left[std::min(bins - 1, static_cast<std::size_t>(s.since / width))].push_back(
+                left_of(s));
+        std::vector<double> scatters;
+        const double all = scatter_of(samples);
+        for (std::vector<double>& of_bin : left) {
+            const double scatter =
+                of_bin.size() < fewest_of_scatter ? all : robust_deviation(std::move(of_bin));
+            scatters.push_back(std::sqrt(std::max(0.0, scatter * scatter - noise * noise)));
+        }
+        return scatters;
     }
     /// Fits the smooth curve to the samples; outliers get less weight. False if there is no
     /// solution.
@@ -232,95 +248,42 @@ private:
     Eigen::VectorXd value_;
 };
 
-/// Trial times of an impact around a centre, each with the sum of squares that remains of pulse and
-/// x.
-class TrialTimes {
-public:
-    /// `other`: the centre of the alternative; both use the same samples.
-    TrialTimes(
-        const ImpactSearchInput& in, const PulseTemplate& pulse, const JointFit& fit,
-        const FittedImpact& i, double centre, double other)
-        : impact_(i),
-          centre_(centre),
-          step_(in.statistics.step),
-          // The displacement gives the time too: where its two intervals meet.
-          kink_rate_(i.jump() / i.x_jump_error) {
-        const MeasuredRecord& r = in.record;
-        const double jump = i.jump(),
-                     // The scatter of single pulses adds to the noise.
-            noise = elementary::hypot(fit.noise_a, jump * pulse.scatter()),
-                     around = 4 * step_ + 1.5 * pulse.length();
-        const std::size_t first = first_index(r, std::min(centre, other) - around);
-        const double last = std::max(centre, other) + around;
-        for (int k = -trial_times; k <= trial_times; ++k) {
-            const double tau = time_of(k);
-            // x_before - x_after at that time.
-            const double x_jump = i.x_jump / i.x_jump_error - kink_rate_ * (tau - i.tau);
-            double sum = std::isfinite(x_jump) ? x_jump * x_jump : 0;
-            for (std::size_t s = first; s < r.tau.size() && r.tau[s] < last; ++s) {
-                if (in.bad.a[s]) continue;
-                const double off = (fit.a_residual[s] - jump * pulse.at(r.tau[s] - tau)) / noise;
-                // Limits the weight of an outlier.
-                sum += std::min(off * off, 25.0);
-            }
-            misfits_[static_cast<std::size_t>(k + trial_times)] = sum;
-        }
-        least_ = *std::ranges::min_element(misfits_);
-    }
-
-    double least() const { return least_; }
-
-    PulseTime time() const {
-        double weight = 0, first = 0, second = 0;
-        for (int k = -trial_times; k <= trial_times; ++k) {
-            const double likelihood = elementary::exp(
-                -0.5 * (misfits_[static_cast<std::size_t>(k + trial_times)] - least_));
-            const double moved = reach_ * k / trial_times;
-            weight += likelihood, first += likelihood * moved, second += likelihood * moved * moved;
-        }
-        const double mean = first / weight,
-                     variance = std::max(second / weight - mean * mean, 0.0) +
-                                reach_ * reach_ / (12.0 * trial_times * trial_times);
-        // The joint fit uses x itself, so its information is subtracted here.
-        const double of_x = std::isfinite(kink_rate_) ? kink_rate_ * kink_rate_ : 0;
-        const double added = 1 / variance - of_x;
-        if (!std::isfinite(mean) || !(added > least_information / (step_ * step_)))
-            return {impact_.tau, infinity};
-        const double from = centre_ - impact_.tau,
-                     x_mean = of_x > 0 ? impact_.x_jump / impact_.jump() : 0;
-        return {
-            impact_.tau + ((from + mean) / variance - x_mean * of_x) / added, 1 / std::sqrt(added)};
-    }
-
-private:
-    double time_of(int k) const { return centre_ + reach_ * k / trial_times; }
-
-    const FittedImpact& impact_;
-    const double centre_, step_, reach_ = reach_steps * step_, kink_rate_;
-    std::array<double, 2 * trial_times + 1> misfits_{};
-    double least_;
-};
-
 }  // namespace
 
 PulseTemplate::PulseTemplate(
-    const ImpactSearchInput& in, const JointFit& fit, const PulseExtent& extent) {
+    const ImpactSearchInput& in, const JointFit& fit, const std::vector<double>& times,
+    const PulseExtent& extent) {
     const double step = in.statistics.step;
     if (fit.impacts.size() < fewest_impacts) return;
+    const std::size_t points_per_step =
+        std::clamp(fit.impacts.size() / 10, least_points_per_step, most_points_per_step);
     begin_ = -extent.before - step;
     const double length = extent.after + step - begin_;
-    const auto points =
-        std::min(most_points, static_cast<std::size_t>(points_per_step * length / step) + 2);
+    const auto points = std::min(
+        most_points,
+        static_cast<std::size_t>(static_cast<double>(points_per_step) * length / step) + 2);
     spacing_ = length / static_cast<double>(points - 1);
-    const std::vector<PulseSample> samples = samples_of(in, fit, begin_, length, extent);
+    const std::vector<PulseSample> samples = samples_of(in, fit, times, begin_, length, extent);
     if (samples.empty()) return;
     TemplateCurve curve(points, spacing_);
-    scatter_ = infinity;
+    double scatter = infinity;
     for (int round = 0; round < curve_rounds; ++round) {
-        if (!curve.fit(samples, scatter_)) return;
-        scatter_ = curve.scatter_of(samples);
+        if (!curve.fit(samples, scatter)) return;
+        scatter = curve.scatter_of(samples);
     }
     value_ = curve.values();
+    const auto bins = static_cast<std::size_t>(scatter_bins_per_step * length / step) + 1;
+    bin_ = length / static_cast<double>(bins);
+    std::vector<double> jumps, kink_errors;
+    for (const FittedImpact& i : fit.impacts)
+        if (i.is_impact()) {
+            jumps.push_back(std::abs(i.jump()));
+            kink_errors.push_back(std::abs(i.x_jump_error / i.jump()));
+        }
+    const double together = static_cast<double>(jumps.size()) * spacing_ / step,
+                 kink_error = median(std::move(kink_errors));
+    time_error_ = std::isfinite(kink_error) ? kink_error / std::sqrt(together) : 0;
+    scatter_ = curve.scatters_of(samples, bins, bin_, fit.noise_a / median(std::move(jumps)));
 }
 
 double PulseTemplate::at(double s) const {
@@ -329,6 +292,12 @@ double PulseTemplate::at(double s) const {
     const auto k = static_cast<std::size_t>(place);
     if (k + 1 >= value_.size()) return 0;
     return std::lerp(value_[k], value_[k + 1], place - static_cast<double>(k));
+}
+
+double PulseTemplate::scatter(double s) const {
+    const double place = (s - begin_) / bin_;
+    if (!(place >= 0) || !(place < static_cast<double>(scatter_.size()))) return 0;
+    return scatter_[static_cast<std::size_t>(place)];
 }
 
 double PulseTemplate::length() const {
@@ -344,17 +313,6 @@ double PulseTemplate::length() const {
 double PulseTemplate::delay() const {
     const auto top = std::ranges::max_element(value_);
     return begin_ + spacing_ * static_cast<double>(top - value_.begin());
-}
-
-PulseTime pulse_time(
-    const ImpactSearchInput& in, const PulseTemplate& pulse, const JointFit& fit,
-    std::size_t impact, double other) {
-    const FittedImpact& i = fit.impacts[impact];
-    if (pulse.empty()) return {i.tau, infinity};
-    const TrialTimes about_fit(in, pulse, fit, i, i.tau, other);
-    if (std::abs(other - i.tau) < reach_steps * in.statistics.step) return about_fit.time();
-    const TrialTimes about_other(in, pulse, fit, i, other, i.tau);
-    return (about_other.least() < about_fit.least() ? about_other : about_fit).time();
 }
 
 }  // namespace vines

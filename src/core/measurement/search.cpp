@@ -16,10 +16,15 @@ namespace {
 constexpr int rounds_with_pulses = 2;
 // Fewest impacts for a fit with the mass.
 constexpr std::ptrdiff_t fewest_with_mass = 8;
+// Fraction of impacts without a pulse times that of pulses without an impact, from which on the
+// search starts again.
+constexpr double most_contradicting = 1e-3;
 // Rounds of searching hidden contacts and fitting again.
 constexpr int most_hidden_rounds = 3;
 // Shortest gap of the record that can hide an impact, in tau.
 constexpr double hiding_gap = 0.5;
+// Largest standard error of a known velocity, in typical jumps of x'.
+constexpr double most_velocity_error = 0.5;
 
 std::vector<TimeGap> hiding_gaps(const MeasuredRecord& r) {
     std::vector<TimeGap> gaps = time_gaps(r);
@@ -28,11 +33,11 @@ std::vector<TimeGap> hiding_gaps(const MeasuredRecord& r) {
 }
 
 /// Candidates from the record, or from given times, and the gaps of the record as borders.
-void find_candidates(ImpactSearch& s) {
+void find_candidates(ImpactSearch& s, bool events_first) {
     s.fixed[Unknown::stiffness] = s.fixed[Unknown::damping] = true;
     s.found.gaps = hiding_gaps(s.record);
     if (s.searches()) {
-        FirstCandidates first = first_candidates(s);
+        FirstCandidates first = first_candidates(s, events_first);
         s.candidates = std::move(first.candidates);
         s.spoiled.a = first.extent;
         s.values[Unknown::x_delay] = first.x_delay;
@@ -71,6 +76,19 @@ void fit_displacement_first(ImpactSearch& s) {
     s.displacement.reset();
 }
 
+/// Sets velocities to NaN that no data determine: next to the ends of the record and to its gaps,
+/// where no equation of the mass helps, and too few samples lie between.
+void clear_unknown_velocities(ImpactSearch& s) {
+    const double most = most_velocity_error * typical_jump(s.candidates);
+    std::vector<FittedImpact>& all = s.found.fit.impacts;
+    for (std::size_t i = 0; i < all.size(); ++i) {
+        const bool after_gap = i == 0 || all[i - 1].border == Border::gap,
+                   before_gap = i + 1 == all.size() || all[i + 1].border == Border::gap;
+        if (after_gap && !(all[i].x_dot_before_error < most)) all[i].x_dot_before = nan;
+        if (before_gap && !(all[i].x_dot_after_error < most)) all[i].x_dot_after = nan;
+    }
+}
+
 /// The result: the visible impacts, and the times without one.
 void report_impacts(ImpactSearch& s) {
     for (const RejectedCandidate& d : s.rejected)
@@ -81,6 +99,7 @@ void report_impacts(ImpactSearch& s) {
     std::ranges::sort(s.found.dropped);
     // Given times are not checked for pulses.
     s.found.unseen = s.searches() ? unseen_count(s) : 0;
+    clear_unknown_velocities(s);
     std::vector<FittedImpact> impacts;
     for (std::size_t i = 0; i < s.candidates.size(); ++i) {
         if (!s.candidates[i].is_impact() || s.candidates[i].is_predicted()) continue;
@@ -91,12 +110,10 @@ void report_impacts(ImpactSearch& s) {
     s.found.extent = s.spoiled.a;
 }
 
-}  // namespace
-
-FoundImpacts find_impacts(const Measurement& m, IdentificationProgress& progress) {
+/// The whole search; `events_first`: as in first_candidates().
+FoundImpacts searched(const Measurement& m, IdentificationProgress& progress, bool events_first) {
     ImpactSearch s{{m, progress}};
-    progress.reach(IdentificationStage::spikes);
-    find_candidates(s);
+    find_candidates(s, events_first);
     progress.reach(IdentificationStage::impacts);
     if (impact_count(s) < 2) return std::move(s.found);
 
@@ -116,6 +133,29 @@ FoundImpacts find_impacts(const Measurement& m, IdentificationProgress& progress
     }
     report_impacts(s);
     return std::move(s.found);
+}
+
+/// Fraction of the impacts that contradict their pulses; 1 if the fit fails as a whole.
+double contradicting_share(const FoundImpacts& f) {
+    if (!f.with_mass || !f.settled || !explains(f.fit)) return 1;
+    return static_cast<double>(f.unseen) * static_cast<double>(f.dropped.size()) /
+           static_cast<double>(f.fit.impacts.size() * f.fit.impacts.size());
+}
+
+}  // namespace
+
+FoundImpacts find_impacts(const Measurement& m, IdentificationProgress& progress) {
+    progress.reach(IdentificationStage::spikes);
+    FoundImpacts found = searched(m, progress, false);
+    // Many impacts per cycle: windows for kinks hold several, and the search can settle on wrong
+    // pairs of kinks and pulses. The pulses alone are another start.
+    const bool can_restart = !m.record.x.empty() && !m.record.x_ddot.empty() &&
+                             m.impact_times.empty() &&
+                             std::ssize(found.fit.impacts) >= fewest_with_mass;
+    if (!can_restart || contradicting_share(found) < most_contradicting) return found;
+    FoundImpacts other = searched(m, progress, true);
+    return contradicting_share(other) < contradicting_share(found) ? std::move(other)
+                                                                   : std::move(found);
 }
 
 }  // namespace vines

@@ -17,7 +17,8 @@ inline IdentifiedImpact at_wall(const FittedImpact& m, int side) {
         .x = m.x,
         .x_dot_before = m.x_dot_before,
         .x_dot_after = m.x_dot_after,
-        .x_ddot_before = m.x_ddot_before};
+        .x_ddot_before = m.x_ddot_before,
+        .tau_error = m.tau_error};
 }
 
 struct FoundImpacts {
@@ -54,6 +55,8 @@ struct Measurement {
     double threshold = 6;      ///< of a spike, in standard deviations of the noise
     FixedUnknowns fixed = {};  ///< unknowns of the fit that keep their given values
     KnownForcing forcing = {};
+    std::vector<double> mains = {};  ///< frequencies of the mains, like Omega
+    GivenUncertainty uncertainty = {};
     ExponentOptions estimators = {};
     ExponentOptions direct_estimators = qr_alone;  ///< for the paper's direct estimate
 

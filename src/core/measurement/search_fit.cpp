@@ -10,6 +10,8 @@ namespace {
 
 // Standard error of an impact's time as its pulse shows it, in sampling steps.
 constexpr double event_steps = 0.1;
+// Alignments of the pulses with their template after each fit.
+constexpr int alignments = 3;
 // Largest fraction of a typical flight that a pulse can spoil before and after an impact: the rest
 // of the acceleration is needed for the fit.
 constexpr double most_spoiled = 0.35;
@@ -44,7 +46,7 @@ bool is_plausible(const ImpactSearch& s, const UnknownValues& v) {
 int wall_of(const ImpactSearch& s, std::size_t impact) {
     const Candidate& c = s.candidates[impact];
     if (c.is_predicted()) return c.predicted_side;
-    const double error = s.found.fit.impacts[impact].x_dot_jump_error;
+    const double error = s.found.fit.impacts[impact].jump_error();
     const bool by_pulse = c.height != 0 && !(std::abs(c.jump) > side_sigmas * error);
     return (by_pulse ? c.height : c.jump) > 0 ? -1 : 1;
 }
@@ -98,14 +100,21 @@ void fit_motion_and_pulses(ImpactSearch& s) {
     if (s.record.x_ddot.empty() || s.displacement) return;
     s.spoiled.a = pulse_extent(s, fit);
     limit_pulse_extent(s);
-    s.found.pulse = PulseTemplate(s, fit, s.spoiled.a);
+    std::vector<double> times;
+    for (const FittedImpact& i : fit.impacts) times.push_back(i.tau);
     const double late = event_delay(s);
-    for (std::size_t i = 0; i < s.candidates.size(); ++i) {
-        Candidate& c = s.candidates[i];
-        if (!c.is_impact()) continue;
-        const double other = c.height != 0 ? c.event - late : fit.impacts[i].tau;
-        const PulseTime m = pulse_time(s, s.found.pulse, fit, i, other);
-        c.pulse_tau = m.tau, c.pulse_error = m.error;
+    // The template sharpens the times, and these the template.
+    for (int alignment = 0; alignment < alignments; ++alignment) {
+        s.found.pulse = PulseTemplate(s, fit, times, s.spoiled.a);
+        for (std::size_t i = 0; i < s.candidates.size(); ++i) {
+            Candidate& c = s.candidates[i];
+            if (!c.is_impact()) continue;
+            s.progress.tick();
+            const double other = c.height != 0 ? c.event - late : fit.impacts[i].tau;
+            const PulseTime m = pulse_time(s, s.found.pulse, fit, i, other);
+            c.pulse_tau = m.tau, times[i] = m.with_x;
+            c.pulse_error = elementary::hypot(m.error, s.found.pulse.time_error());
+        }
     }
     s.values[Unknown::pulse_lag] = 0;
 }
@@ -159,6 +168,9 @@ void assign_walls(ImpactSearch& s) {
 void fit_with_mass(ImpactSearch& s) {
     JointFitInput with_mass = fit_input(s);
     with_mass.sides = &s.sides;
+    with_mass.tests_effects = true;
+    with_mass.mains = s.measurement.mains;
+    with_mass.uncertainty = s.measurement.uncertainty;
     JointFit fit = s.found.fit;
     for (int run = 0; run < most_runs_with_mass && !(run > 0 && fit.converged); ++run) {
         fit.x_residual = {}, fit.a_residual = {};

@@ -40,8 +40,8 @@ ShownImpacts shown_impacts(const ImpactSearch& s) {
         const double promised = ratio * std::abs(s.candidates[i].height);
         shown.doubtful.push_back(
             s.searches() && !(std::abs(std::abs(m.jump()) - promised) <
-                              kept_promise * promised + 2 * m.x_dot_jump_error));
-        errors.push_back(m.x_dot_jump_error);
+                              kept_promise * promised + 2 * m.jump_error()));
+        errors.push_back(m.jump_error());
     }
     shown.jump_error = median(errors);
     return shown;

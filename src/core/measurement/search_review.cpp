@@ -44,7 +44,7 @@ public:
     double weakness(std::size_t i) const {
         const Candidate& c = candidates_[i];
         if (!c.is_impact() || c.is_predicted() || !is_none(i)) return 0;
-        return 1 / (std::abs(c.jump) / fit_.impacts[i].x_dot_jump_error + 1e-9);
+        return 1 / (std::abs(c.jump) / fit_.impacts[i].jump_error() + 1e-9);
     }
 
     /// Whether impact i and the next one follow each other too soon, eqs. (4), (36). To hit the
@@ -73,7 +73,7 @@ public:
 private:
     bool is_none(std::size_t i) const {
         const Candidate& c = candidates_[i];
-        const double jump = std::abs(c.jump), error = fit_.impacts[i].x_dot_jump_error;
+        const double jump = std::abs(c.jump), error = fit_.impacts[i].jump_error();
         if (jump > jump_sigmas * error) return !(jump > least_jump * typical_);
         // Jump that an impact with this pulse would have.
         const double promised = std::abs(c.height) * ratio_;

@@ -303,7 +303,7 @@ TEST_CASE(
     doctest::test_suite("statistics")) {
     for (const double b : {0.015, 0.009}) {
         const TrueMotion motion = settled_motion(b, 0.85, 0.85, 8);
-        for (const Effect& effect : laboratory_effects()) {
+        for (const LaboratoryEffect& effect : laboratory_effects()) {
             CAPTURE(effect.name);
             CAPTURE(b);
             const Score s = score_of(measured(motion, effect.sensors, effect.given_errors));

@@ -115,3 +115,10 @@ TEST_CASE("stiffness and damping keep the given values unless the record contrad
     CHECK(std::abs(fit.values[Unknown::stiffness] - 1 / 1.01) < 5 * fit.errors[Unknown::stiffness]);
     CHECK(score_of(m, r).is_right());
 }
+
+TEST_CASE("a forcing frequency that is given 4 % too high is found") {
+    const Experiment m = measured(settled_motion(0.015, 0.85, 0.85, 12), {}, {.frequency = 0.04});
+    const MeasurementResult r = identified(m);
+    CHECK(r.parameters.Omega == doctest::Approx(m.true_parameters.Omega).epsilon(1e-4));
+    CHECK(score_of(m, r).is_right());
+}

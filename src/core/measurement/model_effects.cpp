@@ -1,0 +1,239 @@
+#include "core/measurement/model_effects.hpp"
+
+#include <Eigen/Cholesky>
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "core/measurement/joint_equations.hpp"
+
+namespace vines {
+
+namespace {
+
+// Slow variations over the record: harmonics of its length, in addition to a slope or a parabola.
+constexpr Eigen::Index slow_harmonics = 4, slow_columns = 2 * slow_harmonics + 1;
+// An effect is present if its statistic exceeds its degrees of freedom by this many of their
+// standard deviations and this much; it matters if it moves b, R or the forcing by this many
+// standard errors.
+constexpr double sure_deviations = 6, sure = 25, matters = 1;
+// Finite difference of the flows for derivatives by stiffness and damping (interval_motion.cpp).
+constexpr double oscillator_step = 1e-6;
+
+double angle_of(const JointFitState& state, double times, double tau) {
+    return times * state.fit.values[Unknown::Omega] * (tau - state.fit.tau_middle);
+}
+
+Flow harmonic_flow(const JointFitState& state, double times) {
+    const UnknownValues& v = state.fit.values;
+    return {v[Unknown::stiffness], v[Unknown::damping], 1, times * v[Unknown::Omega]};
+}
+
+std::array<Oscillation, 2> at_rest(double angle) {
+    const double sin = elementary::sin(angle), cos = elementary::cos(angle);
+    return {{{0, 0, sin, cos}, {0, 0, cos, -sin}}};
+}
+
+}  // namespace
+
+EffectDerivatives::EffectDerivatives(const JointFitState& state)
+    : state_(state),
+      interval_(state.fit.intervals.size()),
+      flows_(state.fit.values, true),
+      second_(harmonic_flow(state, 2)),
+      third_(harmonic_flow(state, 3)) {
+    const auto add = [this](Effect effect, Eigen::Index count) {
+        columns_.push_back({effect, size_, count});
+        size_ += count;
+    };
+    const bool both = !state.record.x.empty() && !state.record.x_ddot.empty();
+    add(Effect::second_harmonic, 2);
+    add(Effect::third_harmonic, 2);
+    add(Effect::forcing_varies, 2 * slow_columns);
+    add(Effect::stiffness_varies, 1);
+    if (!state.record.x.empty()) add(Effect::displacement_drifts, slow_columns);
+    if (both) add(Effect::high_pass, 1), add(Effect::clocks_differ, 1);
+    if (state.sides) add(Effect::friction, 1), add(Effect::R_varies, 1);
+    if (state.sides && state.uncertainty.any())
+        add(Effect::given_mass_ratio, 1), add(Effect::given_oscillator, 2);
+    for (std::size_t k = 0; k < state.mains.size(); ++k) add(Effect::hum, both ? 4 : 2);
+    row_ = Eigen::VectorXd::Zero(size_);
+}
+
+Eigen::Index EffectDerivatives::first_of(Effect effect) const {
+    const auto at = std::ranges::find(columns_, effect, &EffectColumns::effect);
+    return at == columns_.end() ? -1 : at->first;
+}
+
+double EffectDerivatives::direction(std::size_t i) const {
+    if (!state_.sides || i == 0 || i >= state_.borders.size()) return 0;
+    return 0.5 * ((*state_.sides)[i - 1] - (*state_.sides)[i]);
+}
+
+/// Appends slow functions of u in [-.5, .5], times sin and, if not 0, cos.
+void EffectDerivatives::slow(
+    double u, Eigen::Index first, Eigen::Index count, double sin, double cos) {
+    const auto set = [&](Eigen::Index k, double value) {
+        row_(first + k) = value * sin;
+        if (count > slow_columns) row_(first + slow_columns + k) = value * cos;
+    };
+    set(0, count > slow_columns ? u : u * u);
+    for (Eigen::Index k = 1; k <= slow_harmonics; ++k) {
+        const double angle = 2 * std::numbers::pi * static_cast<double>(k) * u;
+        set(2 * k - 1, elementary::sin(angle));
+        set(2 * k, elementary::cos(angle));
+    }
+}
+
+const Eigen::VectorXd& EffectDerivatives::motion(
+    std::size_t i, double tau, const MotionRow& row, double OscillatorMotion::* member) {
+    const FittedInterval& from = state_.fit.intervals[i];
+    const UnknownValues& v = state_.fit.values;
+    if (i != interval_) {
+        by_second_.emplace(second_, at_rest(angle_of(state_, 2, from.tau)));
+        by_third_.emplace(third_, at_rest(angle_of(state_, 3, from.tau)));
+        const double angle = angle_of(state_, 1, from.tau) + flows_.phase;
+        const std::array<Oscillation, 1> start = {
+            {{from.x, from.x_dot, elementary::sin(angle), elementary::cos(angle)}}};
+        by_stiffness_.emplace(flows_.by_stiffness, start);
+        by_damping_.emplace(flows_.by_damping, start);
+        interval_ = i;
+    }
+    row_.setZero();
+    const double s = std::max(0.0, tau - from.tau);
+    const bool second_derivative = member == &OscillatorMotion::x_ddot;
+    for (const auto& [flow, effect] :
+         {std::pair(&by_second_, Effect::second_harmonic),
+          std::pair(&by_third_, Effect::third_harmonic)}) {
+        const auto parts = (*flow)->at(s, second_derivative);
+        for (Eigen::Index k = 0; k < 2; ++k)
+            row_(first_of(effect) + k) = parts[static_cast<std::size_t>(k)].*member;
+    }
+    // The forcing hardly changes within an interval.
+    slow(
+        (from.tau - state_.fit.tau_middle) / state_.fit.length, first_of(Effect::forcing_varies),
+        2 * slow_columns, row.parts[2].*member, row.parts[3].*member);
+    // -x^3 acts on the fundamental like an additional stiffness 3/4 amplitude^2.
+    const double squared =
+        from.x * from.x + from.x_dot * from.x_dot / (v[Unknown::Omega] * v[Unknown::Omega]);
+    const auto difference = [&](FollowedFlow<1>& moved) {
+        return (moved.at(s, second_derivative)[0].*member - row.value.*member) / oscillator_step;
+    };
+    const double by_stiffness = difference(*by_stiffness_);
+    row_(first_of(Effect::stiffness_varies)) = 0.75 * squared * by_stiffness;
+    if (const Eigen::Index at = first_of(Effect::given_oscillator); at >= 0)
+        row_(at) = by_stiffness, row_(at + 1) = difference(*by_damping_);
+    if (state_.sides) {
+        // The ball pulls with epsilon times its friction: the response to a constant force.
+        const OscillatorMotion& p = row.parts[0];
+        const double response = (member == &OscillatorMotion::x ? 1 : 0) - p.*member;
+        row_(first_of(Effect::friction)) =
+            state_.fit.epsilon * direction(i) * response / v[Unknown::stiffness];
+    }
+    return row_;
+}
+
+const Eigen::VectorXd& EffectDerivatives::displacement(
+    std::size_t i, double tau, const MotionRow& row) {
+    const double gain = state_.fit.values[Unknown::x_gain],
+                 u = (tau - state_.fit.tau_middle) / state_.fit.length;
+    motion(i, tau - state_.fit.values[Unknown::x_delay], row, &OscillatorMotion::x);
+    row_ *= gain;
+    slow(u, first_of(Effect::displacement_drifts), slow_columns, 1, 0);
+    if (const Eigen::Index at = first_of(Effect::clocks_differ); at >= 0)
+        row_(at) = -gain * row.value.x_dot * u;
+    for (std::size_t k = 0; k < state_.mains.size(); ++k) {
+        const Eigen::Index count = columns_.back().count,
+                           at = size_ - static_cast<Eigen::Index>(state_.mains.size() - k) * count;
+        const double angle = state_.mains[k] * (tau - state_.fit.tau_middle);
+        row_(at) = elementary::sin(angle), row_(at + 1) = elementary::cos(angle);
+    }
+    return row_;
+}
+
+const Eigen::VectorXd& EffectDerivatives::acceleration(
+    std::size_t i, double tau, const MotionRow& row) {
+    motion(i, tau, row, &OscillatorMotion::x_ddot);
+    // To first order a high pass with corner h subtracts h times the integral.
+    if (const Eigen::Index at = first_of(Effect::high_pass); at >= 0) row_(at) = -row.value.x_dot;
+    for (std::size_t k = 0; k < state_.mains.size(); ++k) {
+        const Eigen::Index count = columns_.back().count,
+                           at = size_ - static_cast<Eigen::Index>(state_.mains.size() - k) * count +
+                                count - 2;
+        const double angle = state_.mains[k] * (tau - state_.fit.tau_middle);
+        row_(at) = elementary::sin(angle), row_(at + 1) = elementary::cos(angle);
+    }
+    return row_;
+}
+
+double EffectDerivatives::flight(std::size_t p, double sign) const {
+    const double duration = state_.fit.intervals[p + 2].tau - state_.fit.intervals[p + 1].tau;
+    return 0.5 * sign * direction(p + 1) * duration;
+}
+
+std::vector<FittedEffect> tested_effects(
+    const JointFitState& state, const EffectDerivatives& effects, double factor) {
+    const JointEquations& e = state.equations;
+    const EffectSums& sums = e.effects;
+    const Eigen::MatrixXd S = sums.squares.selfadjointView<Eigen::Lower>().toDenseMatrix() -
+                              sums.mixed.transpose() * sums.solved;
+    const Eigen::VectorXd g = sums.right - sums.mixed.transpose() * e.step;
+    std::vector<FittedEffect> found;
+    for (const EffectColumns& c : effects.columns()) {
+        if (c.effect == Effect::given_mass_ratio || c.effect == Effect::given_oscillator) continue;
+        // Scaled: the sizes have different units.
+        const Eigen::VectorXd scale =
+            S.diagonal().segment(c.first, c.count).cwiseMax(1e-300).cwiseSqrt().cwiseInverse();
+        Eigen::MatrixXd scaled =
+            scale.asDiagonal() * S.block(c.first, c.first, c.count, c.count) * scale.asDiagonal();
+        scaled.diagonal().array() += 1e-9;
+        const Eigen::VectorXd right = scale.asDiagonal() * g.segment(c.first, c.count),
+                              z = scaled.ldlt().solve(right);
+        const auto n = static_cast<double>(c.count);
+        const double statistic = right.dot(z) / (factor * factor);
+        if (!(statistic > n + sure_deviations * std::sqrt(2 * n) + sure)) continue;
+        FittedEffect effect{c.effect, 0, 0, {}};
+        const Eigen::VectorXd size = scale.asDiagonal() * z;
+        effect.size = size.norm();
+        effect.error = effect.size / std::sqrt(statistic);
+        double most = 0;
+        for (std::size_t k = 0; k < unknowns; ++k) {
+            if (state.fit.fixed[k]) continue;
+            effect.change[k] =
+                -(sums.solved.row(e.unknown_at(k)).segment(c.first, c.count) * size).value();
+            const auto u = static_cast<Unknown>(k);
+            if (u == Unknown::b || u == Unknown::R_plus || u == Unknown::R_minus ||
+                u == Unknown::force_sin || u == Unknown::force_cos)
+                most = std::max(most, std::abs(effect.change[k]) / state.fit.errors[k]);
+        }
+        // A slope of R leaves its mean as it is.
+        if (most > matters || c.effect == Effect::R_varies) found.push_back(effect);
+    }
+    return found;
+}
+
+UnknownValues propagated_uncertainty(const JointFitState& state, const EffectDerivatives& effects) {
+    UnknownValues errors{};
+    const Eigen::Index mass = effects.first_of(Effect::given_mass_ratio),
+                       oscillator = effects.first_of(Effect::given_oscillator);
+    if (mass < 0) return errors;
+    const GivenUncertainty& given = state.uncertainty;
+    const UnknownValues& v = state.fit.values;
+    const Eigen::MatrixXd& by = state.equations.effects.solved;
+    for (std::size_t k = 0; k < unknowns; ++k) {
+        if (state.fit.fixed[k]) continue;
+        const Eigen::Index row = state.equations.unknown_at(k);
+        // The fit determines stiffness and damping where it is free to do so.
+        const double ratio = state.fit.epsilon * by(row, mass),
+                     stiffness = state.fit.fixed[Unknown::stiffness] ? by(row, oscillator) : 0,
+                     damping = state.fit.fixed[Unknown::damping]
+                                   ? v[Unknown::damping] * by(row, oscillator + 1)
+                                   : 0;
+        errors[k] = elementary::hypot(
+            elementary::hypot(given.m2 * ratio, given.m1 * (ratio + stiffness + damping)),
+            elementary::hypot(given.k1 * stiffness, given.c1 * damping));
+    }
+    return errors;
+}
+
+}  // namespace vines

@@ -1,0 +1,40 @@
+#include <doctest/doctest.h>
+
+#include <cmath>
+
+#include "../../laboratory/many_impacts.hpp"
+#include "../../laboratory/score.hpp"
+
+using namespace vines;
+using namespace vines::test;
+
+TEST_CASE("three to six impacts per cycle are all found, with b and R within four errors") {
+    for (const std::uint64_t seed : {6, 19, 48, 103, 119, 184}) {
+        CAPTURE(seed);
+        const auto motion = motion_with_many_impacts(seed);
+        REQUIRE(motion);
+        const Experiment e = experiment_of(*motion);
+        const MeasurementResult r = identified(e);
+        const Score s = score_of(e, r);
+        CHECK(100 * (s.found - s.flipped) >= 99 * s.impacts);
+        CHECK(s.false_ones == 0);
+        CHECK(r.judged.verdict == Verdict::regular);
+        CHECK(std::abs(r.found.b_fitted - e.parameters.b) < 4 * r.found.b_error);
+        CHECK(std::abs(r.found.plus.R - e.parameters.R_plus) < 4 * r.found.plus.error);
+        CHECK(std::abs(r.found.minus.R - e.parameters.R_minus) < 4 * r.found.minus.error);
+    }
+}
+
+TEST_CASE("where most of many impacts are missed nothing is decided, and b and R are withheld") {
+    const auto motion = motion_with_many_impacts(62);
+    REQUIRE(motion);
+    const Experiment e = experiment_of(*motion);
+    const MeasurementResult r = identified(e);
+    const Score s = score_of(e, r);
+    if (100 * s.found < 99 * s.impacts) {
+        CHECK(r.judged.verdict == Verdict::not_decided);
+        CHECK(std::isnan(r.found.b_fitted));
+        CHECK(std::isnan(r.found.plus.R));
+        CHECK(std::isnan(r.found.minus.R));
+    }
+}

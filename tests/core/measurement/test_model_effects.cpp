@@ -1,0 +1,122 @@
+#include <doctest/doctest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "../../laboratory/unmodelled.hpp"
+#include "core/measurement/hum.hpp"
+#include "core/motion/elementary.hpp"
+
+using namespace vines;
+using namespace vines::test;
+
+namespace {
+
+MeasurementResult identified_with_mains(const Experiment& e, double given_m2 = 0) {
+    Measurement m = measurement_of(e);
+    m.mains = {2 * std::numbers::pi * 50 / e.omega0, 2 * std::numbers::pi * 60 / e.omega0};
+    m.uncertainty.m2 = given_m2;
+    remove_hum(m.record, m.mains);
+    return evaluate_measurement(m);
+}
+
+bool shows(const MeasurementResult& r, Effect effect) {
+    const auto& all = r.refined->fit.effects;
+    return std::ranges::any_of(all, [effect](const FittedEffect& e) { return e.effect == effect; });
+}
+
+/// Checks that no published value is more than four of its errors off.
+void check_values(const Experiment& e, const MeasurementResult& r) {
+    constexpr double sigmas = 4;
+    const auto check = [](double value, double truth, double error) {
+        CAPTURE(value);
+        CAPTURE(truth);
+        CAPTURE(error);
+        CHECK((std::isnan(value) || std::abs(value - truth) < sigmas * error));
+    };
+    check(r.found.b_fitted, e.true_parameters.b, r.found.b_error);
+    check(r.found.plus.R, mean_R(e, 1), r.found.plus.error);
+    check(r.found.minus.R, mean_R(e, -1), r.found.minus.error);
+    const UnknownValues &v = r.refined->fit.values, &errors = r.refined->fit.errors;
+    const double sin = v[Unknown::force_sin], cos = v[Unknown::force_cos],
+                 amplitude = elementary::hypot(sin, cos);
+    check(
+        amplitude, e.true_parameters.epsilon * e.true_parameters.A(),
+        elementary::hypot(sin * errors[Unknown::force_sin], cos * errors[Unknown::force_cos]) /
+            amplitude);
+}
+
+}  // namespace
+
+TEST_CASE("a record that follows the model shows no effect outside it") {
+    for (const double b : {0.009, 0.015}) {
+        const Experiment e = unmodelled_experiment(b, {});
+        const MeasurementResult r = identified_with_mains(e);
+        CHECK(r.refined->fit.effects.empty());
+        CHECK(r.refined->fit.errors[Unknown::b] == r.refined->fit.errors_within_model[Unknown::b]);
+        check_values(e, r);
+    }
+}
+
+TEST_CASE("an effect outside the model is named") {
+    struct Case {
+        double b;
+        UnmodelledEffects effects;
+        Effect named;
+    };
+    for (const Case& c :
+         {Case{0.009, {.second = 0.05}, Effect::second_harmonic},
+          Case{0.009, {.third = 0.05}, Effect::third_harmonic},
+          Case{0.015, {.amplitude_modulation = 0.003}, Effect::forcing_varies},
+          Case{0.015, {.cubic = 0.003}, Effect::stiffness_varies},
+          Case{0.015, {.friction = 0.1}, Effect::friction},
+          Case{0.015, {.R_slope = -0.1}, Effect::R_varies}}) {
+        CAPTURE(static_cast<int>(c.named));
+        const MeasurementResult r = identified_with_mains(unmodelled_experiment(c.b, c.effects));
+        CHECK(shows(r, c.named));
+    }
+}
+
+TEST_CASE(
+    "no value is more than four of its errors off under any effect outside the model" *
+    doctest::test_suite("statistics")) {
+    for (const UnmodelledCase& c : unmodelled_cases()) {
+        CAPTURE(c.name);
+        const Experiment e = unmodelled_experiment(0.015, c.effects);
+        check_values(e, identified_with_mains(e, c.effects.given_m2));
+    }
+}
+
+TEST_CASE("hum of the mains is removed before impacts are searched") {
+    for (const double hertz : {50.0, 49.97, 60.02}) {
+        const Experiment e = unmodelled_experiment(0.015, {.hum = 30e-6, .hum_hertz = hertz});
+        Measurement m = measurement_of(e);
+        m.mains = {2 * std::numbers::pi * 50 / e.omega0, 2 * std::numbers::pi * 60 / e.omega0};
+        const std::vector<Hum> hum = remove_hum(m.record, m.mains);
+        REQUIRE(hum.size() == 1);
+        CHECK(hum[0].in_displacement);
+        CHECK(hum[0].amplitude == doctest::Approx(30e-6).epsilon(0.03));
+        CHECK(
+            hum[0].Omega * e.omega0 / (2 * std::numbers::pi) ==
+            doctest::Approx(hertz).epsilon(1e-4));
+    }
+    const Experiment e = unmodelled_experiment(0.015, {.hum = 30e-6});
+    CHECK(identified_with_mains(e).found.impacts.size() == e.impacts.size());
+}
+
+TEST_CASE("a record without hum is not changed") {
+    const Experiment e = unmodelled_experiment(0.009, {});
+    MeasuredRecord r = e.record;
+    CHECK(remove_hum(r, {2 * std::numbers::pi * 50 / e.omega0}).empty());
+    CHECK(r.x == e.record.x);
+}
+
+TEST_CASE("the uncertainty of the given m2 is part of the errors of b and R") {
+    const Experiment e = unmodelled_experiment(0.009, {.given_m2 = 0.05});
+    const MeasurementResult r = identified_with_mains(e, 0.05), exact = identified_with_mains(e);
+    CHECK(exact.refined->fit.errors[Unknown::b] < 0.01 * e.true_parameters.b);
+    const double off = std::abs(r.refined->fit.values[Unknown::b] - e.true_parameters.b);
+    CHECK(off > 0.03 * e.true_parameters.b);
+    CHECK(off == doctest::Approx(r.refined->fit.errors[Unknown::b]).epsilon(0.2));
+}
