@@ -1,11 +1,8 @@
 // Speed of sweeps over b and of a map over b and R, on one and two threads. Each row is the median
 // of `rounds` rounds, in which all measurements take turns, so that other load affects all of them.
-#include <atomic>
 #include <ctime>
-#include <deque>
 #include <string>
 
-#include "core/motion/batch_run.hpp"
 #include "core/stability/lyapunov.hpp"
 #include "core/sweep/parallel.hpp"
 #include "core/sweep/point.hpp"
@@ -39,35 +36,13 @@ Parameters parameters_at(std::size_t i) {
 
 /// Simulations for all values of b, with their exponents if requested.
 void run_motions(int threads, double cycles, bool exponents) {
-    std::atomic<std::size_t> next = 0;
-    class SweepRuns : public RunSource {
-    public:
-        SweepRuns(std::atomic<std::size_t>& next, double cycles, bool exponents)
-            : next_(next),
-              cycles_(cycles),
-              exponents_(exponents) {}
-        std::optional<RunPlan> next(const std::optional<Outcome>&) override {
-            const std::size_t i = next_++;
-            if (i >= b_count) return std::nullopt;
-            const Parameters p = parameters_at(i);
-            const double end = cycles_ * p.cycle();
-            RunPlan plan{p, default_state(p), {.tau_end = end, .max_impacts = 1000000}, {}};
-            if (exponents_) plan.observers = {&lyapunov_.emplace(p, 0, end, qr_alone)};
-            return plan;
-        }
-
-    private:
-        std::atomic<std::size_t>& next_;
-        const double cycles_;
-        const bool exponents_;
-        std::optional<Lyapunov> lyapunov_;
-    };
-    parallel(static_cast<std::size_t>(threads), threads, [&](std::size_t) {
-        std::deque<SweepRuns> runs;
-        std::vector<RunSource*> sources;
-        for (int k = 0; k < max_batch_runs; ++k)
-            sources.push_back(&runs.emplace_back(next, cycles, exponents));
-        simulate_batch(sources);
+    parallel(b_count, threads, [&](std::size_t i) {
+        const Parameters p = parameters_at(i);
+        const double end = cycles * p.cycle();
+        std::optional<Lyapunov> lyapunov;
+        std::vector<Observer*> observers;
+        if (exponents) observers = {&lyapunov.emplace(p, 0, end, qr_alone)};
+        simulate(p, default_state(p), {.tau_end = end, .max_impacts = 1000000}, observers);
     });
 }
 

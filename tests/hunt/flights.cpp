@@ -6,7 +6,7 @@
 #include <mutex>
 
 #include "../core/support.hpp"
-#include "core/motion/batch_run.hpp"
+#include "core/motion/contact_search.hpp"
 #include "core/sweep/parallel.hpp"
 #include "dense_flight.hpp"
 #include "systems.hpp"
@@ -130,35 +130,6 @@ void report(
     std::fflush(stdout);
 }
 
-bool same(const std::optional<Contact>& a, const std::optional<Contact>& b) {
-    if (!a || !b) return !a && !b;
-    return a->s == b->s && a->side == b->side && a->lo.x == b->lo.x && a->lo.x_dot == b->lo.x_dot &&
-           a->lo.sin_theta == b->lo.sin_theta && a->lo.cos_theta == b->lo.cos_theta &&
-           a->relative_speed == b->relative_speed;
-}
-
-/// Names of the vectorised searches that give another contact, in any bit.
-std::string differing_searches(
-    const Flow& flow, const FlightStart& start, double b, double limit,
-    const std::optional<Contact>& alone) {
-    std::string differing;
-    const FlowTables tables = flow.tables();
-    for (const NamedBatchSearch& by : batch_searches()) {
-        FlightBatch flights;
-        flights.tables = &tables;
-        append(flights, start, b, limit);
-        search(flights, by.search);
-        if (flights.result[0] == FlightBatch::undecided) continue;
-        if (same(
-                alone, flights.result[0] == FlightBatch::contact
-                           ? std::optional(contact_of(flights, 0))
-                           : std::nullopt))
-            continue;
-        differing += std::string(" ") + by.name;
-    }
-    return differing;
-}
-
 Tally hunt_flight(std::uint64_t seed, int number) {
     std::mt19937_64 engine = engine_of(seed, number);
     const RandomFlight f = random_flight(engine);
@@ -178,13 +149,6 @@ Tally hunt_flight(std::uint64_t seed, int number) {
         if (!judgement.wrong.empty()) {
             ++tally.wrong;
             report(number, f, start, limit, judgement.wrong.c_str());
-        }
-        if (has_simple_start(start)) {
-            const std::string differing = differing_searches(f.flow, start, f.b, limit, found);
-            if (!differing.empty()) {
-                ++tally.wrong;
-                report(number, f, start, limit, ("vectorised search differs:" + differing).c_str());
-            }
         }
         if (found) {
             ++tally.contacts;

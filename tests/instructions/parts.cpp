@@ -2,15 +2,12 @@
 // name (counting begins and ends with it, see count.mjs). main() calls all parts twice: first to
 // fill the tables that a thread keeps, then to be counted. It prints the compiler, and for each
 // part its name, its unit and the number of units.
-#include <array>
 #include <cstdio>
-#include <deque>
 #include <string>
 
 #include "api/json_text.hpp"
 #include "api/request.hpp"
 #include "api/simulate.hpp"
-#include "core/motion/batch_run.hpp"
 #include "core/motion/record.hpp"
 #include "core/sweep/point.hpp"
 
@@ -43,29 +40,6 @@ double spectrum(double b) {
     return static_cast<double>(lyapunov.product().impacts());
 }
 
-/// Eight motions at once, with the vectorised search for any processor.
-double batch(double b, bool observed) {
-    struct Once : RunSource {
-        std::optional<RunPlan> next(const std::optional<Outcome>& last) override {
-            if (last) return std::nullopt;
-            return RunPlan{p, default_state(p), limits, observers};
-        }
-        Parameters p;
-        Limits limits{1e9, impacts, {}};
-        std::vector<Observer*> observers;
-    };
-    std::array<Once, max_batch_runs> lines;
-    std::vector<RunSource*> all;
-    std::deque<Lyapunov> spectra;
-    for (Once& line : lines) {
-        line.p = closed_form(b += 1e-5);
-        if (observed) line.observers = {&spectra.emplace_back(line.p, 0, 1e9, qr_alone)};
-        all.push_back(&line);
-    }
-    simulate_batch(all, baseline_search().search);
-    return max_batch_runs * impacts;
-}
-
 double point(double b) {
     const Parameters p = closed_form(b);
     return measure(p, default_state(p), {}, {}).measured ? 1 : 0;
@@ -78,9 +52,6 @@ extern "C" {
 [[gnu::noinline]] double part_trajectory_22() { return trajectory(0.022); }
 [[gnu::noinline]] double part_spectrum_15() { return spectrum(0.015); }
 [[gnu::noinline]] double part_spectrum_22() { return spectrum(0.022); }
-[[gnu::noinline]] double part_lanes_15() { return batch(0.015, false); }
-[[gnu::noinline]] double part_lanes_22() { return batch(0.022, false); }
-[[gnu::noinline]] double part_spectrum_lanes_22() { return batch(0.022, true); }
 [[gnu::noinline]] double part_point_15() { return point(0.015); }
 [[gnu::noinline]] double part_point_22() { return point(0.022); }
 [[gnu::noinline]] double part_answer() {
@@ -109,9 +80,6 @@ int main() {
         {"part_trajectory_22", "impact", part_trajectory_22},
         {"part_spectrum_15", "impact", part_spectrum_15},
         {"part_spectrum_22", "impact", part_spectrum_22},
-        {"part_lanes_15", "impact", part_lanes_15},
-        {"part_lanes_22", "impact", part_lanes_22},
-        {"part_spectrum_lanes_22", "impact", part_spectrum_lanes_22},
         {"part_point_15", "point", part_point_15},
         {"part_point_22", "point", part_point_22},
         {"part_answer", "answer", part_answer}};

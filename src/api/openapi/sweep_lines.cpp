@@ -169,8 +169,7 @@ Json progress_line_schema() {
          {"per_second", number(), "lines per second"},
          {"seconds_left", or_null(number()),
           "estimate from the completed runs; null before the first"},
-         {"runs", whole(),
-          "completed runs, approximately; lines of points that are computed in a batch come late"},
+         {"runs", whole(), "completed runs"},
          {"runs_of", whole(), "runs in total, approximately"}});
 }
 

@@ -77,10 +77,8 @@ ExponentOptions window_estimators(const AnalysisRequest& w) {
     return options;
 }
 
-}  // namespace
-
-struct AnalysisRun::Observers {
-    explicit Observers(const AnalysisRequest& w)
+struct AnalysisObservers {
+    explicit AnalysisObservers(const AnalysisRequest& w)
         : series(series_step(w)),
           impacts(w.most_listed, w.most_kept),
           section(w.window.from, w.window.to, w.most_points),
@@ -145,10 +143,10 @@ struct AnalysisRun::Observers {
 };
 
 /// Turns the observers' records into the result; one function per part, in its order.
-struct AnalysisRun::Conclusion {
+struct AnalysisConclusion {
     const AnalysisRequest& w;
     const Interrupt& interrupt;
-    Observers& o;
+    AnalysisObservers& o;
     Analysis& a;
 
     void conclude() {
@@ -389,34 +387,20 @@ struct AnalysisRun::Conclusion {
     }
 };
 
-AnalysisRun::AnalysisRun(const AnalysisRequest& w, const Interrupt& interrupt)
-    : wanted_(w),
-      interrupt_(interrupt),
-      observers_(std::make_unique<Observers>(wanted_)) {
+}  // namespace
+
+Analysis analyse(const AnalysisRequest& w, const Interrupt& interrupt) {
     assert(w.window.from < w.tau_end && w.most_points > 0 && w.most_listed > 0);
-}
-AnalysisRun::~AnalysisRun() = default;
-
-RunPlan AnalysisRun::plan() {
-    return {
-        wanted_.parameters,
-        wanted_.start,
-        {.tau_end = wanted_.tau_end, .max_impacts = wanted_.max_impacts, .stop = interrupt_.run},
-        observers_->wanted(wanted_)};
-}
-
-Analysis AnalysisRun::conclude(const Outcome& outcome) {
+    AnalysisObservers observers(w);
     Analysis a;
-    a.outcome = outcome;
-    a.reached = {
-        std::min(wanted_.window.from, outcome.tau), std::min(wanted_.window.to, outcome.tau)};
-    Conclusion{wanted_, interrupt_, *observers_, a}.conclude();
+    a.outcome = simulate(
+        w.parameters, w.start,
+        {.tau_end = w.tau_end, .max_impacts = w.max_impacts, .stop = interrupt.run},
+        observers.wanted(w));
+    const double tau = a.outcome.tau;
+    a.reached = {std::min(w.window.from, tau), std::min(w.window.to, tau)};
+    AnalysisConclusion{w, interrupt, observers, a}.conclude();
     return a;
-}
-
-Analysis analyse(const AnalysisRequest& wanted, const Interrupt& interrupt) {
-    AnalysisRun run(wanted, interrupt);
-    return run.conclude(simulate(run.plan()));
 }
 
 }  // namespace vines

@@ -259,22 +259,4 @@ struct Analysis {
 
 Analysis analyse(const AnalysisRequest& wanted, const Interrupt& interrupt = {});
 
-/// analyse() in two steps, for callers that run several motions as a batch (simulate_batch()).
-class AnalysisRun {
-public:
-    AnalysisRun(const AnalysisRequest& wanted, const Interrupt& interrupt);
-    ~AnalysisRun();
-
-    /// The run, with this object's observers; valid while the object lives.
-    RunPlan plan();
-    Analysis conclude(const Outcome& outcome);
-
-private:
-    struct Observers;
-    struct Conclusion;
-    const AnalysisRequest wanted_;
-    const Interrupt interrupt_;
-    const std::unique_ptr<Observers> observers_;
-};
-
 }  // namespace vines

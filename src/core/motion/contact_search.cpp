@@ -256,6 +256,10 @@ struct CellSearch {
 
 }  // namespace
 
+// Five products and five sums, each within half an ulp of the largest term, the same again in the
+// table and the state, and a safety factor of three.
+constexpr double grid_rounding = 16 * 0x1p-52;
+
 double position_rounding(const Flow::Bounds& bounds, double y, double b) {
     return grid_rounding * (bounds.x + b + std::abs(y));
 }

@@ -101,10 +101,6 @@ std::optional<double> next_equal_velocity(
 std::optional<double> first_crossing(
     std::span<const double> c, int zeros, double h, double noise, std::optional<double>& tangent);
 
-/// True for a ball that flies straight and begins between the walls or leaves a wall with non-zero
-/// relative velocity.
-bool has_simple_start(const FlightStart& start);
-
 /// The same contact as next_contact(), up to rounding, but faster for the flights that make up most
 /// of a run: away from one wall, across the cavity or back. It uses rules 1 to 4 and calls
 /// next_contact() in every case that they do not settle at once.

@@ -131,30 +131,6 @@ std::shared_ptr<const Flow> Flow::shared_sticking(const Parameters& p) {
     return shared(sticking_coefficients(p));
 }
 
-FlowTables Flow::tables() const {
-    static_assert(sizeof(Row) == 10 * sizeof(double));  // as flight_search.cpp reads them
-    FlowTables t{
-        .h = cell_,
-        .reach = reach(),
-        .stiffness = stiffness_,
-        .damping = damping_,
-        .forcing = forcing_,
-        .Omega = Omega_,
-        .inverse_root_stiffness = inverse_root_stiffness_,
-        .apart = {},
-        .time_apart = time_apart_.data(),
-        .rows = rows_.front().x.data(),
-        .short_x = {},
-        .short_x_dot = {}};
-    const Response* const parts[4] = {&of_x_, &of_x_dot_, &of_sin_, &of_cos_};
-    for (int j = 0; j < 4; ++j) {
-        t.apart[j] = parts[j]->x_apart.data();
-        t.short_x[j] = parts[j]->near.x.data();
-        t.short_x_dot[j] = parts[j]->near.x_dot.data();
-    }
-    return t;
-}
-
 namespace {
 
 /// One Newton step keeps the phasor's length at 1 over millions of rotations.

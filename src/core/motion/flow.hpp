@@ -15,7 +15,6 @@
 #include <memory>
 #include <vector>
 
-#include "core/motion/flight_batch.hpp"
 #include "core/motion/parameters.hpp"
 
 namespace vines {
@@ -47,11 +46,10 @@ struct Transfer {
 class Flow {
 public:
     /// The grid covers 3 periods of the faster of forcing and oscillator.
-    static constexpr int cells = flow_cells;
+    static constexpr int cells = 128;
     /// Degree of the Taylor series within a cell; its remainder is below 1e-20 of the motion.
     static constexpr int degree = 13;
-    static constexpr int block =
-        flow_block;  ///< grid points that relative_positions() evaluates at once
+    static constexpr int block = 4;  ///< grid points that relative_positions() evaluates at once
     using TaylorSeries = Eigen::Array<double, degree + 1, 1>;
     using Block = Eigen::Array<double, block, 1>;
 
@@ -142,14 +140,13 @@ public:
     }
     /// The same, shorter: coefficients of x and x' in pairs of an even and an odd power, for |d| <=
     /// h. Remainders below 1e-18 of the motion.
-    static constexpr int short_pairs = short_terms / 2;
+    static constexpr int short_pairs = 6;
     using ShortCoefficients = Eigen::Array<double, 2 * short_pairs, 1>;
     struct ShortSeries {
         ShortCoefficients x, x_dot;
         /// x and x' at d.
         std::array<double, 2> at(double d) const {
             // Estrin's scheme: three levels of operations instead of eleven.
-            static_assert(short_pairs == 6);
             const double q = d * d, q_squared = q * q, q_fourth = q_squared * q_squared;
             const auto value = [=](const ShortCoefficients& c) __attribute__((always_inline)) {
                 const auto pair = [&c](Eigen::Index k) { return c.segment<2>(2 * k); };
@@ -182,9 +179,6 @@ public:
     Oscillation after(Oscillation o, double s) const;
     /// The transfer matrix over any s >= 0, eq. (19).
     Transfer transfer(double s) const;
-
-    /// Tables for the vectorised search; valid during the lifetime of this flow.
-    FlowTables tables() const;
 
     /// Upper bounds of |x|, |x''| and |x'''| over the reach, or over `time`, from the growth of the
     /// energy: sqrt(stiffness x^2 + x'^2) grows no faster than |forcing|, for any damping >= 0.

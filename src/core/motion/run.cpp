@@ -109,7 +109,7 @@ void Run::begin_next_interval() {
 
 Outcome Run::run_to_end() {
     while (!is_over()) fly();
-    return outcome();
+    return {*end_, clock_.tau(), {lo_.x_dot, lo_.x, y_dot_, y_}, impacts_};
 }
 
 bool Run::is_over() {
@@ -119,17 +119,13 @@ bool Run::is_over() {
     return end_.has_value();
 }
 
-Outcome Run::outcome() const {
-    return {*end_, clock_.tau(), {lo_.x_dot, lo_.x, y_dot_, y_}, impacts_};
-}
-
 /// Reports a stretch to the observers and advances the clock over it. The caller sets the state at
 /// its end.
-void Run::pass(const Flow& flow, double duration, int sticking_side, const Transfer* over) {
+void Run::pass(const Flow& flow, double duration, int sticking_side) {
     if (duration > 0)
         notify(
             &Observer::on_stretch, {flow, clock_.tau(), duration, of_flow(), y_, y_dot_,
-                                    sticking_side, over, forces_ ? &*forces_ : nullptr});
+                                    sticking_side, forces_ ? &*forces_ : nullptr});
     clock_.advance(duration);
 }
 
@@ -158,12 +154,13 @@ void Run::fly() {
     const auto contact = fast_contact(free_, start, p_.b, limit, grazing_);
     for (const GrazingPoint& t : grazing_) graze(clock_.tau() + t.s, t.side);
     if (stop && !contact) stop_sliding(*stop);
-    else fly_to(contact, nullptr);
+    else fly_to(contact);
 }
 
-void Run::fly_to(const std::optional<Contact>& contact, const Transfer* over) {
+/// Advances past the contact, or over the whole flight without one.
+void Run::fly_to(const std::optional<Contact>& contact) {
     if (contact) {
-        pass(free_, contact->s, 0, over);
+        pass(free_, contact->s, 0);
         const double a = relative_acceleration(contact->lo, contact->s);
         lo_ = contact->lo;
         if (forces_) lo_ = with_shift(lo_, contact->s);
@@ -179,7 +176,7 @@ void Run::fly_to(const std::optional<Contact>& contact, const Transfer* over) {
     }
     const double rest = clock_.until(limits_.tau_end), limit = until_boundary(rest, free_);
     const bool ends_interval = p_.load && limit == until_next_interval();
-    pass(free_, limit, 0, over);
+    pass(free_, limit, 0);
     if (limit == rest) end_ = End::tau_end;
     move_freely(
         limit, limit == free_.reach() ? free_.at(of_flow(), Flow::cells)
@@ -214,7 +211,7 @@ double Run::pull_together() const {
 void Run::stop_sliding(double s) {
     const Oscillation end = free_.after(of_flow(), s);
     const double before = relative_acceleration(end, s);
-    pass(free_, s, 0, nullptr);
+    pass(free_, s, 0);
     move_freely(s, end);
     y_dot_ = lo_.x_dot;
     relative_speed_ = 0;
@@ -333,7 +330,7 @@ void Run::follow_joint_motion(int zeros) {
                 if (end) release = end;
             }
         const double s = release ? *release : limit;
-        pass(*sticking_, s, side_, nullptr);
+        pass(*sticking_, s, side_);
         lo_ = with_shift(sticking_->after(of_flow(), std::max(0.0, s)), s);
         released = release.has_value();
         zeros = 0;
@@ -350,10 +347,6 @@ Outcome simulate(
     const Parameters& parameters, const State& start, const Limits& limits,
     std::span<Observer* const> observers) {
     return Run(parameters, start, limits, observers).run_to_end();
-}
-
-Outcome simulate(const RunPlan& plan) {
-    return simulate(plan.parameters, plan.start, plan.limits, plan.observers);
 }
 
 }  // namespace vines

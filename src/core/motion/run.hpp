@@ -32,16 +32,10 @@ public:
     Run(const Parameters& parameters, const State& start, const Limits& limits,
         std::span<Observer* const> observers);
 
-    /// Runs to the end.
     Outcome run_to_end();
 
-    // Or flight by flight: check is_over() before each, as the last one can have reached a limit.
+private:
     bool is_over();
-    Outcome outcome() const;
-
-    // The next flight, and the time limit for its contact.
-    const Flow& flow() const { return free_; }
-    double b() const { return p_.b; }
     FlightStart flight() const {
         if (!forces_) return {lo_, y_, y_dot_, side_, relative_speed_, zeros_};
         const Cubic& p = forces_->shift;
@@ -55,20 +49,14 @@ public:
                 -p.c3};
     }
     double flight_limit() const;
-    /// Finds the contact and advances past it.
     void fly();
-    /// Advances past a contact found by the caller, which must equal fast_contact() of this flight
-    /// without a grazing contact before it. `over`: transfer matrix of the flight, null if unknown.
-    void fly_to(const std::optional<Contact>& contact, const Transfer* over);
-    bool is_observed() const { return !observers_.empty(); }
-
-private:
+    void fly_to(const std::optional<Contact>& contact);
     template <class... Arguments>
     void notify(
         void (Observer::*event)(Arguments...), std::type_identity_t<Arguments>... arguments) {
         for (Observer* o : observers_) (o->*event)(arguments...);
     }
-    void pass(const Flow& flow, double duration, int sticking_side, const Transfer* over);
+    void pass(const Flow& flow, double duration, int sticking_side);
     void meet_wall_at_start();
     // The oscillator without the forces' shift, and with it from a state of the flow at s.
     Oscillation of_flow() const {

@@ -38,8 +38,7 @@ struct Stretch {
     Oscillation start;  ///< x and x' without `shift`
     double y, y_dot;    ///< of the ball at the start; while it rests also those of its wall
     int sticking_side;  ///< wall on which the ball rests, 0 in the cavity
-    const Transfer* transfer = nullptr;  ///< flow.transfer(duration) if already known
-    const Forces* forces = nullptr;      ///< null if they are the paper's
+    const Forces* forces = nullptr;  ///< null if they are the paper's
 
     bool rests_inside() const { return forces && forces->rests_inside; }
     /// True while both masses move as one.
@@ -115,15 +114,6 @@ struct Outcome {
 /// another one.
 Outcome simulate(
     const Parameters& parameters, const State& start, const Limits& limits,
-    std::span<Observer* const> observers);
-
-/// Arguments of simulate() for a later run.
-struct RunPlan {
-    Parameters parameters;
-    State start;
-    Limits limits;
-    std::vector<Observer*> observers = {};
-};
-Outcome simulate(const RunPlan& plan);
+    std::span<Observer* const> observers = {});
 
 }  // namespace vines

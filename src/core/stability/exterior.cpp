@@ -27,10 +27,7 @@ Leg leg_of(const Flow& flow, double duration, bool sticking, bool resting) {
 }
 
 Leg leg_of(const Stretch& s) {
-    const bool sticking = s.sticking_side != 0;
-    if (!s.transfer || parts_of(s.flow, s.duration) > 1)
-        return leg_of(s.flow, s.duration, sticking, s.rests_inside());
-    return {*s.transfer, s.duration, -s.flow.damping() * s.duration, 1, sticking};
+    return leg_of(s.flow, s.duration, s.sticking_side != 0, s.rests_inside());
 }
 
 Saltation slip_of(const Leg& leg, double epsilon) { return saltation(epsilon, Slip{0, leg.slip}); }

@@ -40,12 +40,6 @@ public:
     ComputePermit(const ComputePermit&) = delete;
     ComputePermit& operator=(const ComputePermit&) = delete;
 
-    /// Returns the permit and queues for a new one.
-    void requeue() {
-        control_.end();
-        control_.begin();
-    }
-
 private:
     RunControl& control_;
 };

@@ -16,16 +16,15 @@ namespace {
 constexpr double same_orbit = 0.01, same_irregular = 0.25;
 
 /// Run from a state at a whole cycle: the forcing phase is that of tau = 0.
-RunPlan cycles_from(
+Outcome cycles_from(
     const Parameters& p, const State& from, double tau, double cycles,
     const std::function<bool()>& stop) {
-    return {
-        p,
-        from,
+    return simulate(
+        p, from,
         {.tau_end = tau + cycles * p.cycle(),
          .max_impacts = static_cast<long>(std::ceil(cycles)) * transient_impacts_per_cycle,
          .stop = stop,
-         .tau_start = tau}};
+         .tau_start = tau});
 }
 
 AnalysisRequest wanted_of(const Parameters& p, const State& start, const PointOptions& o) {
@@ -89,53 +88,31 @@ std::optional<State> last_state(
     const Parameters& p, Outcome end, const std::function<bool()>& stop) {
     if (end.reason == End::max_impacts) {
         const double into = end.tau / p.cycle();
-        end = simulate(cycles_from(p, end.state, end.tau, std::ceil(into) - into, stop));
+        end = cycles_from(p, end.state, end.tau, std::ceil(into) - into, stop);
     }
     return end.reason == End::tau_end ? std::optional(end.state) : std::nullopt;
 }
 
 }  // namespace
 
-PointRun::PointRun(
-    const Parameters& parameters, const State& start, const PointOptions& options,
-    std::function<bool()> stop)
-    : parameters_(parameters),
-      start_(start),
-      options_(options),
-      stop_(std::move(stop)) {}
-
-std::optional<RunPlan> PointRun::next(const std::optional<Outcome>& last) {
-    if (analysis_) {
-        conclude(*last);
-        return std::nullopt;
+PointResult measure(
+    const Parameters& p, const State& start, const PointOptions& options,
+    const std::function<bool()>& stop) {
+    PointResult r;
+    State begin = start;
+    if (const double transient = std::round(options.transient_cycles); transient > 0) {
+        r.outcome = cycles_from(p, start, 0, transient, stop);
+        if (r.outcome.reason != End::tau_end) return r;
+        begin = r.outcome.state;
     }
-    if (!last) {
-        const double transient = std::round(options_.transient_cycles);
-        if (transient > 0) return cycles_from(parameters_, start_, 0, transient, stop_);
-        return measured_from(start_);
-    }
-    result_.outcome = *last;
-    if (last->reason != End::tau_end) return std::nullopt;
-    return measured_from(last->state);
-}
-
-std::optional<RunPlan> PointRun::measured_from(const State& begin) {
-    begin_ = begin;
-    analysis_.emplace(wanted_of(parameters_, begin, options_), Interrupt{.run = stop_});
-    return analysis_->plan();
-}
-
-void PointRun::conclude(const Outcome& outcome) {
-    const Parameters& p = parameters_;
-    PointResult& r = result_;
-    Analysis a = analysis_->conclude(outcome);
+    Analysis a = analyse(wanted_of(p, begin, options), {.run = stop});
     const EnergyBalance& energy = a.energy->balance;
-    r.outcome = outcome;
+    r.outcome = a.outcome;
     r.measured = true;
     r.lambda = a.exponents->product.qr();
     r.standard_error = a.exponents->growth.standard_error;
     r.verdict = final_verdict(a.exponents->judgement.verdict, *a.regime);
-    r.chaotic_cycles = chaotic_cycles_of(a, options_.settle_cycles, p.cycle());
+    r.chaotic_cycles = chaotic_cycles_of(a, options.settle_cycles, p.cycle());
     if (const auto& capture = a.regime->capture) {
         r.lambda1_before = lambda1_until(a.exponents->product, capture->tau.value_or(infinity));
         r.lambda1_after = capture->after[0];
@@ -146,21 +123,13 @@ void PointRun::conclude(const Outcome& outcome) {
     r.x_rms_error = energy.rms_error;
     r.share_impacts_error = energy.share_impacts_error;
     r.x_free = free_amplitude(p);
-    r.x_rms_ratio = r.x_rms / reference_rms(p, begin_, r.x_free, outcome.tau);
+    r.x_rms_ratio = r.x_rms / reference_rms(p, begin, r.x_free, r.outcome.tau);
     r.share_impacts = energy.share_impacts;
-    r.impacts = outcome.impacts;
+    r.impacts = r.outcome.impacts;
     r.sticks = a.stick_count;
     if (a.sections) r.sections = std::move(*a.sections);
-    if (options_.carry) r.at_end = last_state(p, outcome, stop_);
-}
-
-PointResult measure(
-    const Parameters& parameters, const State& start, const PointOptions& options,
-    const std::function<bool()>& stop) {
-    PointRun run(parameters, start, options, stop);
-    std::optional<Outcome> last;
-    while (const auto plan = run.next(last)) last = simulate(*plan);
-    return run.take();
+    if (options.carry) r.at_end = last_state(p, r.outcome, stop);
+    return r;
 }
 
 bool differs_in_steady_state(const PointResult& one, const PointResult& other) {

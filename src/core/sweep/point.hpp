@@ -88,31 +88,6 @@ PointResult measure(
     const Parameters& parameters, const State& start, const PointOptions& options,
     const std::function<bool()>& stop);
 
-/// measure() run by run, for callers that run several points as a batch.
-class PointRun {
-public:
-    PointRun(
-        const Parameters& parameters, const State& start, const PointOptions& options,
-        std::function<bool()> stop);
-
-    /// Next run: the transient, the measured part, then empty; as RunSource::next().
-    std::optional<RunPlan> next(const std::optional<Outcome>& last);
-    /// The result, once next() returned empty.
-    PointResult take() { return std::move(result_); }
-
-private:
-    std::optional<RunPlan> measured_from(const State& begin);
-    void conclude(const Outcome& outcome);
-
-    const Parameters parameters_;
-    const State start_;
-    const PointOptions options_;
-    const std::function<bool()> stop_;
-    State begin_;  ///< start of the measured part
-    std::optional<AnalysisRun> analysis_;
-    PointResult result_;
-};
-
 /// True if two runs of the same point clearly end in different motions: only one has impacts, or
 /// the periods or the impacts per period differ, or the rms of x differs by 1 % between periodic
 /// motions, by a fourth between others.

@@ -94,7 +94,7 @@ struct Sweep {
     }
 
     /// Requested lines, ordered so that the whole picture appears early. Points with the same flow
-    /// form a batch: if each step of the first axis has another flow, lines run along the other
+    /// share its tables: if each step of the first axis has another flow, lines run along the other
     /// axes.
     std::vector<std::size_t> coarse_to_fine() const {
         const bool across = first_axis_changes_flow();

@@ -6,7 +6,6 @@
 #include <vector>
 
 #include "../support.hpp"
-#include "core/motion/batch_run.hpp"
 #include "core/sweep/parallel.hpp"
 #include "core/sweep/point.hpp"
 
@@ -15,43 +14,14 @@ using namespace vines::test;
 
 namespace {
 
-/// Counts the calls of one thread, and its motions that have begun and not ended.
+/// Stops after a number of polls.
 struct CountingControl : RunControl {
-    void begin() override {
-        ++begun;
-        // begin() is called once before the first motion as well.
-        most_at_once = std::max(most_at_once, static_cast<long>(begun - 1 - runs));
-    }
     bool stop_or_yield() override { return ++polls > stop_after; }
 
-    std::size_t begun = 0;
-    long most_at_once = 0, polls = 0, stop_after = 1'000'000'000;
+    long polls = 0, stop_after = 1'000'000'000;
 };
 
-long most_at_once(const PointOptions& options) {
-    CountingControl control;
-    const Parameters p = table1(0.015, Damping::closed_form);
-    const PointTask task{{p, default_state(p), 3}, {{"", default_state(p)}}, [](auto) {}};
-    run_points(20, 1, options, control, [&task](std::size_t) { return task; });
-    return control.most_at_once;
-}
-
 }  // namespace
-
-TEST_CASE("points that need much memory are not run as a batch") {
-    const long together = best_batch_search() ? 8 : 1;  // no batches without vector instructions
-    CHECK(most_at_once({.transient_cycles = 0, .cycles = 100}) == together);
-    CHECK(most_at_once({.transient_cycles = 0, .cycles = 1e6}) == 1);
-    CHECK(most_at_once({.transient_cycles = 0, .cycles = 4e5}) == std::min(together, 2L));
-    const auto kind = SectionKind::impact;
-    CHECK(
-        most_at_once(
-            {.transient_cycles = 0, .cycles = 9, .section = kind, .section_points = 100}) ==
-        together);
-    CHECK(
-        most_at_once(
-            {.transient_cycles = 0, .cycles = 9, .section = kind, .section_points = 100000}) == 1);
-}
 
 TEST_CASE("points without a valid system poll the stop request as well") {
     CountingControl control;
