@@ -299,6 +299,7 @@ TEST_CASE(
         const Json found =
             identified(read_identify_request({{"preset", "fig15"}, {"f", wrong}}, csv));
         const Json& fitted = found["fitted"]["f"];
+        CAPTURE(found["warnings"].dump());
         CHECK(fitted["value"].get<double>() == doctest::Approx(f).epsilon(5e-6));
         CHECK(fitted["standard_error"].get<double>() < 5e-6 * f);
         CHECK(found["parameters"]["si"]["f"] == doctest::Approx(f).epsilon(1e-4));

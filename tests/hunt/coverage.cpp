@@ -72,7 +72,7 @@ std::vector<Estimates> windows_of(const Parameters& p, int count, int cycles) {
     const auto begin = [&] {
         State start = default_state(p);
         start.y *= 1 - 1e-3 * ++starts;
-        return simulate({p, start, {.tau_end = transient * p.cycle()}}).state;
+        return simulate(p, start, {.tau_end = transient * p.cycle()}).state;
     };
     State state = begin();
     while (static_cast<int>(found.size()) < count && starts < most_starts) {

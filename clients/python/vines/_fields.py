@@ -11,12 +11,13 @@ NUMBER_LISTS = frozenset({
     "impulse", "impulse_N_s", "lambda", "lambda1", "lambda2", "lambda3", "lambda4", "low",
     "margin_F", "margin_f", "modulus", "momentum_error", "phase", "pulse_spoils_s", "re",
     "relative_speed", "relative_speed_ratio", "rounding_floor", "side", "speed",
-    "speed_m_s", "standard_error", "tau", "tau_end", "tau_start", "time_difference",
-    "time_difference_s", "time_end_s", "time_s", "time_start_s", "values", "window",
-    "window_s", "x", "x_acceleration", "x_acceleration_before", "x_ddot", "x_ddot_before",
-    "x_dot", "x_dot_after", "x_dot_before", "x_velocity", "x_velocity_after",
-    "x_velocity_before", "y", "y_dot", "y_dot_after", "y_dot_before", "y_velocity",
-    "y_velocity_after", "y_velocity_before", "z",
+    "speed_m_s", "standard_error", "tau", "tau_end", "tau_error", "tau_start",
+    "time_difference", "time_difference_s", "time_end_s", "time_error_s", "time_s",
+    "time_start_s", "values", "window", "window_s", "x", "x_acceleration",
+    "x_acceleration_before", "x_ddot", "x_ddot_before", "x_dot", "x_dot_after",
+    "x_dot_before", "x_velocity", "x_velocity_after", "x_velocity_before", "y", "y_dot",
+    "y_dot_after", "y_dot_before", "y_velocity", "y_velocity_after", "y_velocity_before",
+    "z",
 })
 
 Perturbation = TypedDict(
@@ -551,6 +552,14 @@ class IdentifyFields(TypedDict, total=False):
         deviations of the noise); 3 to 1000; default: 6
     impact_times_s: times of the impacts, for example an edited list; replaces their detection
         (s); default: detected in the record
+    m1_uncertainty: relative standard error of the given m1; for a record it becomes part of the
+        standard errors of b, R and the other fitted values; 0 to 0.5; default: 0
+    c1_uncertainty: relative standard error of the given c1; for a record it becomes part of the
+        standard errors of b, R and the other fitted values; 0 to 0.5; default: 0
+    k1_uncertainty: relative standard error of the given k1; for a record it becomes part of the
+        standard errors of b, R and the other fitted values; 0 to 0.5; default: 0
+    m2_uncertainty: relative standard error of the given m2; for a record it becomes part of the
+        standard errors of b, R and the other fitted values; 0 to 0.5; default: 0
     fields: keys to keep in the response: names, or paths with dots as in impacts.tau; version,
         status, warnings and provenance are always kept. Other keys are not computed, unless
         include requests them; default: everything
@@ -587,9 +596,13 @@ class IdentifyFields(TypedDict, total=False):
     force_column: str
     time_unit: Literal["s", "ms"]
     displacement_unit: Literal["m", "mm", "um"]
-    acceleration_unit: Literal["m/s2", "g"]
-    base_acceleration_unit: Literal["m/s2", "g"]
+    acceleration_unit: Literal["m/s2", "mm/s2", "g"]
+    base_acceleration_unit: Literal["m/s2", "mm/s2", "g"]
     force_unit: Literal["N", "kN"]
     threshold: float
     impact_times_s: Iterable[float]
+    m1_uncertainty: float
+    c1_uncertainty: float
+    k1_uncertainty: float
+    m2_uncertainty: float
     fields: Iterable[str]

@@ -11,14 +11,19 @@ namespace vines {
 
 namespace {
 
-// Slow variations over the record: harmonics of its length, in addition to a slope or a parabola.
-constexpr Eigen::Index slow_harmonics = 4, slow_columns = 2 * slow_harmonics + 1;
+// Slow variations over the record: harmonics of its length, in addition to a parabola of the
+// displacement, or to a slope of the forcing's amplitude. A slope of its phase is its frequency,
+// which is an unknown of the fit.
+constexpr Eigen::Index slow_harmonics = 4, slow_columns = 2 * slow_harmonics + 1,
+                       forcing_columns = 4 * slow_harmonics + 1;
 // An effect is present if its statistic exceeds its degrees of freedom by this many of their
 // standard deviations and this much; it matters if it moves b, R or the forcing by this many
 // standard errors.
 constexpr double sure_deviations = 6, sure = 25, matters = 1;
 // Finite difference of the flows for derivatives by stiffness and damping (interval_motion.cpp).
 constexpr double oscillator_step = 1e-6;
+// Largest phase lead of a high pass, rad.
+constexpr double most_lead = 0.5;
 
 double angle_of(const JointFitState& state, double times, double tau) {
     return times * state.fit.values[Unknown::Omega] * (tau - state.fit.tau_middle);
@@ -49,7 +54,7 @@ EffectDerivatives::EffectDerivatives(const JointFitState& state)
     const bool both = !state.record.x.empty() && !state.record.x_ddot.empty();
     add(Effect::second_harmonic, 2);
     add(Effect::third_harmonic, 2);
-    add(Effect::forcing_varies, 2 * slow_columns);
+    add(Effect::forcing_varies, forcing_columns);
     add(Effect::stiffness_varies, 1);
     if (!state.record.x.empty()) add(Effect::displacement_drifts, slow_columns);
     if (both) add(Effect::high_pass, 1), add(Effect::clocks_differ, 1);
@@ -58,6 +63,10 @@ EffectDerivatives::EffectDerivatives(const JointFitState& state)
         add(Effect::given_mass_ratio, 1), add(Effect::given_oscillator, 2);
     for (std::size_t k = 0; k < state.mains.size(); ++k) add(Effect::hum, both ? 4 : 2);
     row_ = Eigen::VectorXd::Zero(size_);
+    // A fit without a high pass takes its phase lead at the forcing frequency for a delay.
+    const double Omega = state.fit.values[Unknown::Omega],
+                 lead = std::clamp(Omega * state.fit.values[Unknown::x_delay], 0.0, most_lead);
+    corner_ = Omega * elementary::sin(lead) / elementary::cos(lead);
 }
 
 Eigen::Index EffectDerivatives::first_of(Effect effect) const {
@@ -70,18 +79,12 @@ double EffectDerivatives::direction(std::size_t i) const {
     return 0.5 * ((*state_.sides)[i - 1] - (*state_.sides)[i]);
 }
 
-/// Appends slow functions of u in [-.5, .5], times sin and, if not 0, cos.
-void EffectDerivatives::slow(
-    double u, Eigen::Index first, Eigen::Index count, double sin, double cos) {
-    const auto set = [&](Eigen::Index k, double value) {
-        row_(first + k) = value * sin;
-        if (count > slow_columns) row_(first + slow_columns + k) = value * cos;
-    };
-    set(0, count > slow_columns ? u : u * u);
-    for (Eigen::Index k = 1; k <= slow_harmonics; ++k) {
-        const double angle = 2 * std::numbers::pi * static_cast<double>(k) * u;
-        set(2 * k - 1, elementary::sin(angle));
-        set(2 * k, elementary::cos(angle));
+/// Sets the columns from `first` on to harmonics of u in [-.5, .5], times a factor.
+void EffectDerivatives::slow(double u, Eigen::Index first, double factor) {
+    for (Eigen::Index k = 0; k < slow_harmonics; ++k) {
+        const double angle = 2 * std::numbers::pi * static_cast<double>(k + 1) * u;
+        row_(first + 2 * k) = factor * elementary::sin(angle);
+        row_(first + 2 * k + 1) = factor * elementary::cos(angle);
     }
 }
 
@@ -110,9 +113,13 @@ const Eigen::VectorXd& EffectDerivatives::motion(
             row_(first_of(effect) + k) = parts[static_cast<std::size_t>(k)].*member;
     }
     // The forcing hardly changes within an interval.
-    slow(
-        (from.tau - state_.fit.tau_middle) / state_.fit.length, first_of(Effect::forcing_varies),
-        2 * slow_columns, row.parts[2].*member, row.parts[3].*member);
+    const double u = (from.tau - state_.fit.tau_middle) / state_.fit.length,
+                 sin = row.parts[2].*member, cos = row.parts[3].*member,
+                 f_s = v[Unknown::force_sin], f_c = v[Unknown::force_cos];
+    const Eigen::Index varies = first_of(Effect::forcing_varies);
+    row_(varies) = u * (f_s * sin + f_c * cos) / elementary::hypot(f_s, f_c);
+    slow(u, varies + 1, sin);
+    slow(u, varies + 1 + 2 * slow_harmonics, cos);
     // -x^3 acts on the fundamental like an additional stiffness 3/4 amplitude^2.
     const double squared =
         from.x * from.x + from.x_dot * from.x_dot / (v[Unknown::Omega] * v[Unknown::Omega]);
@@ -139,7 +146,9 @@ const Eigen::VectorXd& EffectDerivatives::displacement(
                  u = (tau - state_.fit.tau_middle) / state_.fit.length;
     motion(i, tau - state_.fit.values[Unknown::x_delay], row, &OscillatorMotion::x);
     row_ *= gain;
-    slow(u, first_of(Effect::displacement_drifts), slow_columns, 1, 0);
+    const Eigen::Index drift = first_of(Effect::displacement_drifts);
+    row_(drift) = u * u;
+    slow(u, drift + 1, 1);
     if (const Eigen::Index at = first_of(Effect::clocks_differ); at >= 0)
         row_(at) = -gain * row.value.x_dot * u;
     for (std::size_t k = 0; k < state_.mains.size(); ++k) {
@@ -154,8 +163,12 @@ const Eigen::VectorXd& EffectDerivatives::displacement(
 const Eigen::VectorXd& EffectDerivatives::acceleration(
     std::size_t i, double tau, const MotionRow& row) {
     motion(i, tau, row, &OscillatorMotion::x_ddot);
-    // To first order a high pass with corner h subtracts h times the integral.
-    if (const Eigen::Index at = first_of(Effect::high_pass); at >= 0) row_(at) = -row.value.x_dot;
+    // A high pass with corner h subtracts h/(s + h) of the acceleration; exact at the forcing
+    // frequency, where the acceleration is -Omega^2 x.
+    if (const Eigen::Index at = first_of(Effect::high_pass); at >= 0) {
+        const double ratio = corner_ / state_.fit.values[Unknown::Omega];
+        row_(at) = (corner_ * row.value.x - row.value.x_dot) / (1 + ratio * ratio);
+    }
     for (std::size_t k = 0; k < state_.mains.size(); ++k) {
         const Eigen::Index count = columns_.back().count,
                            at = size_ - static_cast<Eigen::Index>(state_.mains.size() - k) * count +

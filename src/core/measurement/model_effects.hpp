@@ -51,11 +51,12 @@ public:
 private:
     /// Direction of y' - x' in interval i; 0 if unknown.
     double direction(std::size_t i) const;
-    void slow(double u, Eigen::Index first, Eigen::Index count, double sin, double cos);
+    void slow(double u, Eigen::Index first, double factor);
 
     const JointFitState& state_;
     std::vector<EffectColumns> columns_;
     Eigen::Index size_ = 0;
+    double corner_;  ///< of the accelerometer's high pass, where its derivative is taken
     std::size_t interval_;
     OscillatorFlows flows_;
     Flow second_, third_;

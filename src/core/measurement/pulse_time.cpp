@@ -95,8 +95,13 @@ private:
                          noise = elementary::hypot(
                              fit_.noise_a,
                              height * elementary::hypot(pulse_.scatter(since), change));
-            samples_.push_back({p / noise, fit_.a_residual[s] / noise});
-            by += p * p / (noise * noise), along += p * fit_.a_residual[s] / (noise * noise);
+            const Scaled sample{p / noise, fit_.a_residual[s] / noise};
+            samples_.push_back(sample);
+            // An outlier, which no plausible height explains, would spoil the fitted one.
+            if (std::abs(sample.value - height * sample.pulse) >
+                outlier_sigmas + height_sigmas * error * std::abs(sample.pulse))
+                continue;
+            by += sample.pulse * sample.pulse, along += sample.pulse * sample.value;
         }
         const double fitted = by > 0 ? along / by : height,
                      moved = by > 0 && error > 0 ? (fitted - height) / error : 0;
@@ -128,7 +133,8 @@ private:
     struct Scaled {
         double pulse, value;
     };
-    static constexpr double most_squared = 25;
+    static constexpr double outlier_sigmas = 5, height_sigmas = 4,
+                            most_squared = outlier_sigmas * outlier_sigmas;
 
     const MeasuredRecord& record_;
     const std::vector<char>& bad_;
