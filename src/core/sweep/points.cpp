@@ -44,6 +44,12 @@ PointOptions options_of(const PointSystem& system, PointOptions options) {
     return options;
 }
 
+/// Throws Stopped on a stop request.
+void poll(RunControl& control) {
+    const ComputePermit permit(control);
+    if (control.stop_or_yield()) throw Stopped();
+}
+
 /// Counts a completed run; throws Stopped if it was interrupted.
 void count(const PointResult& result, RunControl& control) {
     if (result.outcome.reason == End::stopped || control.stop_or_yield()) throw Stopped();
@@ -69,8 +75,7 @@ void run_points(
     const std::function<std::optional<PointTask>(std::size_t)>& task_at) {
     parallel(count, threads, [&](std::size_t i) {
         const std::optional<PointTask> task = task_at(i);
-        if (!task && control.stop_or_yield()) throw Stopped();
-        if (!task) return;
+        if (!task) return poll(control);
         std::vector<Motion> motions;
         for (const auto& [name, state] : task->starts)
             motions.push_back({name, state, run_point(task->system, state, options, control)});
