@@ -97,6 +97,7 @@ int main(int argc, char** argv) {
         vines::cli::add_simulate(app),
         vines::cli::add_sweep(app),
         vines::cli::add_continue(app),
+        vines::cli::add_design(app),
         vines::cli::add_identify(app),
         vines::cli::add_manifold(app),
         vines::cli::add_plot(app),

@@ -291,17 +291,31 @@ Response sweep(const Request& r, const Service& service, Stopwatch& watch) {
     return response;
 }
 
-Response continuation(const Request& r, const Service& service, Stopwatch& watch) {
+namespace {
+
+/// Reads a request with `read` and streams its lines with `stream`.
+template <class Read, class Stream>
+Response lines_of(
+    const Request& r, const Service& service, Stopwatch& watch, Read read, Stream stream) {
     const RouteOptions& options = service.options;
     const auto body_permit = body_permit_for(r, service.admission, options.deadline);
     Permit permit = permit_for(r, service.admission, watch);  // for reading the request
     const api::Stop stop = stop_conditions(options.deadline, r, service.admission, permit);
-    api::ContinueRequest request = read_in_time(r, service, permit, [&] {
-        return api::read_continue_request(body_of(r, reading_of(r, options, stop)));
-    });
+    auto request = read_in_time(
+        r, service, permit, [&] { return read(body_of(r, reading_of(r, options, stop))); });
     watch.lap("parse", permit.waited());
-    return stream_continuation(
+    return stream(
         std::move(request), options.sweep_deadline, r, service.admission, service.metrics);
+}
+
+}  // namespace
+
+Response continuation(const Request& r, const Service& service, Stopwatch& watch) {
+    return lines_of(r, service, watch, api::read_continue_request, stream_continuation);
+}
+
+Response design(const Request& r, const Service& service, Stopwatch& watch) {
+    return lines_of(r, service, watch, api::read_design_request, stream_design);
 }
 
 }  // namespace vines::http

@@ -86,6 +86,7 @@ std::vector<Route> make_routes(
     }
     compute("POST", "/v1/sweep", sweep);
     compute("POST", "/v1/continue", continuation);
+    compute("POST", "/v1/design", design);
     compute("POST", "/v1/identify", answer);
     routes.back().body_limit = options.record_limit;
     routes.push_back(document("/v1/presets", api::describe_presets));

@@ -38,6 +38,7 @@ using Computation = Response(const Request& request, const Service& service, Sto
 Computation answer;
 Computation sweep;         ///< /v1/sweep
 Computation continuation;  ///< /v1/continue
+Computation design;        ///< /v1/design
 
 /// All routes; `admission` and `metrics` must outlive them. Throws std::runtime_error if the folder
 /// of the web page cannot be read.

@@ -415,36 +415,66 @@ Response stream_sweep(
         .silent = table != nullptr && form.format != api::Format::csv};
 }
 
-Response stream_continuation(
-    api::ContinueRequest request, double deadline, const Request& asked,
-    AdmissionControl& admission, Metrics& metrics) {
-    const auto shared = std::make_shared<const api::ContinueRequest>(std::move(request));
+namespace {
+
+/// Lines of NDJSON that one computation passes on; it counts as a sweep.
+Response stream_lines(
+    LineWork lines, double deadline, const Request& asked, AdmissionControl& admission,
+    Metrics& metrics) {
+    const auto work = std::make_shared<const LineWork>(std::move(lines));
     const AdmissionControl::SweepSlot sweep_slot = admission.acquire_sweep(asked.client);
     if (!sweep_slot) return sweep_refusal(admission);
     return {
         .content_type = api::sweep_format_names[0].media_type,
         .headers = {{"Cache-Control", "no-store"}, {"X-Accel-Buffering", "no"}},
-        .stream = [shared, deadline, of = StreamOf(asked), &admission, &metrics,
+        .stream = [work, deadline, of = StreamOf(asked), &admission, &metrics,
                    sweep_slot](Writer& out) {
-            api::ContinuationCount count;
-            const LineWork work{
-                "/v1/continue",
-                api::json_text(api::continuation_start(*shared)) + '\n',
-                [&](api::RunControl& control, const LineWork::Push& push) {
-                    return api::run_continuation(
-                        *shared, control, count,
-                        [&](const std::string& line) { push(line + '\n'); });
-                },
-                [&](std::size_t, const api::RunControl&, double seconds) {
-                    return api::continuation_progress(count, seconds);
-                },
-                [&](std::size_t) { return api::continuation_done(count); },
-                "continue from the state of a last point, with orbit \"stated\""};
-            LineStream sending(work, deadline, of, admission, out);
+            LineStream sending(*work, deadline, of, admission, out);
             const SweepEnd end = sending.run();
             metrics.count_sweep(end, sending.runs(), sending.impacts());
             return end != SweepEnd::client_left;
         }};
+}
+
+}  // namespace
+
+Response stream_continuation(
+    api::ContinueRequest request, double deadline, const Request& asked,
+    AdmissionControl& admission, Metrics& metrics) {
+    const auto shared = std::make_shared<const api::ContinueRequest>(std::move(request));
+    const auto count = std::make_shared<api::ContinuationCount>();
+    return stream_lines(
+        {"/v1/continue", api::json_text(api::continuation_start(*shared)) + '\n',
+         [=](api::RunControl& control, const LineWork::Push& push) {
+             return api::run_continuation(
+                 *shared, control, *count, [&](const std::string& line) { push(line + '\n'); });
+         },
+         [=](std::size_t, const api::RunControl&, double seconds) {
+             return api::continuation_progress(*count, seconds);
+         },
+         [=](std::size_t) { return api::continuation_done(*count); },
+         "continue from the state of a last point, with orbit \"stated\""},
+        deadline, asked, admission, metrics);
+}
+
+Response stream_design(
+    api::DesignRequest request, double deadline, const Request& asked, AdmissionControl& admission,
+    Metrics& metrics) {
+    const auto shared = std::make_shared<const api::DesignRequest>(std::move(request));
+    const auto count = std::make_shared<api::DesignCount>();
+    return stream_lines(
+        {"/v1/design", api::json_text(api::design_start(*shared)) + '\n',
+         [shared, count, threads = admission.threads()](
+             api::RunControl& control, const LineWork::Push& push) {
+             return api::run_design(
+                 *shared, threads, control, *count,
+                 [&](const std::string& line) { push(line + '\n'); });
+         },
+         [=](std::size_t, const api::RunControl& control, double) {
+             return api::design_progress(*shared, *count, control);
+         },
+         [](std::size_t) { return std::string(); }, "request fewer R, b_count, f_count or cycles"},
+        deadline, asked, admission, metrics);
 }
 
 }  // namespace vines::http

@@ -5,6 +5,7 @@
 #include <string>
 
 #include "api/continuation.hpp"
+#include "api/design.hpp"
 #include "api/format/sweep_table.hpp"
 #include "api/simulate.hpp"
 #include "api/sweep.hpp"
@@ -31,10 +32,13 @@ Response stream_sweep(
     api::SweepRequest request, SweepForm form, double deadline, const Request& asked,
     AdmissionControl& admission, Metrics& metrics);
 
-/// The branches of a continuation as a stream of NDJSON lines, which counts as a sweep: the same
-/// slots, deadline and refusals.
+/// The branches of a continuation, or the absorbers of a design, as a stream of NDJSON lines, which
+/// counts as a sweep: the same slots, deadline and refusals.
 Response stream_continuation(
     api::ContinueRequest request, double deadline, const Request& asked,
     AdmissionControl& admission, Metrics& metrics);
+Response stream_design(
+    api::DesignRequest request, double deadline, const Request& asked, AdmissionControl& admission,
+    Metrics& metrics);
 
 }  // namespace vines::http

@@ -26,6 +26,7 @@ AddCommand add_simulate, add_manifold;
 AddCommand add_identify;  ///< input that begins with "{" is JSON; any other is CSV
 AddCommand add_sweep;     ///< computes a sweep or a shard, or completes the file of one
 AddCommand add_continue;  ///< branches of periodic orbits along a parameter
+AddCommand add_design;    ///< the best absorber over a band, next to its alternatives
 AddCommand add_merge;     ///< combines the files of all shards, byte for byte
 AddCommand add_verify;    ///< recomputes an answer and compares it
 AddCommand add_plot;      ///< draws an answer in the terminal or as SVG

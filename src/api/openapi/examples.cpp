@@ -3,6 +3,7 @@
 #include <utility>
 
 #include "api/continuation.hpp"
+#include "api/design.hpp"
 #include "api/format/answer_request.hpp"
 #include "api/openapi/parts.hpp"
 #include "api/sweep.hpp"
@@ -48,6 +49,12 @@ constexpr Example requests[] = {
             "summary": "the symmetric two-impact orbit of Table 1, both ends of its stability",
             "value": {"base": {"damping": "closed_form", "b": 0.015}, "parameter": "b",
                 "from": 0.005, "to": 0.02}}})"},
+    {"design", R"({
+        "a band": {
+            "summary": "2 kg at 8 Hz, up to 5 m/s^2 between 7.8 and 8.2 Hz, 40 g to spend",
+            "value": {"base": {"m1": 2, "f0": 8, "damping_ratio": 0.01, "m2": 0.04},
+                "f": [7.8, 8.2], "acceleration": 5, "R": 0.2, "b_count": 6, "f_count": 3,
+                "starts": "one", "transient_cycles": 20, "cycles": 20}}})"},
     {"identify", R"(
         {"impacts": {
             "summary": "a list of impacts, in SI: x in m, velocities in m/s",
@@ -110,6 +117,17 @@ Json special_line() {
     return special;
 }
 
+/// The last line of the first design.
+Json design_line() {
+    Json last;
+    RunControl control;
+    DesignCount count;
+    run_design(
+        read_design_request(first_request("design")), 1, control, count,
+        [&](const std::string& line) { last = Json::parse(line); });
+    return last;
+}
+
 }  // namespace
 
 Json request_example(const char* operation) { return example_of(requests, operation); }
@@ -120,6 +138,7 @@ Json answer_example(const char* schema) {
         {"Manifold", answer_to("manifold", "/v1/manifold")},
         {"SweepLine", point_line()},
         {"ContinueLine", special_line()},
+        {"DesignLine", design_line()},
         {"Identification", answer_to("identify", "/v1/identify")}};
     return computed.contains(schema) ? computed[schema] : example_of(service_answers, schema);
 }

@@ -130,6 +130,21 @@ Json continue_path() {
     return {{"post", post(o, "ContinueRequest")}};
 }
 
+Json design_path() {
+    Operation o = {
+        "design",
+        "sweep",
+        "The best absorber over a band and a range of amplitudes, next to its alternatives",
+        "A stream of JSON lines: start, the absorbers that are tried, progress every 200 ms, and "
+        "done with the best one, its margins, and the responses without absorber and with a tuned "
+        "mass damper; or error.",
+        "DesignLine",
+        "application/x-ndjson"};
+    o.computes = true;
+    o.has_formats = false;
+    return {{"post", post(o, "DesignRequest")}};
+}
+
 /// The body is JSON with all fields, or a file of columns with the fields in the query.
 Json identify_path() {
     Operation o = {
@@ -193,6 +208,7 @@ Json paths() {
              "ManifoldRequest", manifold_fields())},
         {"/v1/sweep", sweep_path()},
         {"/v1/continue", continue_path()},
+        {"/v1/design", design_path()},
         {"/v1/identify", identify_path()},
         {"/v1/parameters",
          read_path(
@@ -232,7 +248,7 @@ Json all_schemas() {
     Json schemas = Json::object();
     for (const auto add :
          {add_requests, add_simulation, add_systems, add_exponents, add_manifolds, add_sweep_lines,
-          add_continuation_lines, add_identification, add_service})
+          add_continuation_lines, add_design_lines, add_identification, add_service})
         add(schemas);
     return schemas;
 }

@@ -15,6 +15,7 @@ void add_manifolds(Json& schemas);           // simulation.cpp: the part and the
 void add_simulation(Json& schemas);          // simulation.cpp
 void add_sweep_lines(Json& schemas);         // sweep_lines.cpp
 void add_continuation_lines(Json& schemas);  // continuation_lines.cpp
+void add_design_lines(Json& schemas);        // design_lines.cpp
 void add_identification(Json& schemas);      // identification.cpp
 void add_service(Json& schemas);             // service.cpp: tables, presets, version, problems
 

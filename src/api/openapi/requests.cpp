@@ -122,6 +122,17 @@ Json continue_request() {
     return request;
 }
 
+Json design_request() {
+    Json request = request_of(design_fields(), {"base", "f"});
+    for (const char* name : {"f", "acceleration", "F", "R", "m2"}) {
+        Json& field = request["properties"][name];
+        Json list = field;
+        list.erase("description");
+        field = {{"anyOf", {std::move(list), number()}}, {"description", field["description"]}};
+    }
+    return request;
+}
+
 }  // namespace
 
 Json query_of(const FieldTable& fields, const Json& example) {
@@ -136,6 +147,7 @@ void add_requests(Json& schemas) {
     schemas["IdentifyRequest"] = identify_request();
     schemas["SweepRequest"] = sweep_request();
     schemas["ContinueRequest"] = continue_request();
+    schemas["DesignRequest"] = design_request();
     schemas["SweepBase"] = request_of(sweep_base_fields());
     schemas["Axis"] = request_of(axis_fields(), {"parameter"});
     schemas["Start"] = request_of(start_fields());

@@ -36,6 +36,7 @@ Json parameters() {
          {"sweep_fields", fields, "fields of /v1/sweep"},
          {"axis_fields", fields, "fields of an axis of a sweep"},
          {"continue_fields", fields, "fields of /v1/continue"},
+         {"design_fields", fields, "fields of /v1/design"},
          {"identify_fields", fields, "fields of /v1/identify"},
          {"form_fields", fields,
           "format of the response: fields of simulate, manifold and identify"}});

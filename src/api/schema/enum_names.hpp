@@ -6,6 +6,7 @@
 #include <string_view>
 
 #include "api/schema/field.hpp"
+#include "core/design/design.hpp"
 #include "core/measurement/unknowns.hpp"
 #include "core/sweep/sweep.hpp"
 
@@ -55,6 +56,14 @@ inline constexpr EnumName<SectionKind> enum_names<SectionKind>[] = {
 template <>
 inline constexpr EnumName<Carry> enum_names<Carry>[] = {
     {Carry::none, "none"}, {Carry::up, "up"}, {Carry::down, "down"}};
+
+template <>
+inline constexpr EnumName<Objective> enum_names<Objective>[] = {
+    {Objective::x_max, "x_max"},
+    {Objective::x_rms, "x_rms"},
+    {Objective::x_relative_max, "x_relative_max"},
+    {Objective::x_acceleration_max, "x_acceleration_max"},
+    {Objective::impact_speed_max, "impact_speed_max"}};
 
 /// The unknowns of a fit that a request can fix.
 template <>

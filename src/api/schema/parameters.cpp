@@ -69,6 +69,7 @@ Json describe_fields() {
         {"sweep_fields", describe(sweep_fields())},
         {"axis_fields", describe(axis_fields())},
         {"continue_fields", describe(continue_fields())},
+        {"design_fields", describe(design_fields())},
         {"identify_fields", describe(identify_fields())},
         {"form_fields", describe(form_fields())}};
 }

@@ -28,6 +28,8 @@ const FieldTable& start_fields();
 
 /// Fields of /v1/continue; those of its `base` are sweep_base_fields().
 const FieldTable& continue_fields();
+/// Fields of /v1/design; those of its `base` are fields of a system in SI.
+const FieldTable& design_fields();
 
 /// Fields of /v1/identify, without the record itself.
 const FieldTable& identify_fields();

@@ -90,6 +90,7 @@ struct AnalysisObservers {
           at_phase_zero(w.parameters, {.most = kept_states, .until = w.window.to}),
           at_section_phase(w.parameters, 0, w.section_phase),
           cycle_peaks(w.window.from, w.window.to, w.parameters.cycle()),
+          extremes(w.parameters, w.window.from, w.window.to),
           decay(w.parameters, w.window.from, decay_fractions),
           rhythm(w.parameters, w.window, w.parts.regime ? w.most_points : 0),
           half_cycles(w.parameters, w.window.from, w.window.to, w.most_points) {
@@ -118,6 +119,7 @@ struct AnalysisObservers {
         observe(!w.windows.empty(), windows);
         observe(w.parts.moduli || w.parts.matrices, transfers);
         if (energy) list.push_back(&*energy);
+        observe(w.parts.extremes, extremes);
         observe(w.parts.energy && w.parts.unattached, cycle_peaks);
         observe(w.parts.energy && w.parameters.G == 0, decay);
         observe(w.parts.manifold, half_cycles);
@@ -136,6 +138,7 @@ struct AnalysisObservers {
     StroboscopicRecord at_phase_zero, at_section_phase;
     std::optional<Energy> energy;  // constructed on request only: its tables take time
     CyclePeaks cycle_peaks;
+    ExtremesRecord extremes;
     Decay decay;
     Rhythm rhythm;
     HalfCycles half_cycles;
@@ -159,6 +162,7 @@ struct AnalysisConclusion {
         transfers();
         if (w.parts.section) sections();
         if (w.parts.energy) energy();
+        a.extremes = o.extremes.extremes;
         stationarity();
         if (w.parts.regime) regime();
         if (w.parts.manifold) manifold();

@@ -13,6 +13,7 @@
 #include "core/analysis/impact_collector.hpp"
 #include "core/analysis/perturbation.hpp"
 #include "core/measures/energy.hpp"
+#include "core/measures/extremes.hpp"
 #include "core/measures/manifold.hpp"
 #include "core/measures/regime.hpp"
 
@@ -28,6 +29,7 @@ struct Parts {
     bool matrices = false;    ///< the matrices themselves
     bool section = false;     ///< Poincare sections: at impact and stroboscopic
     bool energy = false;      ///< balance and amplitudes
+    bool extremes = false;    ///< largest acceleration, distance from the base, impact
     bool unattached = false;  ///< with energy: comparison with the oscillator without absorber
     bool regime = false;
     bool before_capture = false;  ///< with regime: exponents before the capture by an orbit
@@ -251,6 +253,7 @@ struct Analysis {
     std::optional<TransferMatrices> matrices;
     std::optional<Sections> sections;
     std::optional<EnergyResult> energy;
+    Extremes extremes;  ///< zero unless requested
     std::optional<Regime> regime;
     std::optional<ManifoldResult> manifold;
     std::optional<Perturbation> perturbation;

@@ -35,7 +35,11 @@ AnalysisRequest wanted_of(const Parameters& p, const State& start, const PointOp
         .tau_end = tau_end,
         .max_impacts = o.max_impacts,
         .window = {0, tau_end},
-        .parts = {.section = o.section != SectionKind::none, .energy = true, .regime = true},
+        .parts =
+            {.section = o.section != SectionKind::none,
+             .energy = true,
+             .extremes = true,
+             .regime = !o.amplitudes_alone},
         .estimators = qr_alone,
         .settle_cycles = o.settle_cycles,
         .section_phase = o.section_phase,
@@ -93,6 +97,19 @@ std::optional<State> last_state(
     return end.reason == End::tau_end ? std::optional(end.state) : std::nullopt;
 }
 
+/// Exponents, verdict and regime.
+void set_conclusions(PointResult& r, Analysis& a, const PointOptions& options, double cycle) {
+    r.lambda = a.exponents->product.qr();
+    r.standard_error = a.exponents->growth.standard_error;
+    r.verdict = final_verdict(a.exponents->judgement.verdict, *a.regime);
+    r.chaotic_cycles = chaotic_cycles_of(a, options.settle_cycles, cycle);
+    if (const auto& capture = a.regime->capture) {
+        r.lambda1_before = lambda1_until(a.exponents->product, capture->tau.value_or(infinity));
+        r.lambda1_after = capture->after[0];
+    }
+    r.regime = without_lists(std::move(*a.regime));
+}
+
 }  // namespace
 
 PointResult measure(
@@ -109,15 +126,7 @@ PointResult measure(
     const EnergyBalance& energy = a.energy->balance;
     r.outcome = a.outcome;
     r.measured = true;
-    r.lambda = a.exponents->product.qr();
-    r.standard_error = a.exponents->growth.standard_error;
-    r.verdict = final_verdict(a.exponents->judgement.verdict, *a.regime);
-    r.chaotic_cycles = chaotic_cycles_of(a, options.settle_cycles, p.cycle());
-    if (const auto& capture = a.regime->capture) {
-        r.lambda1_before = lambda1_until(a.exponents->product, capture->tau.value_or(infinity));
-        r.lambda1_after = capture->after[0];
-    }
-    r.regime = without_lists(std::move(*a.regime));
+    if (!options.amplitudes_alone) set_conclusions(r, a, options, p.cycle());
     r.x_max = energy.peak;
     r.x_rms = energy.rms;
     r.x_rms_error = energy.rms_error;
@@ -127,6 +136,7 @@ PointResult measure(
     r.share_impacts = energy.share_impacts;
     r.impacts = r.outcome.impacts;
     r.sticks = a.stick_count;
+    r.extremes = a.extremes;
     if (a.sections) r.sections = std::move(*a.sections);
     if (options.carry) r.at_end = last_state(p, r.outcome, stop);
     return r;

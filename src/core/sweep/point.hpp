@@ -51,6 +51,7 @@ struct PointOptions {
     double section_phase = 0;          ///< stroboscopic section: rad after each whole cycle
     /// A neighbour continues from the last state: computes PointResult::at_end.
     bool carry = false;
+    bool amplitudes_alone = false;  ///< without exponents, verdict and regime
 };
 
 struct PointResult {
@@ -71,6 +72,7 @@ struct PointResult {
     Regime regime;  ///< without its lists
     /// m; m; x_rms over that of the steady motion (free decay: same start) without absorber.
     double x_max, x_rms, x_rms_ratio;
+    Extremes extremes;
     double x_rms_error, share_impacts_error;  ///< standard errors (EnergyBalance)
     /// Steady amplitude without absorber, m; empty at undamped resonance.
     std::optional<double> x_free;

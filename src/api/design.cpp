@@ -1,0 +1,306 @@
+#include "api/design.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "api/describe.hpp"
+#include "api/json_text.hpp"
+#include "api/schema/enum_names.hpp"
+#include "api/schema/tables.hpp"
+#include "api/version.hpp"
+
+namespace vines::api {
+
+namespace {
+
+constexpr double least_b_of_amplitude = 0.05, most_b_of_amplitude = 1.2;
+constexpr Range amplitude_range{1e-9, 1e6}, f_range{1e-3, 1e5}, b_range{1e-9, 1e3};
+
+/// Replaces a number by the list that `as` makes of it.
+void list_of_number(Json& given, const char* name, const std::function<Json(const Json&)>& as) {
+    if (given.contains(name) && given[name].is_number()) given[name] = as(given[name]);
+}
+
+/// A checked interval or number as an interval within a range.
+Interval interval_of(
+    const Json& value, const char* name, const Range& range, std::vector<FieldError>& errors) {
+    const Interval i = value.is_number()
+                           ? Interval{value.get<double>(), value.get<double>()}
+                           : Interval{value[0].get<double>(), value[1].get<double>()};
+    if (!(i.from >= range.minimum && i.to <= range.maximum))
+        errors.push_back(
+            {std::string("/") + name, value, Json::array({range.minimum, range.maximum}),
+             fmt::format("{} must lie in [{:g}, {:g}]", name, range.minimum, range.maximum)});
+    return i;
+}
+
+std::vector<double> numbers_within(
+    const Json& list, const char* name, const Range& range, std::vector<FieldError>& errors) {
+    if (list.empty() || list.size() > 100)
+        errors.push_back(
+            {std::string("/") + name, list.size(), Json::array({1, 100}),
+             fmt::format("{} must hold 1 to 100 numbers", name)});
+    for (std::size_t k = 0; k < list.size(); ++k)
+        if (const double v = list[k].get<double>(); !(v >= range.minimum && v <= range.maximum))
+            errors.push_back(
+                {fmt::format("/{}/{}", name, k), v, Json::array({range.minimum, range.maximum}),
+                 fmt::format("{} must lie in [{:g}, {:g}]", name, range.minimum, range.maximum)});
+    return list.get<std::vector<double>>();
+}
+
+/// The host; what the design chooses or sweeps must not be given.
+void read_host(DesignRequest& r, const Json& given, std::vector<FieldError>& errors) {
+    const Json& base = given["base"];
+    for (const char* name :
+         {"f", "F", "acceleration", "b", "R", "R_plus", "R_minus", "gravity", "inclination",
+          "friction", "mu", "restitution", "restitution_plus", "restitution_minus", "preset"})
+        if (base.contains(name))
+            errors.push_back(
+                {std::string("/base/") + name, base[name], nullptr,
+                 std::string(name) + " is no field of a host: a design chooses b and R, and gives "
+                                     "f and acceleration or F beside base"});
+    if (!errors.empty()) return;
+    Json whole = base;
+    whole.update({{"f", given["f"][0]}, {"F", 1e-3}});
+    // The masses to choose from stand for that of the base.
+    if (given.contains("m2")) whole.erase("mass_ratio"), whole["m2"] = given["m2"][0];
+    const StartedSystem host = read_started_system(whole);
+    add_errors("/base", host.errors, errors);
+    if (!host.system.si)
+        errors.push_back({"/base", nullptr, nullptr, "a design needs its host in SI"});
+    else r.host = *host.system.si;
+    r.plan.host.damping = host.system.parameters.damping;
+}
+
+/// The checked request without what was given as a number in place of a list.
+Json with_lists(const Json& object) {
+    Json given = object;
+    const auto pair = [](const Json& v) { return Json::array({v, v}); };
+    const auto single = [](const Json& v) { return Json::array({v}); };
+    for (const char* name : {"R", "m2"}) list_of_number(given, name, single);
+    // One number in a query or on the command line is a list of one.
+    for (const char* name : {"f", "acceleration", "F"})
+        if (given.contains(name) && given[name].is_array() && given[name].size() == 1)
+            given[name] = Json(given[name][0]);
+    Json checked = given;
+    for (const char* name : {"f", "acceleration", "F"})
+        if (checked.contains(name) && checked[name].is_number()) checked.erase(name);
+    std::vector<FieldError> errors = check(design_fields(), checked);
+    for (const char* name : {"f", "acceleration", "F"}) list_of_number(given, name, pair);
+    for (const char* name : {"base", "f"})
+        if (!given.contains(name))
+            errors.push_back(
+                {std::string("/") + name, nullptr, nullptr, "a design needs base and f"});
+    if (given.contains("acceleration") == given.contains("F"))
+        errors.push_back(
+            {"/acceleration", nullptr, nullptr, "a design needs either acceleration or F"});
+    if (!errors.empty()) refuse(std::move(errors));
+    return given;
+}
+
+double number_of(const Json& given, const char* name) {
+    return given.contains(name) ? given[name].get<double>()
+                                : find(design_fields(), name)->fallback.get<double>();
+}
+std::string choice_of(const Json& given, const char* name) {
+    return given.value(name, find(design_fields(), name)->fallback.get<std::string>());
+}
+
+// --- The answer ---
+
+Json described(const DesignRequest& r, const DesignPoint& p) {
+    return {{"b", p.b},
+            {"R", p.R},
+            {"m2", p.m2},
+            {r.objective, finite_or_null(p.objective)},
+            {"f", p.f},
+            {r.is_acceleration ? "acceleration" : "F", p.amplitude * r.amplitude}};
+}
+
+Json described(const DesignRequest& r, const BandMaximum& m) {
+    return {{r.objective, finite_or_null(m.value)}, {"f", m.f}};
+}
+
+Json described(const DesignRequest& r, const LinearAbsorber& t, const BandMaximum& m) {
+    Json j = described(r, m);
+    j.update({{"frequency_ratio", t.frequency_ratio}, {"damping_ratio", t.damping_ratio}});
+    return j;
+}
+
+Json described(const DesignMargin& m) {
+    const auto pair = [](const Interval& i) { return Json::array({i.from, i.to}); };
+    return {{"five_percent", pair(m.five_percent)}, {"twenty_percent", pair(m.twenty_percent)}};
+}
+
+/// "48.9 mm".
+std::string quantity_text(const DesignRequest& r, double value) {
+    switch (r.plan.objective) {
+        case Objective::x_acceleration_max: return fmt::format("{:.3g} m/s^2", value);
+        case Objective::impact_speed_max: return fmt::format("{:.3g} m/s", value);
+        default: return fmt::format("{:.3g} mm", 1000 * value);
+    }
+}
+
+/// The result in words.
+std::string sentence_of(const DesignRequest& r, const Design& d) {
+    const double value = d.best.objective, without = d.without.value,
+                 damper = d.with_tuned_mass_damper.value;
+    std::string text = fmt::format(
+        "A cavity with b = {:.3g} mm and R = {:.2g} for a ball of {:.3g} g keeps {} at {} over the "
+        "band",
+        1000 * d.best.b, d.best.R, 1000 * d.best.m2, r.objective, quantity_text(r, value));
+    if (r.plan.objective == Objective::impact_speed_max) return text + ".";
+    text += fmt::format(
+        "; without absorber it is {}, with a tuned mass damper of the same mass (frequency ratio "
+        "{:.3g}, damping ratio {:.2g}) {}",
+        quantity_text(r, without), d.tuned_mass_damper.frequency_ratio,
+        d.tuned_mass_damper.damping_ratio, quantity_text(r, damper));
+    constexpr double clearly = 0.9;
+    if (!(value < clearly * without) && !(damper < clearly * without))
+        return text + ". Neither helps.";
+    if (!(value < clearly * without))
+        return text + ". The cavity does not help: build the tuned mass damper.";
+    if (damper < clearly * value) return text + ". Build the tuned mass damper.";
+    return text + (value < clearly * damper ? ". Build the cavity."
+                                            : ". Both are equally good over this band.");
+}
+
+Json response_columns(const DesignRequest& r, const Design& d) {
+    const auto list = [&](double DesignResponse::* member) {
+        return column(d.response, [member](const DesignResponse& at) { return at.*member; });
+    };
+    return {{"f", list(&DesignResponse::f)},
+            {r.objective + "_worst_start", list(&DesignResponse::worst)},
+            {r.objective + "_best_start", list(&DesignResponse::best)},
+            {"without", list(&DesignResponse::without)},
+            {"tuned_mass_damper", list(&DesignResponse::tuned_mass_damper)},
+            {"impact_speed_max", list(&DesignResponse::impact_speed)},
+            {"impulse_max", list(&DesignResponse::impulse)},
+            {"impacts_per_second", list(&DesignResponse::impacts_per_second)}};
+}
+
+Json described(const DesignRequest& r, const Design& d) {
+    Json best = described(r, d.best);
+    if (d.complete) {
+        const auto most = [&](double DesignResponse::* member) {
+            return std::ranges::max(d.response, {}, member).*member;
+        };
+        best.update(
+            {{"regime", name_of(d.at_worst.regime.type)},
+             {"impact_speed_max", most(&DesignResponse::impact_speed)},
+             {"impulse_max", most(&DesignResponse::impulse)},
+             {"impacts_per_second", most(&DesignResponse::impacts_per_second)},
+             {"margins",
+              {{"b", described(d.b)},
+               {"R", described(d.R)},
+               {"f0", described(d.f0)},
+               {"damping", described(d.damping)}}},
+             {"works_from", d.works.from * r.amplitude},
+             {"works_to", d.works.to * r.amplitude},
+             {"activation", d.activation ? Json(*d.activation * r.amplitude) : Json(nullptr)}});
+        if (r.plan.objective == Objective::impact_speed_max)
+            best[r.objective] = finite_or_null(d.best.objective);
+    }
+    return {
+        {"type", "done"},
+        {"complete", d.complete},
+        {"best", std::move(best)},
+        {"without", described(r, d.without)},
+        {"tuned_mass_damper",
+         described(r, d.tuned_mass_damper, d.with_tuned_mass_damper)},
+        {"den_hartog", described(r, d.den_hartog, d.with_den_hartog)},
+        {"response", response_columns(r, d)},
+        {"sentence", sentence_of(r, d)}};
+}
+
+}  // namespace
+
+DesignRequest read_design_request(const Json& object) {
+    const Json given = with_lists(object);
+    DesignRequest r;
+    r.given = object;
+    std::vector<FieldError> errors;
+    DesignPlan& plan = r.plan;
+    plan.f = interval_of(given["f"], "f", f_range, errors);
+    r.is_acceleration = given.contains("acceleration");
+    const char* amplitude_name = r.is_acceleration ? "acceleration" : "F";
+    const Interval amplitude =
+        interval_of(given[amplitude_name], amplitude_name, amplitude_range, errors);
+    r.amplitude = amplitude.to;
+    plan.amplitude_ratio = amplitude.from / amplitude.to;
+    plan.R = numbers_within(
+        given.value("R", find(design_fields(), "R")->fallback), "R", {0, 1}, errors);
+    if (errors.empty()) read_host(r, given, errors);
+    if (!errors.empty()) refuse(std::move(errors));
+    plan.m2 = given.contains("m2")
+                  ? numbers_within(given["m2"], "m2", {1e-9 * r.host.m1, 10 * r.host.m1}, errors)
+                  : std::vector{r.host.m2};
+    if (!errors.empty()) refuse(std::move(errors));
+    plan.host.si = r.host;
+    plan.host.base_amplitude = [a = r.amplitude, is = r.is_acceleration](double f) {
+        const double omega = 2 * std::numbers::pi * f;
+        return is ? a / (omega * omega) : a;
+    };
+    if (given.contains("b")) plan.b = interval_of(given["b"], "b", b_range, errors);
+    else {
+        const double most = band_maximum(
+                                [&](double f) {
+                                    return linear_response(plan.host, {}, Objective::x_max, f);
+                                },
+                                plan.f)
+                                .value;
+        plan.b = {least_b_of_amplitude * most, most_b_of_amplitude * most};
+    }
+    if (!errors.empty()) refuse(std::move(errors));
+    r.objective = choice_of(given, "objective");
+    plan.objective = enum_value<Objective>(r.objective);
+    plan.mean = choice_of(given, "over") == "mean";
+    plan.default_set = choice_of(given, "starts") != "one";
+    plan.b_count = static_cast<int>(number_of(given, "b_count"));
+    plan.f_count = static_cast<int>(number_of(given, "f_count"));
+    plan.transient_cycles = number_of(given, "transient_cycles");
+    plan.cycles = number_of(given, "cycles");
+    return r;
+}
+
+Json design_start(const DesignRequest& r) {
+    const SiParameters& h = r.host;
+    return {
+        {"type", "start"},
+        {"version", version()},
+        {"commit", commit()},
+        {"runs_of", design_runs(r.plan)},
+        {"b_from", r.plan.b.from},
+        {"b_to", r.plan.b.to},
+        {"host",
+         {{"m1", h.m1}, {"c1", h.c1}, {"k1", h.k1}, {"f0", h.f0()},
+          {"damping_ratio", h.damping_ratio()}}},
+        {"request", r.given}};
+}
+
+std::string design_progress(
+    const DesignRequest& r, const DesignCount& count, const vines::RunControl& control) {
+    return json_text(
+               {{"type", "progress"},
+                {"done", count.load()},
+                {"runs", control.runs.load()},
+                {"runs_of", std::max(design_runs(r.plan), control.runs.load())}}) +
+           "\n";
+}
+
+bool run_design(
+    const DesignRequest& r, int threads, vines::RunControl& control, DesignCount& count,
+    const std::function<void(const std::string&)>& take) {
+    const auto design = find_design(r.plan, threads, control, [&](const DesignPoint& p) {
+        Json line = {{"type", "point"}};
+        line.update(described(r, p));
+        take(json_text(std::move(line)));
+        ++count;
+    });
+    if (design) take(json_text(described(r, *design)));
+    return design && design->complete;
+}
+
+}  // namespace vines::api

@@ -1,0 +1,39 @@
+// Requests of /v1/design, and the lines of its NDJSON stream: start, point, progress, done, error.
+#pragma once
+
+#include <atomic>
+#include <functional>
+
+#include "api/request.hpp"
+#include "core/design/design.hpp"
+
+namespace vines::api {
+
+struct DesignRequest {
+    Json given;  ///< as requested
+    DesignPlan plan;
+    double amplitude;           ///< the largest, m/s^2 or m
+    bool is_acceleration;       ///< of `amplitude`
+    std::string objective;      ///< its name
+    SiParameters host;
+};
+
+/// Problem 422 naming every invalid field.
+DesignRequest read_design_request(const Json& object);
+
+/// Number of absorbers so far; another thread can read it.
+using DesignCount = std::atomic<std::size_t>;
+
+/// Passes each line of the result, without line end, to take(); the last one is `done`. False if
+/// stopped before the end: `done` then holds what is known, with complete false.
+bool run_design(
+    const DesignRequest& request, int threads, vines::RunControl& control, DesignCount& count,
+    const std::function<void(const std::string& line)>& take);
+
+/// {type: start, version, commit, runs_of, host, request}.
+Json design_start(const DesignRequest& request);
+/// {type: progress, done, runs, runs_of}: absorbers and motions so far. With line end.
+std::string design_progress(
+    const DesignRequest& request, const DesignCount& count, const vines::RunControl& control);
+
+}  // namespace vines::api

@@ -1,0 +1,129 @@
+// The lines of the response of /v1/design.
+#include <algorithm>
+
+#include "api/openapi/parts.hpp"
+
+namespace vines::api::document {
+
+namespace {
+
+/// The objective's value, whose key is its name.
+Keys objective_keys() {
+    Keys keys;
+    for (const std::string& name : find(design_fields(), "objective")->choices)
+        keys.push_back(optional(
+            {name, or_null(number()), "largest value over the band, m, m/s or m/s^2; null if " +
+                                          std::string("a motion has too many impacts")}));
+    return keys;
+}
+
+Keys absorber_keys() {
+    return Keys{
+               {"b", number(), "clearance, m"},
+               {"R", number(), "restitution coefficient of both walls"},
+               {"m2", number(), "mass of the ball, kg"}} +
+           objective_keys() +
+           Keys{
+               {"f", number(), "frequency of the worst case, Hz"},
+               optional({"acceleration", number(), "amplitude of the base there, m/s^2"}),
+               optional({"F", number(), "the same as a displacement, m"})};
+}
+
+Json margin() {
+    const Json pair = list_of(number());
+    return object_of(
+        {{"five_percent", pair,
+          "smallest and largest factor on the value with at most 5 % more of the objective, as far "
+          "as tried"},
+         {"twenty_percent", pair, "the same for 20 %"}});
+}
+
+Json linear(const Keys& more) {
+    return object_of(objective_keys() + Keys{{"f", number(), "frequency of the largest value, Hz"}} + more);
+}
+
+}  // namespace
+
+void add_design_lines(Json& schemas) {
+    schemas["DesignLine"] = by_type(
+        {{"start", "DesignStart"},
+         {"point", "DesignPoint"},
+         {"progress", "DesignProgress"},
+         {"done", "DesignDone"},
+         {"error", "SweepError"}});
+    schemas["DesignStart"] = object_of(
+        {{"type", constant("start"), ""},
+         {"version", text(), "version of the program"},
+         {"commit", text(), "commit of the program; empty if unknown"},
+         {"runs_of", whole(), "motions of the first map"},
+         {"b_from", number(), "smallest clearance, m"},
+         {"b_to", number(), "largest clearance, m"},
+         {"host",
+          object_of(
+              {{"m1", number(), "mass, kg"},
+               {"c1", number(), "damping, N s/m"},
+               {"k1", number(), "stiffness, N/m"},
+               {"f0", number(), "frequency, Hz"},
+               {"damping_ratio", number(), "damping ratio"}}),
+          "the machine without absorber"},
+         {"request", reference("DesignRequest"), "the request"}});
+    schemas["DesignPoint"] =
+        object_of(Keys{{"type", constant("point"), ""}} + absorber_keys());
+    schemas["DesignProgress"] = object_of(
+        {{"type", constant("progress"), ""},
+         {"done", whole(), "absorbers so far"},
+         {"runs", whole(), "motions so far"},
+         {"runs_of", whole(), "motions of the first map, or those so far"}});
+    const Keys ratios = {
+        {"frequency_ratio", number(), "its frequency over that of the host"},
+        {"damping_ratio", number(), "its damping ratio c2/(2 sqrt(k2 m2))"}};
+    const Json columns = list_of(or_null(number()));
+    Keys response = {{"f", columns, "frequencies, Hz"}};
+    for (const std::string& name : find(design_fields(), "objective")->choices) {
+        response.push_back(
+            optional({name + "_worst_start", columns, "objective with the worst start"}));
+        response.push_back(
+            optional({name + "_best_start", columns, "objective with the best start"}));
+    }
+    response = response +
+               Keys{
+                   {"without", columns, "objective without absorber"},
+                   {"tuned_mass_damper", columns, "objective with the tuned mass damper"},
+                   {"impact_speed_max", columns, "largest |x' - y'| before an impact, m/s"},
+                   {"impulse_max", columns, "largest impulse of an impact, N s"},
+                   {"impacts_per_second", columns, "most impacts per second"}};
+    const Keys details = {
+        optional({"regime", or_null(text()), "type of the motion in the worst case"}),
+        optional({"impact_speed_max", number(), "largest |x' - y'| before an impact, m/s"}),
+        optional({"impulse_max", number(), "largest impulse of an impact, N s"}),
+        optional({"impacts_per_second", number(), "most impacts per second"}),
+        optional(
+            {"margins",
+             object_of(
+                 {{"b", margin(), "of the clearance"},
+                  {"R", margin(), "of the restitution coefficient"},
+                  {"f0", margin(), "of the host's frequency"},
+                  {"damping", margin(), "of the host's damping"}}),
+             "how far values may be off"}),
+        optional(
+            {"works_from", number(),
+             "smallest amplitude with at least half of the reduction at the largest one"}),
+        optional({"works_to", number(), "largest such amplitude, as far as tried"}),
+        optional(
+            {"activation", or_null(number()),
+             "amplitude at which the host reaches the manifold's fold; null for R = 1"})};
+    Keys best = absorber_keys();
+    for (const Key& key : details)
+        if (std::ranges::find(best, key.name, &Key::name) == best.end()) best.push_back(key);
+    schemas["DesignDone"] = object_of(
+        {{"type", constant("done"), ""},
+         {"complete", flag(), "false if stopped: best is the best so far, without its details"},
+         {"best", object_of(best), "the best absorber"},
+         {"without", linear({}), "the host without absorber"},
+         {"tuned_mass_damper", linear(ratios), "the best one of the same mass for this band"},
+         {"den_hartog", linear(ratios), "the closed-form one of the same mass"},
+         {"response", object_of(response), "over the band, at the largest amplitude"},
+         {"sentence", text(), "the result in words"}});
+}
+
+}  // namespace vines::api::document

@@ -1,0 +1,67 @@
+// The table of /v1/design.
+#include "api/schema/tables.hpp"
+
+namespace vines::api {
+
+const FieldTable& design_fields() {
+    static const FieldTable table = grouped(
+        "design",
+        {{.name = "base",
+          .type = FieldType::object,
+          .description = "the host in SI: m1, k1 or f0, c1 or damping_ratio, m2 or mass_ratio, "
+                         "damping; without f, F, b and R",
+          .fallback_note = "required"},
+         {.name = "f",
+          .type = FieldType::interval,
+          .unit = "Hz",
+          .description = "band of the forcing, or one frequency",
+          .fallback_note = "required"},
+         {.name = "acceleration",
+          .type = FieldType::interval,
+          .unit = "m/s^2",
+          .description = "amplitude of the base's acceleration, constant over the band; a range "
+                         "stands for all amplitudes in it",
+          .fallback_note = "required, or F"},
+         {.name = "F",
+          .type = FieldType::interval,
+          .unit = "m",
+          .description = "amplitude of the base's displacement instead of acceleration",
+          .fallback_note = "required, or acceleration"},
+         {.name = "b",
+          .type = FieldType::interval,
+          .unit = "m",
+          .description = "smallest and largest clearance",
+          .fallback_note = "from 5 to 120 % of the largest amplitude without absorber"},
+         {.name = "R",
+          .type = FieldType::numbers,
+          .unit = dimensionless,
+          .description = "restitution coefficients to choose from, or one",
+          .fallback = Json::array({0.1, 0.2, 0.4, 0.6, 0.8})},
+         {.name = "m2",
+          .type = FieldType::numbers,
+          .unit = "kg",
+          .description = "masses of the ball to choose from, or one",
+          .fallback_note = "that of base"},
+         choice(
+             "objective",
+             "what shall be small: largest |x| or its rms, largest distance from the base, largest "
+             "|x''| of m1, or the fastest impact",
+             {"x_max", "x_rms", "x_relative_max", "x_acceleration_max", "impact_speed_max"},
+             "x_max"),
+         choice(
+             "over", "worst: its largest value over band and amplitudes; mean: its mean",
+             {"worst", "mean"}, "worst"),
+         choice(
+             "starts",
+             "default set: the worst of four starts and of motions continued from neighbours; one: "
+             "the default start",
+             {"default set", "one"}, "default set"),
+         integer("b_count", "values of b in the first map", {2, 400}, 40, dimensionless),
+         integer("f_count", "frequencies in the first map", {2, 400}, 41, dimensionless),
+         integer(
+             "transient_cycles", "cycles before each measurement", {0, 1e5}, 100, dimensionless),
+         integer("cycles", "cycles of each measurement", {20, 1e5}, 200, dimensionless)});
+    return table;
+}
+
+}  // namespace vines::api

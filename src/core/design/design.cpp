@@ -1,0 +1,405 @@
+// Steps:
+// 1. for each R and m2 a map over b, in a geometric row, and f, with more b above the row for the
+//    smaller amplitudes;
+// 2. the most promising of them at four times as many frequencies: the worst case over fewer
+//    frequencies is a lower bound, so that the others need not be tried; then more b around the
+//    best one, ever closer;
+// 3. for the best absorber the response over the band, the margins of its values by larger and
+//    larger changes, and the range of amplitudes.
+#include "core/design/design.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/measures/manifold.hpp"
+#include "core/motion/elementary.hpp"
+#include "core/sweep/sweep.hpp"
+
+namespace vines {
+
+namespace {
+
+// b of equal value up to rounding of the row.
+constexpr double same_b = 1e-9;
+// Frequencies of step 2 over those of step 1, the most absorbers tried with them, the rounds around
+// the best one, the b tried on each side in each, and the frequencies that step 3 adds around the
+// worst one.
+constexpr int finer = 4, most_promising = 12, design_rounds = 3, tries_per_side = 2,
+              added_frequencies = 4;
+// Factors of step 3, and the largest excess over the best objective.
+constexpr double changes[] = {1.01, 1.02, 1.04, 1.08, 1.16, 1.32, 1.64};
+constexpr double small_excess = 1.05, large_excess = 1.2;
+// Largest and smallest amplitudes of step 3, over the largest of the plan, and their number.
+constexpr double most_amplitude = 4, least_amplitude = 1.0 / 32;
+constexpr int amplitude_count = 36;
+constexpr long most_impacts_per_cycle = 200;
+
+double value_of(const PointResult& r, Objective objective, double omega0) {
+    if (!r.measured) return infinity;
+    switch (objective) {
+        case Objective::x_max: return r.x_max;
+        case Objective::x_rms: return r.x_rms;
+        case Objective::x_relative_max: return r.extremes.x_relative;
+        case Objective::x_acceleration_max: return r.extremes.x_acceleration * omega0 * omega0;
+        case Objective::impact_speed_max: return r.extremes.impact_speed * omega0;
+    }
+    return nan;
+}
+
+/// Objectives of the worst and the best start by position: rows of b, columns of f.
+struct DesignMap {
+    std::vector<double> b, f;
+    std::vector<double> worst, best;
+    std::vector<Motion> motion;     ///< the worst one
+    std::vector<Extremes> extreme;  ///< impacts of all motions
+    std::vector<double> rate;       ///< most impacts per cycle of all motions
+
+    std::size_t at(std::size_t row, std::size_t column) const { return column * b.size() + row; }
+    std::size_t row_of(double value) const {
+        const auto after = std::ranges::lower_bound(b, value * (1 - same_b));
+        return static_cast<std::size_t>(after - b.begin());
+    }
+};
+
+class MapSink : public SweepSink {
+public:
+    MapSink(DesignMap& map, Objective objective, double omega0, double cycles)
+        : map_(map),
+          objective_(objective),
+          omega0_(omega0),
+          cycles_(cycles) {}
+    void point(std::size_t line, const SweepPoint& point) override {
+        double worst = -infinity, best = infinity;
+        for (const Motion& m : point.motions) {
+            const double value = value_of(m.result, objective_, omega0_);
+            if (value > worst) worst = value, map_.motion[line] = m;
+            best = std::min(best, value);
+            if (!m.result.measured) continue;
+            Extremes& e = map_.extreme[line];
+            e.impact_speed = std::max(e.impact_speed, m.result.extremes.impact_speed);
+            e.speed_change = std::max(e.speed_change, m.result.extremes.speed_change);
+            map_.rate[line] =
+                std::max(map_.rate[line], static_cast<double>(m.result.impacts) / cycles_);
+        }
+        map_.worst[line] = point.motions.empty() ? infinity : worst, map_.best[line] = best;
+    }
+    void row(std::size_t, const RowSummary&) override {}
+
+private:
+    DesignMap& map_;
+    const Objective objective_;
+    const double omega0_, cycles_;
+};
+
+/// `count` values in a geometric row; both ends are exact.
+std::vector<double> geometric(double from, double to, int count) {
+    std::vector<double> row = {from};
+    for (int k = 1; k < count; ++k)
+        row.push_back(
+            k + 1 < count ? from * elementary::pow(to / from, k / static_cast<double>(count - 1))
+                          : to);
+    return row;
+}
+
+void sort_unique(std::vector<double>& values) {
+    std::ranges::sort(values);
+    const auto equal = [](double a, double b) { return b - a <= same_b * b; };
+    values.erase(std::unique(values.begin(), values.end(), equal), values.end());
+}
+
+struct DesignSearch {
+    const DesignPlan& plan;
+    const int threads;
+    RunControl& control;
+    const DesignSink& sink;
+
+    Parameters system(double b, double R, SiParameters si, double f) const {
+        si.f = f, si.F = plan.host.base_amplitude(f);
+        Parameters p;
+        p.epsilon = si.epsilon(), p.lambda = si.lambda(), p.G = si.G(), p.Omega = si.Omega();
+        p.R_plus = p.R_minus = R, p.b = b, p.damping = plan.host.damping;
+        return p;
+    }
+    SiParameters host_with(double m2) const {
+        SiParameters si = plan.host.si;
+        si.m2 = m2;
+        return si;
+    }
+    PointOptions options() const {
+        return {
+            .transient_cycles = plan.transient_cycles,
+            .cycles = plan.cycles,
+            .max_impacts = static_cast<long>(plan.cycles) * most_impacts_per_cycle,
+            .carry = plan.default_set,
+            .amplitudes_alone = true};
+    }
+
+    /// The map for all b at all amplitudes (factors) and frequencies; throws Stopped.
+    DesignMap map(
+        const std::vector<double>& bs, const std::vector<double>& amplitudes,
+        std::vector<double> fs, double R, const SiParameters& si) const {
+        DesignMap m;
+        m.f = std::move(fs);
+        for (const double b : bs)
+            for (const double a : amplitudes) m.b.push_back(b / a);
+        sort_unique(m.b);
+        const std::size_t size = m.b.size() * m.f.size();
+        m.worst.resize(size), m.best.resize(size), m.motion.resize(size);
+        m.extreme.resize(size), m.rate.resize(size);
+        SweepPlan sweep;
+        sweep.grid.steps = {m.b.size(), m.f.size()};
+        sweep.options = options();
+        sweep.default_set = plan.default_set;
+        sweep.system_at = [&](const Place& place) -> std::optional<PointSystem> {
+            const Parameters p = system(m.b[place.at[0]], R, si, m.f[place.at[1]]);
+            const State start = default_state(p);
+            if (!validate(p, start).empty()) return std::nullopt;
+            return PointSystem{p, start, options().max_impacts};
+        };
+        for (std::size_t line = 0; line < size; ++line) sweep.lines.push_back(line);
+        MapSink into(m, plan.objective, si.omega0(), plan.cycles);
+        run_sweep(sweep, threads, control, into);
+        if (control.stop_or_yield()) throw Stopped();
+        return m;
+    }
+
+    /// Worst case, or mean, over the frequencies of a map and the amplitudes.
+    DesignPoint judged(
+        const DesignMap& m, double b, const std::vector<double>& amplitudes, double R,
+        double m2) const {
+        DesignPoint p{b, R, m2, 0, m.f[0], 1};
+        double most = -infinity, sum = 0;
+        for (const double a : amplitudes)
+            for (std::size_t j = 0; j < m.f.size(); ++j) {
+                const double value = a * m.worst[m.at(m.row_of(b / a), j)];
+                sum += value;
+                if (value > most) most = value, p.f = m.f[j], p.amplitude = a;
+            }
+        p.objective =
+            plan.mean ? sum / static_cast<double>(amplitudes.size() * m.f.size()) : most;
+        return p;
+    }
+
+    /// Factors of the amplitudes, which a geometric row of b shares.
+    std::vector<double> amplitudes() const {
+        const double step = plan.b_count > 1 ? elementary::pow(
+                                                   plan.b.to / plan.b.from,
+                                                   1.0 / (plan.b_count - 1))
+                                             : infinity;
+        std::vector<double> all = {1};
+        while (all.back() / step > plan.amplitude_ratio * (1 + same_b))
+            all.push_back(all.back() / step);
+        if (plan.amplitude_ratio < 1) all.push_back(plan.amplitude_ratio);
+        return all;
+    }
+    std::vector<double> frequencies(int parts = 1) const {
+        std::vector<double> f;
+        const int last = plan.f.from < plan.f.to ? parts * std::max(plan.f_count - 1, 1) : 0;
+        for (int k = 0; k <= last; ++k)
+            f.push_back(
+                last == 0 ? plan.f.from : plan.f.from + (plan.f.to - plan.f.from) * k / last);
+        return f;
+    }
+
+    /// Step 1: all absorbers of the maps, the best first.
+    std::vector<DesignPoint> search_maps() const {
+        const std::vector<double> row = geometric(plan.b.from, plan.b.to, plan.b_count);
+        std::vector<DesignPoint> all;
+        for (const double m2 : plan.m2)
+            for (const double R : plan.R) {
+                const DesignMap m = map(row, amplitudes(), frequencies(), R, host_with(m2));
+                for (const double b : row) sink(all.emplace_back(judged(m, b, amplitudes(), R, m2)));
+            }
+        std::ranges::stable_sort(all, {}, &DesignPoint::objective);
+        return all;
+    }
+
+    /// Absorbers at the finer frequencies.
+    void try_finely(
+        std::optional<DesignPoint>& best, const std::vector<double>& bs, double R,
+        double m2) const {
+        const DesignMap m = map(bs, amplitudes(), frequencies(finer), R, host_with(m2));
+        for (const double b : bs) {
+            const DesignPoint p = judged(m, b, amplitudes(), R, m2);
+            sink(p);
+            if (!best || p.objective < best->objective) best = p;
+        }
+    }
+
+    /// Step 2.
+    void refine(const std::vector<DesignPoint>& all, std::optional<DesignPoint>& best) const {
+        int tried = 0;
+        for (const DesignPoint& p : all) {
+            if (best && (p.objective >= best->objective || tried == most_promising)) break;
+            try_finely(best, {p.b}, p.R, p.m2);
+            ++tried;
+        }
+        double width = plan.b_count > 1
+                           ? elementary::pow(plan.b.to / plan.b.from, 1.0 / (plan.b_count - 1))
+                           : 1;
+        for (int round = 0; round < design_rounds; ++round) {
+            width = elementary::pow(width, 1.0 / (tries_per_side + 1));
+            std::vector<double> tries;
+            for (int k = -tries_per_side; k <= tries_per_side; ++k)
+                if (const double b = best->b * elementary::pow(width, k);
+                    k != 0 && width > 1 && b >= plan.b.from && b <= plan.b.to)
+                    tries.push_back(b);
+            if (!tries.empty()) try_finely(best, tries, best->R, best->m2);
+        }
+    }
+
+    /// The band with more frequencies around the worst one.
+    std::vector<double> denser_frequencies(double worst) const {
+        std::vector<double> f = frequencies();
+        if (f.size() < 2) return f;
+        const double step = (f[1] - f[0]) / added_frequencies;
+        for (int k = -added_frequencies; k <= added_frequencies; ++k)
+            if (const double at = worst + k * step; at > plan.f.from && at < plan.f.to)
+                f.push_back(at);
+        sort_unique(f);
+        return f;
+    }
+
+    double objective_with(const DesignPoint& p, double b, double R, const SiParameters& si) const {
+        const std::vector<double> at = p.amplitude < 1 ? std::vector{1, p.amplitude}
+                                                       : std::vector{1.0};
+        return judged(map({b}, at, denser_frequencies(p.f), R, si), b, at, R, p.m2).objective;
+    }
+
+    /// Larger and larger changes of a value, up and down, while the objective stays within both
+    /// excesses. `with`: the objective with the value changed by a factor.
+    static DesignMargin margin_of(double best, const std::function<double(double)>& with) {
+        DesignMargin margin{{1, 1}, {1, 1}};
+        for (const bool up : {true, false}) {
+            bool small = true;
+            for (const double change : changes) {
+                const double factor = up ? change : 1 / change, value = with(factor);
+                if (!(value <= large_excess * best)) break;
+                small = small && value <= small_excess * best;
+                (up ? margin.twenty_percent.to : margin.twenty_percent.from) = factor;
+                if (small) (up ? margin.five_percent.to : margin.five_percent.from) = factor;
+            }
+        }
+        return margin;
+    }
+
+    void set_margins(Design& d) const {
+        const DesignPoint& p = d.best;
+        const SiParameters host = host_with(p.m2);
+        const double best = objective_with(p, p.b, p.R, host);
+        d.b = margin_of(best, [&](double by) { return objective_with(p, by * p.b, p.R, host); });
+        d.R = margin_of(best, [&](double by) {
+            return by * p.R > 1 ? infinity : objective_with(p, p.b, by * p.R, host);
+        });
+        d.f0 = margin_of(best, [&](double by) {
+            SiParameters si = host;
+            si.k1 *= by * by;
+            return objective_with(p, p.b, p.R, si);
+        });
+        d.damping = margin_of(best, [&](double by) {
+            SiParameters si = host;
+            si.c1 *= by;
+            return objective_with(p, p.b, p.R, si);
+        });
+    }
+
+    /// Amplitudes with at least half of the reduction, from the largest of the plan on.
+    void set_amplitudes(Design& d) const {
+        const DesignPoint& p = d.best;
+        const SiParameters si = host_with(p.m2);
+        const std::vector<double> all = geometric(least_amplitude, most_amplitude, amplitude_count);
+        std::vector<double> with_one = all;
+        with_one.push_back(1);
+        sort_unique(with_one);
+        const DesignMap m = map({p.b}, with_one, frequencies(), p.R, si);
+        const auto ratio = [&](double a) {
+            return judged(m, p.b, {a}, p.R, p.m2).objective / a / d.without.value;
+        };
+        const double limit = 0.5 * (1 + ratio(1));
+        const auto here = std::ranges::find(with_one, 1.0);
+        auto low = here, high = here;
+        while (low != with_one.begin() && ratio(low[-1]) <= limit) --low;
+        while (high + 1 != with_one.end() && ratio(high[1]) <= limit) ++high;
+        d.works = {*low, *high};
+        if (p.R < 1) {
+            const Parameters system = this->system(p.b, p.R, si, d.without.f);
+            const double amplitude =
+                linear_response(plan.host, {}, Objective::x_max, d.without.f);
+            d.activation = manifold_fold(p.R, system.Omega, p.b).C / amplitude;
+        }
+    }
+
+    void set_response(Design& d) const {
+        const DesignPoint& p = d.best;
+        const DesignMap m = map({p.b}, {1}, denser_frequencies(p.f), p.R, host_with(p.m2));
+        const SiParameters si = host_with(p.m2);
+        const double reduced_mass = si.m1 * si.m2 / (si.m1 + si.m2);
+        for (std::size_t j = 0; j < m.f.size(); ++j)
+            d.response.push_back(
+                {m.f[j], m.worst[j], m.best[j],
+                 linear_response(plan.host, {}, plan.objective, m.f[j]),
+                 linear_response(plan.host, d.tuned_mass_damper, plan.objective, m.f[j]),
+                 m.extreme[j].impact_speed * si.omega0(),
+                 reduced_mass * m.extreme[j].speed_change * si.omega0(), m.rate[j] * m.f[j]});
+    }
+
+    /// The motion of the worst case, with its regime, from the start that led to it.
+    void set_worst_motion(Design& d) const {
+        const DesignPoint& p = d.best;
+        const SiParameters si = host_with(p.m2);
+        const DesignMap m = map({p.b}, {p.amplitude}, {p.f}, p.R, si);
+        PointOptions whole = options();
+        whole.amplitudes_alone = whole.carry = false;
+        const Parameters system = this->system(m.b[0], p.R, si, p.f);
+        d.at_worst = run_point(
+            {system, m.motion[0].from, whole.max_impacts}, m.motion[0].from, whole, control);
+        d.omega0 = si.omega0();
+    }
+};
+
+}  // namespace
+
+std::size_t design_runs(const DesignPlan& plan) {
+    const double step = plan.b_count > 1 ? elementary::log(plan.b.to / plan.b.from) /
+                                               (plan.b_count - 1)
+                                         : 1,
+                 rows = plan.b_count - elementary::log(plan.amplitude_ratio) / step;
+    return static_cast<std::size_t>(rows) * static_cast<std::size_t>(plan.f_count) *
+           plan.R.size() * plan.m2.size() * (plan.default_set ? most_starts : 1);
+}
+
+std::optional<Design> find_design(
+    const DesignPlan& plan, int threads, RunControl& control, const DesignSink& sink) {
+    const DesignSearch search{plan, threads, control, sink};
+    std::vector<DesignPoint> all;
+    std::optional<DesignPoint> best;
+    std::optional<Design> design;
+    try {
+        all = search.search_maps();
+        search.refine(all, best);
+    } catch (const Stopped&) {}
+    if (!best && all.empty()) return std::nullopt;
+    if (!best) best = all.front();
+    Design& d = design.emplace();
+    d.best = *best;
+    const auto response = [&](const LinearAbsorber& t) {
+        return band_maximum(
+            [&](double f) { return linear_response(plan.host, t, plan.objective, f); }, plan.f);
+    };
+    d.without = response({});
+    d.tuned_mass_damper = best_tuned_mass_damper(plan.host, best->m2, plan.objective, plan.f);
+    d.with_tuned_mass_damper = response(d.tuned_mass_damper);
+    d.den_hartog = den_hartog(plan.host.si.m1, best->m2);
+    d.with_den_hartog = response(d.den_hartog);
+    try {
+        search.set_response(d);
+        search.set_worst_motion(d);
+        search.set_amplitudes(d);
+        search.set_margins(d);
+    } catch (const Stopped&) {
+        d.complete = false;
+    }
+    return design;
+}
+
+}  // namespace vines

@@ -1,0 +1,78 @@
+// Which absorber to build: the clearance b, the restitution coefficient R and the mass m2 with the
+// smallest response over a band of frequencies and a range of amplitudes of the base, over the
+// worst of all starts.
+//
+// The motion depends on the amplitude of the base and on b by their ratio alone, a scale of all
+// lengths. One map over (b, f) at the largest amplitude therefore holds the responses at all
+// smaller ones, which are those of larger b, scaled.
+#pragma once
+
+#include "core/design/tuned_mass_damper.hpp"
+#include "core/sweep/parallel.hpp"
+#include "core/sweep/point.hpp"
+
+namespace vines {
+
+struct DesignPlan {
+    Host host;        ///< its base amplitude is the largest
+    Interval f;       ///< band, Hz
+    double amplitude_ratio = 1;  ///< smallest amplitude over the largest
+    Interval b;                  ///< m
+    std::vector<double> R, m2;
+    Objective objective = Objective::x_max;
+    bool mean = false;         ///< over band and amplitudes, instead of the largest value
+    bool default_set = true;   ///< worst of all starts, otherwise of the default start
+    int b_count = 40, f_count = 41;
+    double transient_cycles = 100, cycles = 200;
+};
+
+/// An absorber and its response, of the worst start, m, s or as the objective.
+struct DesignPoint {
+    double b, R, m2;
+    double objective;  ///< infinity if a motion was not measured, for too many impacts
+    double f, amplitude;  ///< of the worst case: Hz, over the largest amplitude
+};
+
+/// Largest values at one frequency and the largest amplitude, of the worst start; in SI.
+struct DesignResponse {
+    double f, worst, best;  ///< Hz; the objective with the worst and the best start
+    double without, tuned_mass_damper;
+    double impact_speed;  ///< largest of all starts, m/s
+    double impulse;       ///< the same, N s
+    double impacts_per_second;
+};
+
+/// Factors on a value within which the objective exceeds its best by at most a given fraction, as
+/// far as tried.
+struct DesignMargin {
+    Interval five_percent, twenty_percent;
+};
+
+struct Design {
+    DesignPoint best;
+    PointResult at_worst;   ///< the motion in the worst case, with its regime
+    double omega0;          ///< rad/s, for the units of at_worst
+    BandMaximum without;
+    LinearAbsorber tuned_mass_damper, den_hartog;
+    BandMaximum with_tuned_mass_damper, with_den_hartog;
+    std::vector<DesignResponse> response;
+    DesignMargin b, R, f0, damping;
+    /// Amplitudes, over the largest, with at least half of the reduction at the largest; and that
+    /// from which on the manifold permits impacts (empty if it has no fold).
+    Interval works;
+    std::optional<double> activation;
+    bool complete = true;  ///< false if stopped: later members are then empty
+};
+
+/// Receives each absorber that was tried, on the calling thread.
+using DesignSink = std::function<void(const DesignPoint&)>;
+
+/// Number of motions of the first map; those after it are a few more.
+std::size_t design_runs(const DesignPlan& plan);
+
+/// Searches on `threads` threads. Stopped by `control`, it returns the best absorber so far, empty
+/// if there is none.
+std::optional<Design> find_design(
+    const DesignPlan& plan, int threads, RunControl& control, const DesignSink& sink);
+
+}  // namespace vines

@@ -1,0 +1,77 @@
+#include "core/measures/extremes.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/motion/elementary.hpp"
+#include "core/motion/load.hpp"
+
+namespace vines {
+
+namespace {
+
+Cubic scaled(const Cubic& c, double by) { return {by * c.c0, by * c.c1, by * c.c2, by * c.c3}; }
+
+/// The same as peak_beyond(), for `size` times the motion from `start` and the polynomial.
+double scaled_peak(
+    double known, double size, const Flow& flow, const Oscillation& start, const Cubic& shift,
+    double from, double to) {
+    const double least = known / size;
+    if (!shift.is_zero())
+        return size * peak_beyond(least, flow, start, scaled(shift, 1 / size), from, to);
+    return size *
+           peak_beyond(least, flow, from > 0 ? flow.after(start, from) : start, to - from);
+}
+
+}  // namespace
+
+ExtremesRecord::ExtremesRecord(const Parameters& p, double tau_start, double tau_end)
+    : parameters_(p),
+      tau_start_(tau_start),
+      tau_end_(tau_end),
+      F_(p.load ? 0 : p.epsilon * p.G),
+      sin_phi_(elementary::sin(p.phi())),
+      cos_phi_(elementary::cos(p.phi())) {}
+
+// With x_b = F sin(Omega tau), x - x_b follows the flow's equation with the forcing
+// forcing sin(theta) - (x_b'' + damping x_b' + stiffness x_b), which is harmonic.
+ExtremesRecord::Relative ExtremesRecord::relative_to_base(const Flow& flow) const {
+    const auto [stiffness, damping, forcing, Omega] = flow.coefficients();
+    if (F_ == 0 || forcing == 0) return {1, 1, 0};
+    const double in_phase = F_ * (stiffness - Omega * Omega), quarter = F_ * damping * Omega,
+                 cos = forcing - in_phase * cos_phi_ - quarter * sin_phi_,
+                 sin = in_phase * sin_phi_ - quarter * cos_phi_, size = elementary::hypot(cos, sin);
+    return {size / forcing, cos / size, sin / size};
+}
+
+void ExtremesRecord::on_stretch(const Stretch& s) {
+    const double from = std::max(0.0, tau_start_ - s.tau),
+                 to = std::min(s.duration, tau_end_ - s.tau);
+    if (!(from < to)) return;
+    const Cubic shift = s.forces ? s.forces->shift : Cubic{};
+    const Oscillation& o = s.start;
+    // x''/-Omega^2 follows the same equation as x.
+    const double Omega = s.flow.coefficients()[3], size = Omega * Omega;
+    extremes.x_acceleration = scaled_peak(
+        extremes.x_acceleration, size, s.flow,
+        {-s.flow.acceleration(o) / size, -s.flow.jerk(o) / size, o.sin_theta, o.cos_theta},
+        {-2 * shift.c2, -6 * shift.c3, 0, 0}, from, to);
+    const Relative r = relative_to_base(s.flow);
+    const double base_sin = o.sin_theta * cos_phi_ - o.cos_theta * sin_phi_,
+                 base_cos = o.cos_theta * cos_phi_ + o.sin_theta * sin_phi_;
+    const Cubic base = s.forces && s.forces->loading ? s.forces->loading->base : Cubic{};
+    extremes.x_relative = scaled_peak(
+        extremes.x_relative, r.size, s.flow,
+        {(o.x - F_ * base_sin) / r.size, (o.x_dot - F_ * Omega * base_cos) / r.size,
+         o.sin_theta * r.cos + o.cos_theta * r.sin, o.cos_theta * r.cos - o.sin_theta * r.sin},
+        {shift.c0 - base.c0, shift.c1 - base.c1, shift.c2 - base.c2, shift.c3 - base.c3}, from, to);
+}
+
+void ExtremesRecord::on_impact(const Impact& i) {
+    if (i.tau < tau_start_ || i.tau > tau_end_) return;
+    const double w = std::abs(i.relative_speed_before);
+    extremes.impact_speed = std::max(extremes.impact_speed, w);
+    extremes.speed_change = std::max(extremes.speed_change, w * (1 + i.R));
+}
+
+}  // namespace vines

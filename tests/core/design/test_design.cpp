@@ -1,0 +1,205 @@
+#include "core/design/design.hpp"
+
+#include <doctest/doctest.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "../support.hpp"
+#include "core/measures/extremes.hpp"
+#include "core/motion/load.hpp"
+
+using namespace vines;
+using namespace vines::test;
+
+namespace {
+
+constexpr double two_pi = 2 * std::numbers::pi;
+
+/// 2 kg at 8 Hz, damping 1 %, 40 g to spend, base acceleration 5 m/s^2 from 7 to 9 Hz.
+DesignPlan machine() {
+    SiParameters si;
+    si.m1 = 2, si.m2 = 0.04;
+    si.k1 = si.m1 * (two_pi * 8) * (two_pi * 8);
+    si.c1 = 2 * 0.01 * std::sqrt(si.k1 * si.m1);
+    DesignPlan plan;
+    plan.host = {si, Damping::equation_of_motion, [](double f) {
+                     return 5 / ((two_pi * f) * (two_pi * f));
+                 }};
+    plan.f = {7, 9};
+    plan.b = {0.02, 0.08};
+    plan.R = {0.2};
+    plan.m2 = {si.m2};
+    plan.b_count = 8, plan.f_count = 5;
+    plan.transient_cycles = 30, plan.cycles = 40;
+    return plan;
+}
+
+double largest(const Host& host, const LinearAbsorber& t, const Interval& band) {
+    double most = 0;
+    for (int k = 0; k <= 20000; ++k)
+        most = std::max(
+            most, linear_response(
+                      host, t, Objective::x_max, band.from + (band.to - band.from) * k / 20000));
+    return most;
+}
+
+/// Extremes of a run by dense sampling.
+Extremes sampled(const Parameters& p, const State& start, double tau_end) {
+    struct Sampler : Observer {
+        explicit Sampler(const Parameters& parameters) : p(parameters) {}
+        void on_stretch(const Stretch& s) override {
+            for (int k = 0; k <= 2000; ++k) {
+                const double at = s.duration * k / 2000, tau = s.tau + at;
+                found.x_acceleration = std::max(found.x_acceleration, std::abs(s.x_ddot(at)));
+                const double base = p.load ? s.forces->loading->base.at(at)
+                                           : p.epsilon * p.G * std::sin(p.Omega * tau);
+                found.x_relative = std::max(found.x_relative, std::abs(s.at(at).x - base));
+            }
+        }
+        const Parameters& p;
+        Extremes found;
+    } sampler(p);
+    Observer* const observers[] = {&sampler};
+    simulate(p, start, {.tau_end = tau_end}, observers);
+    return sampler.found;
+}
+
+}  // namespace
+
+TEST_CASE("the largest acceleration and distance from the base are those of dense samples") {
+    for (const double Omega : {0.7, 1.0, 1.9})
+        for (const bool slides : {false, true}) {
+            CAPTURE(Omega);
+            CAPTURE(slides);
+            Parameters p = table1(0.012, slides ? Damping::equation_of_motion : Damping::closed_form);
+            p.Omega = Omega;
+            p.lambda = 20;
+            if (slides) p.gravity = 0.002, p.friction = 0.001;
+            ExtremesRecord record(p, 0, 60);
+            Observer* const observers[] = {&record};
+            simulate(p, default_state(p), {.tau_end = 60}, observers);
+            const Extremes dense = sampled(p, default_state(p), 60);
+            const Extremes& exact = record.extremes;
+            CHECK(exact.x_acceleration == doctest::Approx(dense.x_acceleration).epsilon(1e-5));
+            CHECK(exact.x_acceleration >= dense.x_acceleration * (1 - 1e-12));
+            CHECK(exact.x_relative == doctest::Approx(dense.x_relative).epsilon(1e-5));
+            CHECK(exact.x_relative >= dense.x_relative * (1 - 1e-12));
+        }
+}
+
+TEST_CASE("without absorber and with the best tuned mass damper the largest x is 99 and 17.7 mm") {
+    const DesignPlan plan = machine();
+    const LinearAbsorber best =
+        best_tuned_mass_damper(plan.host, 0.04, Objective::x_max, plan.f);
+    CHECK(largest(plan.host, {}, plan.f) == doctest::Approx(0.0990).epsilon(1e-3));
+    const double least = largest(plan.host, best, plan.f);
+    CHECK(least == doctest::Approx(0.0177).epsilon(3e-3));
+    CHECK(least < largest(plan.host, den_hartog(2, 0.04), plan.f));
+    // No other one near it is better.
+    for (const double frequency : {0.99, 1.0, 1.01})
+        for (const double damping : {0.9, 1.0, 1.1})
+            CHECK(
+                largest(
+                    plan.host,
+                    {0.04, frequency * best.frequency_ratio, damping * best.damping_ratio},
+                    plan.f) >= least * (1 - 1e-4));
+}
+
+TEST_CASE("Den Hartog's damper has two equal peaks on an undamped host") {
+    Host host = machine().host;
+    host.si.c1 = 0;
+    host.base_amplitude = [](double) { return 1e-3; };
+    const LinearAbsorber t = den_hartog(host.si.m1, 0.1);
+    const auto x = [&](double f) { return linear_response(host, t, Objective::x_max, f); };
+    const double low = band_maximum(x, {5, 7.6}).value, high = band_maximum(x, {7.6, 10}).value;
+    CHECK(low == doctest::Approx(high).epsilon(0.01));
+    // sqrt(1 + 2/mu) times the base's amplitude.
+    CHECK(low == doctest::Approx(1e-3 * std::sqrt(1 + 2 / 0.05)).epsilon(0.01));
+}
+
+TEST_CASE("a design's worst case is that of runs at its b, and no b of the row is better") {
+    const DesignPlan plan = machine();
+    RunControl control;
+    std::vector<DesignPoint> tried;
+    const auto design =
+        find_design(plan, 2, control, [&](const DesignPoint& p) { tried.push_back(p); });
+    REQUIRE(design);
+    CHECK(design->complete);
+    CHECK(design->without.value == doctest::Approx(0.0990).epsilon(1e-3));
+    CHECK(design->best.objective < 0.75 * design->without.value);
+    CHECK(tried.size() >= 8);
+    // Of those tried at all frequencies none is better.
+    for (std::size_t k = 8; k < tried.size(); ++k)
+        CHECK(tried[k].objective >= design->best.objective);
+    for (const DesignResponse& r : design->response) {
+        CHECK(r.worst <= design->best.objective * 1.02);
+        CHECK(r.best <= r.worst);
+    }
+    CHECK(design->at_worst.x_max == doctest::Approx(design->best.objective).epsilon(0.02));
+}
+
+TEST_CASE(
+    "a brute-force search of 10,000 points finds no better b within 2 %" *
+    doctest::test_suite("long")) {
+    DesignPlan plan = machine();
+    plan.b_count = 20, plan.f_count = 21, plan.default_set = false;
+    plan.transient_cycles = 60, plan.cycles = 100;
+    RunControl control;
+    const auto design = find_design(plan, 2, control, [](const DesignPoint&) {});
+    REQUIRE(design);
+    PointOptions options{.transient_cycles = 60, .cycles = 100, .max_impacts = 20000};
+    options.amplitudes_alone = true;
+    double least = infinity;
+    for (int i = 0; i < 125; ++i) {
+        double worst = 0;
+        const double b = 0.02 * std::pow(4, i / 124.0);
+        for (int j = 0; j < 81 && worst < least; ++j) {
+            SiParameters si = plan.host.si;
+            si.f = 7 + 2.0 * j / 80, si.F = plan.host.base_amplitude(si.f);
+            Parameters p;
+            p.epsilon = si.epsilon(), p.lambda = si.lambda(), p.G = si.G(), p.Omega = si.Omega();
+            p.R_plus = p.R_minus = 0.2, p.b = b;
+            worst = std::max(worst, measure(p, default_state(p), options, {}).x_max);
+        }
+        least = std::min(least, worst);
+    }
+    CHECK(design->best.objective < 1.02 * least);
+}
+
+TEST_CASE("a range of amplitudes is answered by one map: smaller ones are larger b, scaled") {
+    DesignPlan plan = machine();
+    plan.b_count = 5;
+    plan.amplitude_ratio = 0.5;
+    RunControl control;
+    double last = 0;
+    const auto design = find_design(plan, 2, control, [&](const DesignPoint& p) {
+        last = p.objective;
+        CHECK(p.amplitude <= 1);
+        CHECK(p.amplitude >= 0.5 * (1 - 1e-9));
+    });
+    REQUIRE(design);
+    DesignPlan half = plan;
+    half.amplitude_ratio = 1;
+    half.b = {design->best.b, 1.001 * design->best.b};
+    half.b_count = 2;
+    half.host.base_amplitude = [](double f) {
+        return 2.5 / ((two_pi * f) * (two_pi * f));
+    };
+    const auto at_half = find_design(half, 2, control, [](const DesignPoint&) {});
+    CHECK(at_half->best.objective <= design->best.objective * 1.02);
+}
+
+TEST_CASE("a stopped design returns the best absorber so far, or none") {
+    struct Stopping : RunControl {
+        bool stop_or_yield() override { return runs >= after; }
+        std::size_t after = 0;
+    } control;
+    const DesignPlan plan = machine();
+    CHECK_FALSE(find_design(plan, 1, control, [](const DesignPoint&) {}));
+    control.after = design_runs(plan) + 20;
+    const auto design = find_design(plan, 1, control, [](const DesignPoint&) {});
+    REQUIRE(design);
+    CHECK_FALSE(design->complete);
+    CHECK(design->with_tuned_mass_damper.value == doctest::Approx(0.0177).epsilon(3e-3));
+}
