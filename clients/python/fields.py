@@ -31,6 +31,7 @@ KEYWORDS = [
     ("SimulateFields", "SimulateRequest", "Fields of a simulation."),
     ("SweepFields", "SweepRequest", "Fields of a sweep."),
     ("ContinueFields", "ContinueRequest", "Fields of a continuation."),
+    ("DesignFields", "DesignRequest", "Fields of a design."),
     ("IdentifyFields", "IdentifyRequest", "Fields of an identification."),
 ]
 OBJECTS = ["SweepBase", "Axis", "Start"]

@@ -300,6 +300,19 @@ std::optional<char> declared_separator(std::string_view line) {
     return line[4];
 }
 
+bool is_text(const std::vector<Cell>& cells, char separator) {
+    return !cells[0].text.empty() && std::isalpha(static_cast<unsigned char>(cells[0].text[0])) &&
+           !has_number(cells, separator);
+}
+
+/// Restores dropped empty cells at the end, so that a missing last value is reported as such;
+/// refuses any other wrong number of cells.
+void complete_cells(
+    std::vector<Cell>& cells, const CsvLine& line, std::size_t columns, char separator) {
+    if (cells.size() < columns && line.text.back() == separator) cells.resize(columns);
+    else if (cells.size() != columns) fault_of_length(line, cells.size(), columns);
+}
+
 }  // namespace
 
 Csv parse_csv(std::string_view bytes, const ReadLimits& limits) {
@@ -334,18 +347,12 @@ Csv parse_csv(std::string_view bytes, const ReadLimits& limits) {
         }
         split_cells(line->text, *separator, cells);
         if (cells.empty()) continue;
-        if (!cells[0].text.empty() && std::isalpha(static_cast<unsigned char>(cells[0].text[0])) &&
-            !has_number(cells, *separator)) {
+        if (is_text(cells, *separator)) {
             if (!footer) footer = line;
             continue;
         }
         if (footer) fault(footer->number, "", footer->text, "is text, but lines of numbers follow");
-        if (cells.size() != csv.columns.size()) {
-            // Trailing empty cells are dropped; a missing last value is reported as such.
-            if (cells.size() < csv.columns.size() && line->text.back() == *separator)
-                cells.resize(csv.columns.size());
-            else fault_of_length(*line, cells.size(), csv.columns.size());
-        }
+        complete_cells(cells, *line, csv.columns.size(), *separator);
         if ((numbers += cells.size()) > limits.most_numbers)
             throw Problem(
                 413, "the record has more than " + std::to_string(limits.most_numbers) +

@@ -26,9 +26,8 @@ void list_of_number(Json& given, const char* name, const std::function<Json(cons
 /// A checked interval or number as an interval within a range.
 Interval interval_of(
     const Json& value, const char* name, const Range& range, std::vector<FieldError>& errors) {
-    const Interval i = value.is_number()
-                           ? Interval{value.get<double>(), value.get<double>()}
-                           : Interval{value[0].get<double>(), value[1].get<double>()};
+    const Interval i = value.is_number() ? Interval{value.get<double>(), value.get<double>()}
+                                         : Interval{value[0].get<double>(), value[1].get<double>()};
     if (!(i.from >= range.minimum && i.to <= range.maximum))
         errors.push_back(
             {std::string("/") + name, value, Json::array({range.minimum, range.maximum}),
@@ -65,13 +64,16 @@ void read_host(DesignRequest& r, const Json& given, std::vector<FieldError>& err
     Json whole = base;
     whole.update({{"f", given["f"][0]}, {"F", 1e-3}});
     // The masses to choose from stand for that of the base.
-    if (given.contains("m2")) whole.erase("mass_ratio"), whole["m2"] = given["m2"][0];
-    const StartedSystem host = read_started_system(whole);
-    add_errors("/base", host.errors, errors);
-    if (!host.system.si)
-        errors.push_back({"/base", nullptr, nullptr, "a design needs its host in SI"});
-    else r.host = *host.system.si;
-    r.plan.host.damping = host.system.parameters.damping;
+    if (given.contains("m2") && !given["m2"].empty())
+        whole.erase("mass_ratio"), whole["m2"] = given["m2"][0];
+    try {
+        const StartedSystem host = read_started_system(whole);
+        add_errors("/base", host.errors, errors);
+        r.host = *host.system.si;
+        r.plan.host.damping = host.system.parameters.damping;
+    } catch (const Problem& problem) {
+        add_errors("/base", problem.errors, errors);
+    }
 }
 
 /// The checked request without what was given as a number in place of a list.
@@ -111,12 +113,9 @@ std::string choice_of(const Json& given, const char* name) {
 // --- The answer ---
 
 Json described(const DesignRequest& r, const DesignPoint& p) {
-    return {{"b", p.b},
-            {"R", p.R},
-            {"m2", p.m2},
-            {r.objective, finite_or_null(p.objective)},
-            {"f", p.f},
-            {r.is_acceleration ? "acceleration" : "F", p.amplitude * r.amplitude}};
+    return {{"b", p.b},   {"R", p.R},
+            {"m2", p.m2}, {r.objective, finite_or_null(p.objective)},
+            {"f", p.f},   {r.is_acceleration ? "acceleration" : "F", p.amplitude * r.amplitude}};
 }
 
 Json described(const DesignRequest& r, const BandMaximum& m) {
@@ -171,14 +170,15 @@ Json response_columns(const DesignRequest& r, const Design& d) {
     const auto list = [&](double DesignResponse::* member) {
         return column(d.response, [member](const DesignResponse& at) { return at.*member; });
     };
-    return {{"f", list(&DesignResponse::f)},
-            {r.objective + "_worst_start", list(&DesignResponse::worst)},
-            {r.objective + "_best_start", list(&DesignResponse::best)},
-            {"without", list(&DesignResponse::without)},
-            {"tuned_mass_damper", list(&DesignResponse::tuned_mass_damper)},
-            {"impact_speed_max", list(&DesignResponse::impact_speed)},
-            {"impulse_max", list(&DesignResponse::impulse)},
-            {"impacts_per_second", list(&DesignResponse::impacts_per_second)}};
+    return {
+        {"f", list(&DesignResponse::f)},
+        {r.objective + "_worst_start", list(&DesignResponse::worst)},
+        {r.objective + "_best_start", list(&DesignResponse::best)},
+        {"without", list(&DesignResponse::without)},
+        {"tuned_mass_damper", list(&DesignResponse::tuned_mass_damper)},
+        {"impact_speed_max", list(&DesignResponse::impact_speed)},
+        {"impulse_max", list(&DesignResponse::impulse)},
+        {"impacts_per_second", list(&DesignResponse::impacts_per_second)}};
 }
 
 Json described(const DesignRequest& r, const Design& d) {
@@ -208,8 +208,7 @@ Json described(const DesignRequest& r, const Design& d) {
         {"complete", d.complete},
         {"best", std::move(best)},
         {"without", described(r, d.without)},
-        {"tuned_mass_damper",
-         described(r, d.tuned_mass_damper, d.with_tuned_mass_damper)},
+        {"tuned_mass_damper", described(r, d.tuned_mass_damper, d.with_tuned_mass_damper)},
         {"den_hartog", described(r, d.den_hartog, d.with_den_hartog)},
         {"response", response_columns(r, d)},
         {"sentence", sentence_of(r, d)}};
@@ -230,8 +229,8 @@ DesignRequest read_design_request(const Json& object) {
         interval_of(given[amplitude_name], amplitude_name, amplitude_range, errors);
     r.amplitude = amplitude.to;
     plan.amplitude_ratio = amplitude.from / amplitude.to;
-    plan.R = numbers_within(
-        given.value("R", find(design_fields(), "R")->fallback), "R", {0, 1}, errors);
+    plan.R =
+        numbers_within(given.value("R", find(design_fields(), "R")->fallback), "R", {0, 1}, errors);
     if (errors.empty()) read_host(r, given, errors);
     if (!errors.empty()) refuse(std::move(errors));
     plan.m2 = given.contains("m2")
@@ -245,12 +244,11 @@ DesignRequest read_design_request(const Json& object) {
     };
     if (given.contains("b")) plan.b = interval_of(given["b"], "b", b_range, errors);
     else {
-        const double most = band_maximum(
-                                [&](double f) {
-                                    return linear_response(plan.host, {}, Objective::x_max, f);
-                                },
-                                plan.f)
-                                .value;
+        const double most =
+            band_maximum(
+                [&](double f) { return linear_response(plan.host, {}, Objective::x_max, f); },
+                plan.f)
+                .value;
         plan.b = {least_b_of_amplitude * most, most_b_of_amplitude * most};
     }
     if (!errors.empty()) refuse(std::move(errors));
@@ -275,7 +273,10 @@ Json design_start(const DesignRequest& r) {
         {"b_from", r.plan.b.from},
         {"b_to", r.plan.b.to},
         {"host",
-         {{"m1", h.m1}, {"c1", h.c1}, {"k1", h.k1}, {"f0", h.f0()},
+         {{"m1", h.m1},
+          {"c1", h.c1},
+          {"k1", h.k1},
+          {"f0", h.f0()},
           {"damping_ratio", h.damping_ratio()}}},
         {"request", r.given}};
 }

@@ -12,9 +12,9 @@ namespace vines::api {
 struct DesignRequest {
     Json given;  ///< as requested
     DesignPlan plan;
-    double amplitude;           ///< the largest, m/s^2 or m
-    bool is_acceleration;       ///< of `amplitude`
-    std::string objective;      ///< its name
+    double amplitude;       ///< the largest, m/s^2 or m
+    bool is_acceleration;   ///< of `amplitude`
+    std::string objective;  ///< its name
     SiParameters host;
 };
 

@@ -141,6 +141,14 @@ function a_continuation_has_points_special_points_and_branches()
   assert(abs(broken.b - 7.046736303e-3) < 1e-12);
 end
 
+function a_design_has_the_best_absorber_and_its_alternatives()
+  machine = struct('m1', 2, 'f0', 8, 'damping_ratio', 0.01, 'm2', 0.04);
+  done = vines.design('base', machine, 'f', [7.8 8.2], 'acceleration', 5, 'R', 0.4, ...
+                      'b_count', 3, 'f_count', 3, 'starts', 'one', 'cycles', 20);
+  assert(abs(done.without.x_max - 0.0990) < 1e-4);
+  assert(done.tuned_mass_damper.x_max < done.best.x_max);
+end
+
 function an_invalid_sweep_raises()
   refused('vines:problem', @() vines.sweep('axes', line(-3)));
   problem = vines.problem();

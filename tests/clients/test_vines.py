@@ -207,6 +207,32 @@ class Continuations(WithBothClients):
             self.assertEqual(caught.exception.errors[0].field, "parameter")
 
 
+class Designs(WithBothClients):
+    FIELDS = {
+        "base": {"m1": 2, "f0": 8, "damping_ratio": 0.01, "m2": 0.04},
+        "f": [7.8, 8.2],
+        "acceleration": 5,
+        "R": 0.4,
+        "b_count": 3,
+        "f_count": 3,
+        "starts": "one",
+        "cycles": 20,
+    }
+
+    def test_a_design_has_the_best_absorber_and_its_alternatives(self):
+        for client in self.each():
+            done = client.design(**self.FIELDS)
+            self.assertAlmostEqual(done.without.x_max, 0.0990, delta=1e-4)
+            self.assertLess(done.best.x_max, done.without.x_max)
+            self.assertLess(done.tuned_mass_damper.x_max, done.best.x_max)
+
+    def test_an_invalid_design_raises_at_once(self):
+        for client in self.each():
+            with self.assertRaises(vines.Problem) as caught:
+                client.design(**{**self.FIELDS, "R": 2})
+            self.assertEqual(caught.exception.errors[0].field, "R/0")
+
+
 class Identifications(WithBothClients):
     def test_a_file_and_its_columns_give_the_same_identification(self):
         with open(RECORD, newline="") as file:

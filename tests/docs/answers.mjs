@@ -162,6 +162,29 @@ async function noteSweep(keys, url, request) {
     );
 }
 
+/** Small searches, one for each objective; the first takes long enough to report its progress. */
+const designs = ["x_max", "x_rms", "x_relative_max", "x_acceleration_max", "impact_speed_max"].map(
+  (objective, k) => ({
+    base: {m1: 2, f0: 8, damping_ratio: 0.01, m2: 0.04},
+    f: [7.8, 8.2],
+    ...(k % 2 ? {F: 0.002} : {acceleration: [2, 5]}),
+    objective,
+    ...{R: 0.4, b_count: k ? 3 : 200, f_count: k ? 3 : 41, starts: "one", transient_cycles: 10},
+    cycles: 20,
+  }),
+);
+
+async function noteDesign(keys, url, request) {
+  const response = await fetch(`${url}/v1/design`, {method: "POST", body: JSON.stringify(request)});
+  const text = await response.text();
+  assert.equal(response.status, 200, text);
+  for (const line of text
+    .trim()
+    .split("\n")
+    .map((one) => JSON.parse(one)))
+    keys.note(`design.${line.type}`, line, ["request"]);
+}
+
 async function noteContinuation(keys, url, request) {
   const response = await fetch(`${url}/v1/continue`, {
     method: "POST",
@@ -258,6 +281,7 @@ export async function answeredKeys(url) {
     noteManifold(keys, await json(url, "/v1/manifold", JSON.stringify(request)));
   for (const request of sweeps) await noteSweep(keys, url, request);
   for (const request of continuations) await noteContinuation(keys, url, request);
+  for (const request of designs) await noteDesign(keys, url, request);
   await noteBrokenSweep(keys);
   const csv = await measured(url, "fig20", 6);
   const identify = "/v1/identify?preset=fig20&b=0.015";

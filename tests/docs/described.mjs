@@ -12,6 +12,7 @@ const listsOfFields = [
   "sweep_fields",
   "axis_fields",
   "continue_fields",
+  "design_fields",
   "identify_fields",
   "form_fields",
 ];
@@ -48,6 +49,10 @@ const parts = {
   "continue.branch": {of: ["ContinueBranch"]},
   "continue.point": {of: ["ContinuePoint", "ContinueSpecial"], swept: []},
   "continue.end": {of: ["ContinueProgress", "ContinueDone"]},
+  "design.start": {of: ["DesignStart"], opaque: ["request"]},
+  "design.point": {of: ["DesignPoint"]},
+  "design.progress": {of: ["DesignProgress"]},
+  "design.done": {of: ["DesignDone"]},
   provenance: {of: ["Provenance"], opaque: ["request"]},
   identify: {of: ["Identification"], top: true},
   "identify.signal": {of: ["Signal"]},

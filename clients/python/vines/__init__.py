@@ -19,7 +19,7 @@ The functions send requests to the service at the address in VINES_URL, with the
 set. Without VINES_URL they run the program in VINES_PROGRAM, or `vines` on the PATH. `Service` and
 `Program` have the same functions.
 
-`help(vines.SimulateFields)`, `SweepFields`, `ContinueFields` and `IdentifyFields` list the fields
+`help(vines.SimulateFields)`, `SweepFields`, `ContinueFields`, `DesignFields` and `IdentifyFields` list the fields
 with unit, range and default; `help(vines.Answer)` describes answers.
 """
 
@@ -34,6 +34,7 @@ from ._continuation import Continuation
 from ._fields import (
     Axis,
     ContinueFields,
+    DesignFields,
     IdentifyFields,
     Perturbation,
     RecordedForcing,
@@ -57,6 +58,7 @@ __all__ = [
     "Client",
     "Continuation",
     "ContinueFields",
+    "DesignFields",
     "FieldError",
     "IdentifyFields",
     "Incomplete",
@@ -74,6 +76,7 @@ __all__ = [
     "SweepFields",
     "client",
     "continue_",
+    "design",
     "identify",
     "simulate",
     "sweep",
@@ -102,6 +105,11 @@ def sweep(**fields: Unpack[SweepFields]) -> Sweep:
 def continue_(**fields: Unpack[ContinueFields]) -> Continuation:
     """`Client.continue_` of the client chosen by the environment."""
     return client().continue_(**fields)
+
+
+def design(**fields: Unpack[DesignFields]) -> Answer:
+    """`Client.design` of the client chosen by the environment."""
+    return client().design(**fields)
 
 
 def identify(

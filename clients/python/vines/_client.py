@@ -13,8 +13,8 @@ from typing import TYPE_CHECKING, Any, Unpack
 
 from ._answer import Answer, answer_of, body_of, plain
 from ._continuation import Continuation
-from ._fields import ContinueFields, IdentifyFields, SimulateFields, SweepFields
-from ._problem import PartialAnswer
+from ._fields import ContinueFields, DesignFields, IdentifyFields, SimulateFields, SweepFields
+from ._problem import Incomplete, PartialAnswer
 from ._sweep import Lines, Sweep
 
 if TYPE_CHECKING:
@@ -54,6 +54,22 @@ class Client(ABC):
         special points. `ContinueFields` lists the fields. Raises `Problem` at once for an invalid
         request, and `Incomplete` after the last received line if the computation ends early."""
         return Continuation(self._lines("continue", body_of(_named(fields))))
+
+    def design(self, **fields: Unpack[DesignFields]) -> Answer:
+        """Searches the best absorber over a band; returns the last line, whose ``best`` is the
+        result. `DesignFields` lists the fields. Raises `Problem` at once for an invalid request,
+        and `Incomplete` if the computation ends early."""
+        lines = self._lines("design", body_of(_named(fields)))
+        done = Answer({})
+        for line in lines:
+            if line.get("type") == "done":
+                done = Answer(line)
+            elif line.get("type") == "error":
+                lines.close()
+                raise Incomplete(int(line.get("status", 0)), str(line.get("detail", "")))
+        if not done.get("complete"):
+            raise Incomplete(0, "the design ended before its result")
+        return done
 
     def identify(
         self,

@@ -7,17 +7,22 @@ from typing import Literal, TypedDict
 
 NUMBER_LISTS = frozenset({
     "C", "J", "M", "M_condition", "R", "T", "V", "V_velocity", "asked", "asked_s",
-    "contacts", "cycles_with", "distance", "final", "high", "im", "impact_speed", "impacts",
-    "impulse", "impulse_N_s", "lambda", "lambda1", "lambda2", "lambda3", "lambda4", "low",
-    "margin_F", "margin_f", "modulus", "momentum_error", "phase", "pulse_spoils_s", "re",
-    "relative_speed", "relative_speed_ratio", "rounding_floor", "side", "speed",
+    "contacts", "cycles_with", "distance", "f", "final", "five_percent", "high", "im",
+    "impact_speed", "impact_speed_max", "impact_speed_max_best_start",
+    "impact_speed_max_worst_start", "impacts", "impacts_per_second", "impulse",
+    "impulse_N_s", "impulse_max", "lambda", "lambda1", "lambda2", "lambda3", "lambda4",
+    "low", "margin_F", "margin_f", "modulus", "momentum_error", "phase", "pulse_spoils_s",
+    "re", "relative_speed", "relative_speed_ratio", "rounding_floor", "side", "speed",
     "speed_m_s", "standard_error", "tau", "tau_end", "tau_error", "tau_start",
     "time_difference", "time_difference_s", "time_end_s", "time_error_s", "time_s",
-    "time_start_s", "values", "window", "window_s", "x", "x_acceleration",
-    "x_acceleration_before", "x_ddot", "x_ddot_before", "x_dot", "x_dot_after",
-    "x_dot_before", "x_velocity", "x_velocity_after", "x_velocity_before", "y", "y_dot",
-    "y_dot_after", "y_dot_before", "y_velocity", "y_velocity_after", "y_velocity_before",
-    "z",
+    "time_start_s", "tuned_mass_damper", "twenty_percent", "values", "window", "window_s",
+    "without", "x", "x_acceleration", "x_acceleration_before",
+    "x_acceleration_max_best_start", "x_acceleration_max_worst_start", "x_ddot",
+    "x_ddot_before", "x_dot", "x_dot_after", "x_dot_before", "x_max_best_start",
+    "x_max_worst_start", "x_relative_max_best_start", "x_relative_max_worst_start",
+    "x_rms_best_start", "x_rms_worst_start", "x_velocity", "x_velocity_after",
+    "x_velocity_before", "y", "y_dot", "y_dot_after", "y_dot_before", "y_velocity",
+    "y_velocity_after", "y_velocity_before", "z",
 })
 
 Perturbation = TypedDict(
@@ -471,6 +476,46 @@ class ContinueFields(TypedDict, total=False):
     second: str
     second_from: float
     second_to: float
+
+class DesignFields(TypedDict, total=False):
+    """Fields of a design.
+
+    base: the host in SI: m1, k1 or f0, c1 or damping_ratio, m2 or mass_ratio, damping; without
+        f, F, b and R; default: required
+    f: band of the forcing, or one frequency (Hz); default: required
+    acceleration: amplitude of the base's acceleration, constant over the band; a range stands
+        for all amplitudes in it (m/s^2); default: required, or F
+    F: amplitude of the base's displacement instead of acceleration (m); default: required, or
+        acceleration
+    b: smallest and largest clearance (m); default: from 5 to 120 % of the largest amplitude
+        without absorber
+    R: restitution coefficients to choose from, or one (dimensionless)
+    m2: masses of the ball to choose from, or one (kg); default: that of base
+    objective: what shall be small: largest |x| or its rms, largest distance from the base,
+        largest |x''| of m1, or the fastest impact; default: "x_max"
+    over: worst: its largest value over band and amplitudes; mean: its mean; default: "worst"
+    starts: default set: the worst of four starts and of motions continued from neighbours; one:
+        the default start; default: "default set"
+    b_count: values of b in the first map (dimensionless); 2 to 400; default: 40
+    f_count: frequencies in the first map (dimensionless); 2 to 400; default: 41
+    transient_cycles: cycles before each measurement (dimensionless); 0 to 100000; default: 100
+    cycles: cycles of each measurement (dimensionless); 20 to 100000; default: 200
+    """
+
+    base: SweepBase
+    f: Iterable[float] | float
+    acceleration: Iterable[float] | float
+    F: Iterable[float] | float
+    b: Iterable[float]
+    R: Iterable[float] | float
+    m2: Iterable[float] | float
+    objective: Literal["x_max", "x_rms", "x_relative_max", "x_acceleration_max", "impact_speed_max"]
+    over: Literal["worst", "mean"]
+    starts: Literal["default set", "one"]
+    b_count: int
+    f_count: int
+    transient_cycles: int
+    cycles: int
 
 class IdentifyFields(TypedDict, total=False):
     """Fields of an identification.

@@ -12,8 +12,9 @@ Keys objective_keys() {
     Keys keys;
     for (const std::string& name : find(design_fields(), "objective")->choices)
         keys.push_back(optional(
-            {name, or_null(number()), "largest value over the band, m, m/s or m/s^2; null if " +
-                                          std::string("a motion has too many impacts")}));
+            {name, or_null(number()),
+             "largest value over the band, m, m/s or m/s^2; null if " +
+                 std::string("a motion has too many impacts")}));
     return keys;
 }
 
@@ -39,7 +40,8 @@ Json margin() {
 }
 
 Json linear(const Keys& more) {
-    return object_of(objective_keys() + Keys{{"f", number(), "frequency of the largest value, Hz"}} + more);
+    return object_of(
+        objective_keys() + Keys{{"f", number(), "frequency of the largest value, Hz"}} + more);
 }
 
 }  // namespace
@@ -67,8 +69,7 @@ void add_design_lines(Json& schemas) {
                {"damping_ratio", number(), "damping ratio"}}),
           "the machine without absorber"},
          {"request", reference("DesignRequest"), "the request"}});
-    schemas["DesignPoint"] =
-        object_of(Keys{{"type", constant("point"), ""}} + absorber_keys());
+    schemas["DesignPoint"] = object_of(Keys{{"type", constant("point"), ""}} + absorber_keys());
     schemas["DesignProgress"] = object_of(
         {{"type", constant("progress"), ""},
          {"done", whole(), "absorbers so far"},
@@ -85,13 +86,13 @@ void add_design_lines(Json& schemas) {
         response.push_back(
             optional({name + "_best_start", columns, "objective with the best start"}));
     }
-    response = response +
-               Keys{
-                   {"without", columns, "objective without absorber"},
-                   {"tuned_mass_damper", columns, "objective with the tuned mass damper"},
-                   {"impact_speed_max", columns, "largest |x' - y'| before an impact, m/s"},
-                   {"impulse_max", columns, "largest impulse of an impact, N s"},
-                   {"impacts_per_second", columns, "most impacts per second"}};
+    response =
+        response + Keys{
+                       {"without", columns, "objective without absorber"},
+                       {"tuned_mass_damper", columns, "objective with the tuned mass damper"},
+                       {"impact_speed_max", columns, "largest |x' - y'| before an impact, m/s"},
+                       {"impulse_max", columns, "largest impulse of an impact, N s"},
+                       {"impacts_per_second", columns, "most impacts per second"}};
     const Keys details = {
         optional({"regime", or_null(text()), "type of the motion in the worst case"}),
         optional({"impact_speed_max", number(), "largest |x' - y'| before an impact, m/s"}),

@@ -159,6 +159,7 @@ struct DesignSearch {
         for (std::size_t line = 0; line < size; ++line) sweep.lines.push_back(line);
         MapSink into(m, plan.objective, si.omega0(), plan.cycles);
         run_sweep(sweep, threads, control, into);
+        const ComputePermit permit(control);
         if (control.stop_or_yield()) throw Stopped();
         return m;
     }
@@ -175,17 +176,15 @@ struct DesignSearch {
                 sum += value;
                 if (value > most) most = value, p.f = m.f[j], p.amplitude = a;
             }
-        p.objective =
-            plan.mean ? sum / static_cast<double>(amplitudes.size() * m.f.size()) : most;
+        p.objective = plan.mean ? sum / static_cast<double>(amplitudes.size() * m.f.size()) : most;
         return p;
     }
 
     /// Factors of the amplitudes, which a geometric row of b shares.
     std::vector<double> amplitudes() const {
-        const double step = plan.b_count > 1 ? elementary::pow(
-                                                   plan.b.to / plan.b.from,
-                                                   1.0 / (plan.b_count - 1))
-                                             : infinity;
+        const double step = plan.b_count > 1
+                                ? elementary::pow(plan.b.to / plan.b.from, 1.0 / (plan.b_count - 1))
+                                : infinity;
         std::vector<double> all = {1};
         while (all.back() / step > plan.amplitude_ratio * (1 + same_b))
             all.push_back(all.back() / step);
@@ -208,7 +207,8 @@ struct DesignSearch {
         for (const double m2 : plan.m2)
             for (const double R : plan.R) {
                 const DesignMap m = map(row, amplitudes(), frequencies(), R, host_with(m2));
-                for (const double b : row) sink(all.emplace_back(judged(m, b, amplitudes(), R, m2)));
+                for (const double b : row)
+                    sink(all.emplace_back(judged(m, b, amplitudes(), R, m2)));
             }
         std::ranges::stable_sort(all, {}, &DesignPoint::objective);
         return all;
@@ -261,8 +261,8 @@ struct DesignSearch {
     }
 
     double objective_with(const DesignPoint& p, double b, double R, const SiParameters& si) const {
-        const std::vector<double> at = p.amplitude < 1 ? std::vector{1, p.amplitude}
-                                                       : std::vector{1.0};
+        const std::vector<double> at =
+            p.amplitude < 1 ? std::vector{1, p.amplitude} : std::vector{1.0};
         return judged(map({b}, at, denser_frequencies(p.f), R, si), b, at, R, p.m2).objective;
     }
 
@@ -323,8 +323,7 @@ struct DesignSearch {
         d.works = {*low, *high};
         if (p.R < 1) {
             const Parameters system = this->system(p.b, p.R, si, d.without.f);
-            const double amplitude =
-                linear_response(plan.host, {}, Objective::x_max, d.without.f);
+            const double amplitude = linear_response(plan.host, {}, Objective::x_max, d.without.f);
             d.activation = manifold_fold(p.R, system.Omega, p.b).C / amplitude;
         }
     }
@@ -360,12 +359,12 @@ struct DesignSearch {
 }  // namespace
 
 std::size_t design_runs(const DesignPlan& plan) {
-    const double step = plan.b_count > 1 ? elementary::log(plan.b.to / plan.b.from) /
-                                               (plan.b_count - 1)
-                                         : 1,
+    const double step = plan.b_count > 1
+                            ? elementary::log(plan.b.to / plan.b.from) / (plan.b_count - 1)
+                            : 1,
                  rows = plan.b_count - elementary::log(plan.amplitude_ratio) / step;
-    return static_cast<std::size_t>(rows) * static_cast<std::size_t>(plan.f_count) *
-           plan.R.size() * plan.m2.size() * (plan.default_set ? most_starts : 1);
+    return static_cast<std::size_t>(rows) * static_cast<std::size_t>(plan.f_count) * plan.R.size() *
+           plan.m2.size() * (plan.default_set ? most_starts : 1);
 }
 
 std::optional<Design> find_design(

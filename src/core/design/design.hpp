@@ -14,14 +14,14 @@
 namespace vines {
 
 struct DesignPlan {
-    Host host;        ///< its base amplitude is the largest
-    Interval f;       ///< band, Hz
+    Host host;                   ///< its base amplitude is the largest
+    Interval f;                  ///< band, Hz
     double amplitude_ratio = 1;  ///< smallest amplitude over the largest
     Interval b;                  ///< m
     std::vector<double> R, m2;
     Objective objective = Objective::x_max;
-    bool mean = false;         ///< over band and amplitudes, instead of the largest value
-    bool default_set = true;   ///< worst of all starts, otherwise of the default start
+    bool mean = false;        ///< over band and amplitudes, instead of the largest value
+    bool default_set = true;  ///< worst of all starts, otherwise of the default start
     int b_count = 40, f_count = 41;
     double transient_cycles = 100, cycles = 200;
 };
@@ -29,7 +29,7 @@ struct DesignPlan {
 /// An absorber and its response, of the worst start, m, s or as the objective.
 struct DesignPoint {
     double b, R, m2;
-    double objective;  ///< infinity if a motion was not measured, for too many impacts
+    double objective;     ///< infinity if a motion was not measured, for too many impacts
     double f, amplitude;  ///< of the worst case: Hz, over the largest amplitude
 };
 
@@ -50,8 +50,8 @@ struct DesignMargin {
 
 struct Design {
     DesignPoint best;
-    PointResult at_worst;   ///< the motion in the worst case, with its regime
-    double omega0;          ///< rad/s, for the units of at_worst
+    PointResult at_worst;  ///< the motion in the worst case, with its regime
+    double omega0;         ///< rad/s, for the units of at_worst
     BandMaximum without;
     LinearAbsorber tuned_mass_damper, den_hartog;
     BandMaximum with_tuned_mass_damper, with_den_hartog;

@@ -43,9 +43,8 @@ double turning_point(const std::function<double(double)>& function, double low, 
 double linear_response(const Host& host, const LinearAbsorber& t, Objective objective, double f) {
     const SiParameters& h = host.si;
     const double omega = 2 * std::numbers::pi * f, square = omega * omega,
-                 F = host.base_amplitude(f),
-                 own_omega = t.frequency_ratio * h.omega0(), k2 = t.m2 * own_omega * own_omega,
-                 c2 = 2 * t.damping_ratio * t.m2 * own_omega,
+                 F = host.base_amplitude(f), own_omega = t.frequency_ratio * h.omega0(),
+                 k2 = t.m2 * own_omega * own_omega, c2 = 2 * t.damping_ratio * t.m2 * own_omega,
                  c = host.damping == Damping::closed_form ? 2 * h.c1 : h.c1;
     const Complex link(k2, c2 * omega), base(h.k1, h.c1 * omega);
     Complex stiffness(h.k1 - square * h.m1, c * omega);
@@ -90,8 +89,7 @@ LinearAbsorber best_tuned_mass_damper(
     const Host& host, double m2, Objective objective, const Interval& band) {
     LinearAbsorber best = den_hartog(host.si.m1, m2);
     const auto worst = [&](const LinearAbsorber& t) {
-        return band_maximum(
-                   [&](double f) { return linear_response(host, t, objective, f); }, band)
+        return band_maximum([&](double f) { return linear_response(host, t, objective, f); }, band)
             .value;
     };
     double least = worst(best), frequency_factor = frequency_range, damping_factor = damping_range;

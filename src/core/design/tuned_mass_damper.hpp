@@ -12,11 +12,11 @@ namespace vines {
 
 /// What a design makes small; `worst` is its value in the worst case, otherwise the mean.
 enum class Objective {
-    x_max,                ///< of |x|, m
-    x_rms,                ///< of x, m
-    x_relative_max,       ///< of the distance from the base, m
-    x_acceleration_max,   ///< of |x''|, m/s^2
-    impact_speed_max      ///< of |x' - y'| before an impact, m/s
+    x_max,               ///< of |x|, m
+    x_rms,               ///< of x, m
+    x_relative_max,      ///< of the distance from the base, m
+    x_acceleration_max,  ///< of |x''|, m/s^2
+    impact_speed_max     ///< of |x' - y'| before an impact, m/s
 };
 
 /// Steady motion of the host under the base motion F sin(2 pi f t); a tuned mass damper's mass is

@@ -19,8 +19,7 @@ double scaled_peak(
     const double least = known / size;
     if (!shift.is_zero())
         return size * peak_beyond(least, flow, start, scaled(shift, 1 / size), from, to);
-    return size *
-           peak_beyond(least, flow, from > 0 ? flow.after(start, from) : start, to - from);
+    return size * peak_beyond(least, flow, from > 0 ? flow.after(start, from) : start, to - from);
 }
 
 }  // namespace

@@ -72,7 +72,8 @@ TEST_CASE("the largest acceleration and distance from the base are those of dens
         for (const bool slides : {false, true}) {
             CAPTURE(Omega);
             CAPTURE(slides);
-            Parameters p = table1(0.012, slides ? Damping::equation_of_motion : Damping::closed_form);
+            Parameters p =
+                table1(0.012, slides ? Damping::equation_of_motion : Damping::closed_form);
             p.Omega = Omega;
             p.lambda = 20;
             if (slides) p.gravity = 0.002, p.friction = 0.001;
@@ -90,8 +91,7 @@ TEST_CASE("the largest acceleration and distance from the base are those of dens
 
 TEST_CASE("without absorber and with the best tuned mass damper the largest x is 99 and 17.7 mm") {
     const DesignPlan plan = machine();
-    const LinearAbsorber best =
-        best_tuned_mass_damper(plan.host, 0.04, Objective::x_max, plan.f);
+    const LinearAbsorber best = best_tuned_mass_damper(plan.host, 0.04, Objective::x_max, plan.f);
     CHECK(largest(plan.host, {}, plan.f) == doctest::Approx(0.0990).epsilon(1e-3));
     const double least = largest(plan.host, best, plan.f);
     CHECK(least == doctest::Approx(0.0177).epsilon(3e-3));
@@ -183,9 +183,7 @@ TEST_CASE("a range of amplitudes is answered by one map: smaller ones are larger
     half.amplitude_ratio = 1;
     half.b = {design->best.b, 1.001 * design->best.b};
     half.b_count = 2;
-    half.host.base_amplitude = [](double f) {
-        return 2.5 / ((two_pi * f) * (two_pi * f));
-    };
+    half.host.base_amplitude = [](double f) { return 2.5 / ((two_pi * f) * (two_pi * f)); };
     const auto at_half = find_design(half, 2, control, [](const DesignPoint&) {});
     CHECK(at_half->best.objective <= design->best.objective * 1.02);
 }
