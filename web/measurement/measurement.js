@@ -5,13 +5,21 @@ import {asCurl, identify, identifyJson, simulate} from "../shared/api.js";
 import {$, choose, countUp, element, fillMenu, reveal, setTexts} from "../shared/dom.js";
 import {copy, save} from "../shared/export.js";
 import {Form} from "../shared/form.js";
-import {RequestTab} from "../shared/request_tab.js";
+import {RequestTab} from "../shared/job.js";
 import {ImpactList} from "./impact_list.js";
 import {summariseMeasurement} from "./measurement_summary.js";
 import * as views from "./measurement_views.js";
-import {asJson, columnsOf, parse, recordOf, spikeNear} from "./record.js";
-import {oscillatorOf, recordOfRun} from "./sample.js";
-import {afterReload, keep} from "./stored.js";
+import {
+  afterReload,
+  asJson,
+  columnsOf,
+  keep,
+  oscillatorOf,
+  parse,
+  recordOf,
+  recordOfRun,
+  spikeNear,
+} from "./record.js";
 
 const groups = {
   system: ["System", true],

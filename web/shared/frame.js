@@ -1,7 +1,6 @@
 // Frame of a plot: the mapping from values to pixels, grid lines and labels. Draws with any object
 // that has the methods of a canvas context.
-import {colour} from "./colours.js";
-import {drawText, drawTextUpwards, ink, stroke} from "./ink.js";
+import {colour, drawText, drawTextUpwards, ink, stroke} from "./ink.js";
 import {clamp, minus, shortTo} from "./numbers.js";
 
 export const font = "11px system-ui, sans-serif";

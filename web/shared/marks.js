@@ -3,9 +3,8 @@
 // last. Each kind documents its options; all have `alpha`, and a `label` in legend and table.
 import {font} from "./frame.js";
 import {drawText, ink, stroke} from "./ink.js";
-import {clamp} from "./numbers.js";
+import {clamp, firstFrom, lastUpTo} from "./numbers.js";
 import {columnDensity, drawPixels, pointDensity} from "./raster.js";
-import {firstFrom, lastUpTo} from "./search.js";
 
 /** A kind of mark from draw(c, frame, options). */
 export const kind =

@@ -6,8 +6,7 @@ import {blank, Frame, font, rangeOf, Size} from "./frame.js";
 import {listen} from "./gestures.js";
 import {drawText, ink} from "./ink.js";
 import {names} from "./marks.js";
-import {short} from "./numbers.js";
-import {firstFrom, lastUpTo, nearest} from "./search.js";
+import {firstFrom, lastUpTo, nearest, short} from "./numbers.js";
 import {Viewport} from "./viewport.js";
 
 export class Plot {

@@ -4,8 +4,7 @@ import {simulate} from "../shared/api.js";
 import {$, countUp, sayIn} from "../shared/dom.js";
 import {Job} from "../shared/job.js";
 import {detailsOptions} from "./details_plots.js";
-import {accountEnergy, summarise, tabulate} from "./details_summary.js";
-import {listParameters} from "./parameters.js";
+import {accountEnergy, listParameters, summarise, tabulate} from "./details_summary.js";
 import {commonOptions, PlotGroup} from "./plot_group.js";
 import {run} from "./run.js";
 

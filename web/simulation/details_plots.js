@@ -3,9 +3,8 @@ import {reveal} from "../shared/dom.js";
 import {exponentRange} from "../shared/exponents.js";
 import {beads, curve, dots, levels, line, lines} from "../shared/marks.js";
 import {digits} from "../shared/numbers.js";
-import {alongRun, inUnits, largestMagnitude, logRange, mm, positive} from "./columns.js";
 import {exponentLines, halves, picked} from "./plot_group.js";
-import {run} from "./run.js";
+import {alongRun, inUnits, largestMagnitude, logRange, mm, positive, run} from "./run.js";
 
 const estimators = ["qr", "eigenvalues", "raw_product"];
 const matrices = ["J", "M", "T"];

@@ -4,12 +4,10 @@
 import {$, attributes, setTexts} from "../shared/dom.js";
 import {exponentRange} from "../shared/exponents.js";
 import {beads, curve, dots, levels, line, symbols} from "../shared/marks.js";
-import {inMm, short} from "../shared/numbers.js";
-import {firstFrom, lastUpTo} from "../shared/search.js";
+import {firstFrom, inMm, lastUpTo, short} from "../shared/numbers.js";
 import {unitsOf} from "../shared/units.js";
-import {alongRun, inUnits, largestMagnitude, logRange, mm, positive} from "./columns.js";
 import {commonOptions, exponentLines, halves, PlotGroup, picked} from "./plot_group.js";
-import {run, viewport} from "./run.js";
+import {alongRun, inUnits, largestMagnitude, logRange, mm, positive, run, viewport} from "./run.js";
 
 const mostSamples = 100000; // samples in an exported table
 // Side of the impacts of each colour, and their name in tables.

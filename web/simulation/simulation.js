@@ -2,14 +2,22 @@
 // address holds the request and the visible range.
 
 import {simulate} from "../shared/api.js";
-import {$, attributes, countUp, nextTask, on, press, reveal, setTexts} from "../shared/dom.js";
+import {
+  $,
+  attributes,
+  countUp,
+  nextTask,
+  on,
+  press,
+  reveal,
+  setTexts,
+  showRemarks,
+} from "../shared/dom.js";
 import {copy, formsOf} from "../shared/export.js";
 import {Form, unknownText} from "../shared/form.js";
-import {Job} from "../shared/job.js";
+import {Job, RequestTab} from "../shared/job.js";
 import {Motion} from "../shared/motion.js";
 import {roundedRange} from "../shared/numbers.js";
-import {RequestTab} from "../shared/request_tab.js";
-import {showRemarks} from "../shared/tables.js";
 import {onUnits, unitsOf, unitsSwitch} from "../shared/units.js";
 import * as details from "./details.js";
 import * as grab from "./grab.js";
@@ -17,7 +25,7 @@ import * as machine from "./machine.js";
 import * as mainPlots from "./main_plots.js";
 import * as pin from "./pin.js";
 import * as player from "./player.js";
-import * as presetMenu from "./preset_menu.js";
+import * as presetMenu from "./request.js";
 import {Request, toQuery} from "./request.js";
 import {run, setRun, viewport} from "./run.js";
 import * as sliders from "./sliders.js";

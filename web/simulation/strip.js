@@ -5,12 +5,10 @@ import {$, attributes, countUp, setTexts} from "../shared/dom.js";
 import {Frame, rangeOf} from "../shared/frame.js";
 import {Job} from "../shared/job.js";
 import {blocks, density, dots, levels, line} from "../shared/marks.js";
-import {clamp, digits, withError} from "../shared/numbers.js";
+import {clamp, digits, nearest, withError} from "../shared/numbers.js";
 import {Plot} from "../shared/plot.js";
 import {regimeColour, regimeText, verdictColour, verdicts} from "../shared/quantities.js";
-import {nearest} from "../shared/search.js";
-import {receive, SweepData} from "../sweep/data.js";
-import {Layers, stretches} from "../sweep/layers.js";
+import {Layers, receive, SweepData, stretches} from "../sweep/data.js";
 import {run} from "./run.js";
 import {fieldsOf, moveSlider, valueAt, written} from "./sliders.js";
 

@@ -19,7 +19,7 @@ import {
 import {inSeconds} from "../shared/units.js";
 import {Viewport} from "../shared/viewport.js";
 import * as labels from "./axis_labels.js";
-import {stretches} from "./layers.js";
+import {stretches} from "./data.js";
 import {missingPoint, SweepPlot, SweepView} from "./sweep_view.js";
 
 const startColours = ["c1", "minus", "c2", "c4", "c3"];

@@ -1,12 +1,11 @@
 // A map: a sweep over two axes, or one slice of a sweep over three. A quantity is shown as colours
 // with a scale. Missing points take the colour of a coarser neighbour.
 
-import {rgb} from "../shared/colours.js";
+import {rgb} from "../shared/ink.js";
 import {raster} from "../shared/marks.js";
-import {short} from "../shared/numbers.js";
+import {lastUpTo, short} from "../shared/numbers.js";
 import {bestMotion, describe, quantityOf, regimeColour} from "../shared/quantities.js";
 import {pixel} from "../shared/raster.js";
-import {lastUpTo} from "../shared/search.js";
 import {Viewport} from "../shared/viewport.js";
 import * as labels from "./axis_labels.js";
 import {bar, barWidth, endsOf, scaleOf} from "./colour_scale.js";

@@ -1,16 +1,23 @@
 // The sweep tab: the form starts a stream of points, drawn while they arrive. The query holds the
 // request and the menus.
 import {asCurl} from "../shared/api.js";
-import {$, choose, countUp, element, fillMenu, reveal, setTexts} from "../shared/dom.js";
+import {
+  $,
+  choose,
+  countUp,
+  element,
+  fillMenu,
+  reveal,
+  setTexts,
+  showRemarks,
+} from "../shared/dom.js";
 import {copy, save} from "../shared/export.js";
+import {RequestTab} from "../shared/job.js";
 import {coordinates, menuOf, otherMotion, regimes, symbolOf} from "../shared/quantities.js";
-import {RequestTab} from "../shared/request_tab.js";
-import {showRemarks} from "../shared/tables.js";
 import {onUnits, unitsSwitch} from "../shared/units.js";
 import * as labels from "./axis_labels.js";
-import {receive, SweepData} from "./data.js";
+import {Layers, receive, SweepData} from "./data.js";
 import {countRegimes, DiagramView, startKey} from "./diagram.js";
-import {Layers} from "./layers.js";
 import {MapView} from "./map_view.js";
 import {showPeaks} from "./peaks.js";
 import {Refiner} from "./refine.js";

@@ -1,7 +1,7 @@
 // Base of the views of a sweep, over one axis or two: its plots share viewports, choices and a
 // tooltip, which follows the mouse, a tap or the keys.
 import {$, button, element} from "../shared/dom.js";
-import {addExportButton} from "../shared/export_dialog.js";
+import {addExportButton} from "../shared/export.js";
 import {Frame} from "../shared/frame.js";
 import {makeAccessible} from "../shared/gestures.js";
 import {roundedRange} from "../shared/numbers.js";
