@@ -2,8 +2,19 @@
 // shown. The list of impacts can be edited and sent again.
 
 import {asCurl, identify, identifyJson, simulate} from "../shared/api.js";
-import {$, choose, countUp, element, fillMenu, reveal, setTexts} from "../shared/dom.js";
-import {copy, save} from "../shared/export.js";
+import {
+  $,
+  choose,
+  copy,
+  countUp,
+  element,
+  fillMenu,
+  onDrop,
+  reveal,
+  save,
+  setTexts,
+} from "../shared/dom.js";
+
 import {Form} from "../shared/form.js";
 import {RequestTab} from "../shared/job.js";
 import {ImpactList} from "./impact_list.js";
@@ -112,12 +123,7 @@ export class MeasurementTab extends RequestTab {
   listenToFiles() {
     const input = $("measure-file");
     input.onchange = () => this.readFile(input.files[0]);
-    const drag = (event) => {
-      event.preventDefault();
-      $("measure-drop").classList.toggle("over", event.type === "dragover");
-      if (event.type === "drop") this.readFile(event.dataTransfer.files[0]);
-    };
-    for (const type of ["ondragover", "ondragleave", "ondrop"]) $("panel-measurement")[type] = drag;
+    onDrop($("panel-measurement"), $("measure-drop"), (file) => this.readFile(file));
   }
 
   query() {

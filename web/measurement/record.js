@@ -1,65 +1,52 @@
-// Reads a record for drawing, by the same rules as the service, which reports the errors.
+// A record: read from a file for drawing, by the same rules as the service, which reports the errors;
+// simulated from a run; and kept by the browser.
 import {nextTask} from "../shared/dom.js";
 import {Motion} from "../shared/motion.js";
 import {firstFrom, lastUpTo} from "../shared/numbers.js";
 
 const atOnce = 50000; // lines between two progress reports
+const encodings = ["utf-8", "utf-16le", "utf-16be", "windows-1252"];
 
 /** Control characters that do not occur in text files. */
 // biome-ignore lint/suspicious/noControlCharactersInRegex: it searches for control characters
 const binary = /[\0-\x08\x0e-\x1a]/;
 
-/**
- * The text of a file in any of the usual encodings, with LF line ends. Throws for a binary file.
- */
+/** The text of a file in the first encoding that gives lines of text. Throws for a binary file. */
 async function textOf(file) {
-  const bytes = new Uint8Array(await file.arrayBuffer());
-  const begins = (first, second) => bytes[0] === first && bytes[1] === second;
-  // UTF-16 without a byte order mark: every other byte of ASCII text is zero.
-  const hasZeros = (from) => bytes[from] === 0 && bytes[from + 2] === 0;
-  let encoding = "utf-8";
-  if (begins(0xff, 0xfe) || hasZeros(1)) encoding = "utf-16le";
-  else if (begins(0xfe, 0xff) || hasZeros(0)) encoding = "utf-16be";
-  let text;
-  try {
-    text = new TextDecoder(encoding, {fatal: true}).decode(bytes);
-  } catch {
-    text = new TextDecoder("windows-1252").decode(bytes);
-  }
-  if (binary.test(text.slice(0, 100000)))
-    throw new Error(
-      "it is not a text file; scripts/to-csv converts .wav, .mat, .tdms and .uff files to CSV",
-    );
-  return text.replace(/\r\n?/g, "\n");
+  const bytes = await file.arrayBuffer();
+  for (const encoding of encodings)
+    try {
+      const text = new TextDecoder(encoding, {fatal: true}).decode(bytes);
+      const lines = text.replace(/\r\n?/g, "\n");
+      if (lines.includes("\n") && !binary.test(lines.slice(0, 100000))) return lines;
+    } catch {
+      // another encoding
+    }
+  throw new Error(
+    "it is not a text file; scripts/to-csv converts .wav, .mat, .tdms and .uff files to CSV",
+  );
 }
 
-/** The cells of a line with quotation marks; a quoted decimal comma becomes a point. */
-function quotedCellsOf(line, separator) {
-  const end = separator.replace(/\W/, "\\$&");
-  const other = `[^${end}]*`;
-  const cell = new RegExp(`([ \\t]*"[^"]*"${other}|${other})(?:${end}|$)`, "g");
-  const cells = [...line.matchAll(cell)].map(([, text]) => text.trim());
-  return cells.map((text) => text.replace(/^"([^"]*)"$/, (_, inside) => asPoint(inside)));
-}
-const asPoint = (cell) =>
-  /^[\s+-]*\d*,\d*(e[+-]?\d+)?\s*$/i.test(cell) ? cell.replace(",", ".") : cell;
+const withComma = /^[\s+-]*\d*,\d*(e[+-]?\d+)?\s*$/i;
+
+/** A quoted text without separators; a decimal comma becomes a point. */
+const unquoted = (text, separator) =>
+  withComma.test(text) ? text.replace(",", ".") : text.replaceAll(separator, " ");
 
 /** The cells of a line without trailing empty ones. */
 function cellsOf(line, separator) {
-  let cells;
-  if (separator === " ") cells = line.trim().split(/[ \t]+/);
-  else if (line.includes('"')) cells = quotedCellsOf(line, separator);
-  else cells = line.split(separator);
+  const plain = line.replace(/"([^"]*)"/g, (_, inside) => unquoted(inside, separator));
+  const cells = separator === " " ? plain.trim().split(/[ \t]+/) : plain.split(separator);
   while (cells.length && !cells.at(-1).trim()) cells.pop();
   return cells;
 }
 
-const isCode = /^\s*[+-]?0[xob]/i; // JavaScript would accept these as numbers
+const numeric = /^\s*[+-]?(\d+\.?\d*|\.\d+)(e[+-]?\d+)?\s*$/i;
 
 /** A cell as a number, NaN if it is none. A decimal comma requires another separator. */
 function numberOf(cell, separator) {
-  if (!cell.trim() || isCode.test(cell)) return NaN;
-  return Number(separator === "," ? cell : cell.replaceAll(",", "."));
+  const text = separator === "," ? cell : cell.replace(",", ".");
+  return numeric.test(text) ? Number(text) : NaN;
 }
 
 const comment = /^\s*(#|%|\/\/)/;
@@ -68,12 +55,11 @@ const comment = /^\s*(#|%|\/\/)/;
  * The separator that splits the line into two or more numbers; undefined if there is none.
  * declared: the separator of a line sep=, the only one tried.
  */
-function separatorOfNumbers(line, declared) {
-  return (declared ? [declared] : [";", "\t", ",", " "]).find((separator) => {
+const separatorOfNumbers = (line, declared) =>
+  (declared ? [declared] : [";", "\t", ",", " "]).find((separator) => {
     const cells = cellsOf(line, separator);
     return cells.length > 1 && cells.every((cell) => !Number.isNaN(numberOf(cell, separator)));
   });
-}
 
 /**
  * [names, units] from the lines above the first row of `count` numbers; units can be missing.
@@ -84,20 +70,22 @@ function separatorOfNumbers(line, declared) {
  * the comment; names alone.
  */
 function headingOf(above, count, separator) {
-  const cells = (line) => cellsOf(line, separator).map((cell) => cell.trim());
-  const [last, before, commented] = [above.last, above.before, above.comment].map(cells);
+  const [last, before, commented] = [above.last, above.before, above.comment].map((line) =>
+    cellsOf(line, separator).map((cell) => cell.trim()),
+  );
   const areNames = (row) =>
     row.length === count && row.every((cell) => Number.isNaN(numberOf(cell, separator)));
   const areUnits = (row) => row.length && row.length <= count && row.every(isUnit);
-  const candidates = [
+  const named = areUnits(commented) ? [] : commented;
+  const pairs = [
     [before, last],
-    [areUnits(commented) ? [] : commented, last],
+    [named, last],
     [last, before],
     [last, commented],
     [last],
     [commented],
   ];
-  return candidates.find(([names, units]) => areNames(names) && (!units || areUnits(units)));
+  return pairs.find(([names, units]) => areNames(names) && (!units || areUnits(units)));
 }
 
 /**
@@ -105,7 +93,7 @@ function headingOf(above, count, separator) {
  * no heading is found. Lines that the service would reject are skipped. onProgress(fraction)
  * reports progress.
  */
-export async function parse(file, onProgress) {
+export async function parse(file, onProgress = () => {}) {
   const text = await textOf(file);
   const above = {last: "", before: "", comment: ""};
   let declared;
@@ -159,9 +147,11 @@ const quantities = {
 /** Index of the column named by a field or else by a usual name; -1 if missing. */
 function find(names, wanted, [exact, ...prefixes]) {
   if (wanted) return names.findIndex((name) => name.toLowerCase() === wanted.toLowerCase());
-  return [`${exact}$`, ...prefixes.map((text) => `${text}([_ ([]|$)`)]
-    .map((text) => names.findIndex((name) => new RegExp(`^${text}`, "i").test(name)))
-    .reduce((found, at) => (found < 0 ? at : found));
+  const patterns = [`${exact}$`, ...prefixes.map((text) => `${text}([_ ([]|$)`)];
+  const places = patterns.map((text) =>
+    names.findIndex((name) => RegExp(`^${text}`, "i").test(name)),
+  );
+  return places.find((at) => at >= 0) ?? -1;
 }
 
 /** Index of the column of each quantity, or -1. */
@@ -247,6 +237,20 @@ export function recordOf(parsed, fields) {
   return {t: of(time, "s"), x: of(displacement, "m"), a: of(acceleration, "m/s2")};
 }
 
+/** A recorded load in SI, as the field `forcing`. Throws without a time or a load. */
+export function loadOf(parsed) {
+  const {time, displacement, force, ...parts} = partsOf(parsed, {});
+  const acceleration = parts.base_acceleration ?? parts.acceleration;
+  if (!time || !(acceleration ?? displacement ?? force))
+    throw new Error("it needs a column time and one of acceleration, displacement, force");
+  const inSi = ({values, unit}, usual, factor = 1) =>
+    Array.from(values, (v) => v * scales.get(unit ?? usual) * factor);
+  const time_s = inSi(time, "s");
+  if (acceleration) return {time_s, acceleration_m_s2: inSi(acceleration, "m/s2")};
+  if (displacement) return {time_s, displacement_m: inSi(displacement, "m", 1e-3)};
+  return {time_s, force_N: [...force.values]};
+}
+
 /** Fields of /v1/identify with the record in its own units. */
 export function asJson(parsed, fields) {
   const parts = Object.entries(partsOf(parsed, fields));
@@ -273,7 +277,6 @@ export function spikeNear({t, a}, time, reach) {
   return best;
 }
 
-// The record read last, kept by the browser so that a reload shows it again.
 /** Runs act(store) on the store of records and resolves to the result of the request it returns. */
 const within = (mode, act) =>
   new Promise((resolve, reject) => {
@@ -298,9 +301,6 @@ export async function afterReload() {
   return within("readonly", (store) => store.get("last")).catch(() => undefined);
 }
 
-// A simulated record with two sensors: a displacement, and an acceleration in which each impact is
-// a half-sine pulse; the displacement keeps its exact kink. Both have low-level noise with a fixed
-// seed.
 const samplesPerCycle = 245; // about 2 kHz at 8.35 Hz, the forcing of Li et al. (2018)
 const maxSamples = 200000;
 const settling = 20; // cycles skipped: a recorder is started later than the motion

@@ -1,4 +1,4 @@
-// Short forms for creating and changing elements.
+// Short forms for creating and changing elements; saving files and copying texts.
 import {count} from "./numbers.js";
 
 export const $ = (id) => document.getElementById(id);
@@ -58,6 +58,16 @@ export const sayIn =
     $(id).classList.toggle("fault", fault);
   };
 
+/** read(file) gets a file that is dropped on a panel; zone: the element that shows the dragging. */
+export function onDrop(panel, zone, read) {
+  const drag = (event) => {
+    event.preventDefault();
+    zone.classList.toggle("over", event.type === "dragover");
+    if (event.type === "drop") read(event.dataTransfer.files[0]);
+  };
+  for (const type of ["ondragover", "ondragleave", "ondrop"]) panel[type] = drag;
+}
+
 /** Selects an entry, or the first if there is no such value. */
 export function choose(menu, value) {
   menu.value = value;
@@ -78,7 +88,12 @@ export function fillMenu(menu, entries, wish = menu.value) {
 export function cards(list, entries) {
   const card = ([term, value, remark]) => {
     const small = element("small", {}, remark ? ` ${remark}` : "");
-    return element("div", {}, element("dt", {}, term), element("dd", {}, value, small));
+    return element(
+      "div",
+      {className: "box"},
+      element("dt", {}, term),
+      element("dd", {}, value, small),
+    );
   };
   list.replaceChildren(...entries.map(card));
 }
@@ -102,3 +117,20 @@ export const tableOf = (names, rows) => [
   element("thead", {}, row("th", names)),
   element("tbody", {}, ...rows.map((cells) => row("td", cells))),
 ];
+
+/** Saves a blob under a file name. */
+export function save(blob, name) {
+  const url = URL.createObjectURL(blob);
+  element("a", {href: url, download: name}).click();
+  setTimeout(() => URL.revokeObjectURL(url), 10000);
+}
+
+/** Copies a text and reports it; without permission to copy, shows the text. */
+export async function copy(text, say) {
+  try {
+    await navigator.clipboard.writeText(text);
+    say("copied");
+  } catch {
+    say(text);
+  }
+}

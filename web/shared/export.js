@@ -1,86 +1,42 @@
-// Saving files, copying texts, and a request in forms to be pasted elsewhere.
-import {absoluteUrl, asCurl} from "./api.js";
-import {$, button, element, tableOf} from "./dom.js";
+// Export of a plot: a dialog with its numbers as a table and as CSV, and its picture as PNG and SVG
+// with title and parameters.
+import {$, button, element, save, setTexts, tableOf} from "./dom.js";
 import {font} from "./frame.js";
-import {colour, ink} from "./ink.js";
+import {drawText, ink} from "./ink.js";
 import {short} from "./numbers.js";
 import {SvgPen} from "./svg_pen.js";
 
-/** Saves a blob under a file name. */
-export function save(blob, name) {
-  const url = URL.createObjectURL(blob);
-  element("a", {href: url, download: name}).click();
-  setTimeout(() => URL.revokeObjectURL(url), 10000);
-}
-
-/** Copies a text and reports it; without permission to copy, shows the text. */
-export async function copy(text, say) {
-  try {
-    await navigator.clipboard.writeText(text);
-    say("copied");
-  } catch {
-    say(text);
-  }
-}
-
-/** A Python program for the request that needs only the standard library. */
-const asPython = (path, fields) => `import json, urllib.request
-
-request = json.loads(${JSON.stringify(JSON.stringify(fields))})
-url = ${JSON.stringify(absoluteUrl(path))}
-body = json.dumps(request).encode()
-head = {"Content-Type": "application/json"}
-with urllib.request.urlopen(urllib.request.Request(url, body, head)) as answer:
-    result = json.load(answer)
-print(result["exponents"].get("qr", {}).get("final"), result["regime"]["type"])
-`;
-
-/** A frame for another page, of a site that the service allows to embed it. */
-function asFrame() {
-  const address = new URL(location.href);
-  address.searchParams.set("embed", "1");
-  address.hash = "";
-  return `<iframe src="${address}" width="800" height="600" allow="autoplay"></iframe>`;
-}
-
-/** Functions that return the text, by form. request() returns the fields of the request. */
-export const formsOf = (path, request) => ({
-  link: () => location.href,
-  embed: asFrame,
-  curl: () => asCurl({path, body: request()}),
-  Python: () => asPython(path, {...request(), include: ["impacts", "exponents", "regime"]}),
-  JSON: () => JSON.stringify(request(), null, 2),
-});
-
-// Export of a plot: a dialog with its numbers as a table and as CSV, and its picture as PNG and SVG
-// with title and parameters.
 const size = {width: 900, height: 424};
 const heading = 44; // px above the plot for title and parameters
 const rowsShown = 200;
 const sharpness = 2; // PNG pixels per CSS pixel
 
-/** A plot below its title and parameters, as SVG. */
-function drawing(plot, {title, caption}) {
-  const pen = new SvgPen(size.width, size.height, colour("panel"));
-  pen.font = `600 ${font.replace("11px", "14px")}`;
-  ink(pen, "text");
-  pen.fillText(title, 14, 20);
-  pen.font = font;
-  ink(pen, "soft");
-  pen.fillText(caption, 14, 37);
-  pen.translate(0, heading);
-  plot.paintAll(pen, size.width, size.height - heading);
+/** Draws a plot below its title and parameters, on a canvas context or an SvgPen. */
+function drawPicture(c, plot, {title, caption}) {
+  ink(c, "panel");
+  c.fillRect(0, 0, size.width, size.height);
+  c.font = `600 ${font.replace("11px", "14px")}`;
+  ink(c, "text");
+  drawText(c, title, 14, 16, "left");
+  c.font = font;
+  ink(c, "soft");
+  drawText(c, caption, 14, 33, "left");
+  c.translate(0, heading);
+  plot.paintAll(c, size.width, size.height - heading);
+}
+
+function asSvg(plot, about) {
+  const pen = new SvgPen(size.width, size.height);
+  drawPicture(pen, plot, about);
   return pen.text();
 }
 
-/** The SVG rendered as a PNG blob. */
-async function picture(svg) {
-  const image = new Image();
-  image.src = `data:image/svg+xml;charset=utf-8,${encodeURIComponent(svg)}`;
-  await image.decode();
+function asPng(plot, about) {
   const [width, height] = [size.width, size.height].map((v) => v * sharpness);
   const canvas = element("canvas", {width, height});
-  canvas.getContext("2d").drawImage(image, 0, 0, width, height);
+  const c = canvas.getContext("2d");
+  c.scale(sharpness, sharpness);
+  drawPicture(c, plot, about);
   return new Promise((resolve) => canvas.toBlob(resolve));
 }
 
@@ -96,34 +52,24 @@ function csv({names, columns}) {
   return `${lines.join("\n")}\n`;
 }
 
-function table({names, columns}) {
-  const rows = rowsOf(columns, rowsShown).map((values) => values.map(written));
-  return element("table", {className: "table"}, ...tableOf(names, rows));
-}
-
 function show(plot, about) {
   const {title, caption, summary, name} = about;
   const data = plot.numbers();
   const total = data.columns[0].length;
-  const said = total > rowsShown ? `the first ${rowsShown} of ${total} visible rows` : "";
-  const svg = () => drawing(plot, about);
-  const saveText = (text, type, ending) => save(new Blob([text], {type}), `${name}.${ending}`);
-  const dialog = $("data");
-  dialog.replaceChildren(
-    element("h2", {id: "data-title"}, title),
-    element("p", {}, summary),
-    element("p", {className: "note"}, [caption, said].filter(Boolean).join(" · ")),
-    element(
-      "div",
-      {className: "buttons"},
-      button("CSV", () => saveText(csv(data), "text/csv", "csv")),
-      button("SVG", () => saveText(svg(), "image/svg+xml", "svg")),
-      button("PNG", async () => save(await picture(svg()), `${name}.png`)),
-      button("Close", () => dialog.close()),
-    ),
-    element("div", {className: "scroll", tabIndex: 0}, table(data)),
-  );
-  dialog.showModal();
+  const cut = total > rowsShown ? `the first ${rowsShown} of ${total} visible rows` : "";
+  const note = [caption, cut].filter(Boolean).join(" · ");
+  setTexts({"data-title": title, "data-summary": summary, "data-note": note});
+  const rows = rowsOf(data.columns, rowsShown).map((values) => values.map(written));
+  $("data-table").replaceChildren(...tableOf(data.names, rows));
+  const files = {
+    csv: () => new Blob([csv(data)], {type: "text/csv"}),
+    svg: () => new Blob([asSvg(plot, about)], {type: "image/svg+xml"}),
+    png: () => asPng(plot, about),
+  };
+  $("data").onclick = async ({target: {value}}) => {
+    if (value in files) save(await files[value](), `${name}.${value}`);
+  };
+  $("data").showModal();
 }
 
 /** {title, notes} of a figure's caption. */

@@ -143,13 +143,16 @@ export function rangeOf(columns, log = false) {
 /** The size of a node, cached since reading it forces a layout; draw() is called when it changes. */
 export class Size {
   constructor(node, draw) {
-    const changes = () => {
-      const {width, height} = this;
-      Object.assign(this, {width: node.clientWidth, height: node.clientHeight});
-      return this.width !== width || this.height !== height;
-    };
-    changes();
-    new ResizeObserver(() => changes() && draw()).observe(node);
+    this.node = node;
+    this.measure();
+    new ResizeObserver(() => this.measure() && draw()).observe(node);
+  }
+
+  /** Returns whether the size has changed. */
+  measure() {
+    const {width, height} = this;
+    Object.assign(this, {width: this.node.clientWidth, height: this.node.clientHeight});
+    return this.width !== width || this.height !== height;
   }
 }
 

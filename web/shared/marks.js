@@ -130,10 +130,10 @@ function hatch(c, left, top, width, height) {
 
 /**
  * Rectangles over intervals [{from, to, colour, text, hatched}] of x, `height` px high and `down` px
- * below the upper edge. Texts that fit are written `textDown` px below it.
+ * below the upper edge. With `texts`, those that fit are written `textDown` px below it.
  */
 export const blocks = kind((c, {box, px, ...frame}, options) => {
-  const {list, down = 0, height = frame.height, textDown = 0, size = 11} = options;
+  const {list, down = 0, height = frame.height, textDown = 0, size = 11, texts} = options;
   const alpha = c.globalAlpha;
   for (const {from, to, colour, text = "", hatched} of list) {
     const ends = [from, to].map((x) => clamp(px(x), box.left, box.right));
@@ -142,7 +142,7 @@ export const blocks = kind((c, {box, px, ...frame}, options) => {
     ink(c, colour);
     c.fillRect(left, box.top + down, right - left || 1, height);
     if (hatched) hatch(c, left, box.top + down, right - left, height);
-    if (!text || 7 * text.length + 4 >= right - left) continue;
+    if (!texts || 7 * text.length + 4 >= right - left) continue;
     ink(c, "text");
     c.font = `600 ${font.replace("11", size)}`;
     c.globalAlpha = 1;

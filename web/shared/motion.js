@@ -1,6 +1,6 @@
 // Exact motion of a run, reconstructed from its impacts. Between events it has a closed form, so
 // any zoom level and any moment can be drawn without another request.
-import {lastUpTo} from "./numbers.js";
+import {clamp, lastUpTo} from "./numbers.js";
 
 // Samples per cycle of the faster of forcing and oscillator; fewer would show aliases.
 const samplesPerCycle = 32;
@@ -247,3 +247,130 @@ export class Flow {
     return this.maps[k];
   }
 }
+
+/**
+ * A motion drawn from the samples of its series, where it has no closed form between impacts: with a
+ * recorded load, gravity or friction. In between it is a cubic in each coordinate.
+ */
+class SampledMotion extends Motion {
+  constructor(given, load) {
+    const answer = load ? relativeToBase(given, load) : given;
+    super(answer);
+    this.knots = knotsOf(answer);
+    this.sticking = answer.sticking;
+    this.exact = !answer.parameters.forcing; // without the absorber
+  }
+
+  at(tau) {
+    const {knots} = this;
+    const i = clamp(lastUpTo(knots.tau, tau), 0, knots.tau.length - 2);
+    const [x, x_dot, x_ddot] = cubic(knots, "x", i, tau);
+    const [y, y_dot] = cubic(knots, "y", i, tau);
+    const {side, tau_start: from, tau_end: to} = this.sticking;
+    const k = lastUpTo(from, tau);
+    return {x, x_dot, x_ddot, y, y_dot, side: tau < to[k] ? side[k] : 0};
+  }
+
+  withoutAbsorber(tau) {
+    if (this.exact) return super.withoutAbsorber(tau);
+    return this.without?.at(tau).x ?? null;
+  }
+
+  sample(from, step, count, use) {
+    const {knots} = this;
+    const last = knots.tau.length - 2;
+    let i = clamp(lastUpTo(knots.tau, from), 0, last);
+    for (let k = 0; k < count; ++k) {
+      const tau = from + k * step;
+      if (tau < 0 || tau > this.end) continue;
+      while (i < last && knots.tau[i + 1] <= tau) ++i;
+      const [x] = cubic(knots, "x", i, tau);
+      use(k, x, cubic(knots, "y", i, tau)[0] - x);
+    }
+  }
+}
+
+/**
+ * Returns base(tau): [displacement, velocity] of the base under a recorded load, in m and units of
+ * tau. The base starts at rest; after the record it moves on.
+ */
+function baseUnder({time_s: t, acceleration_m_s2: a, displacement_m: d}, omega0) {
+  const v = [0];
+  const x = [0];
+  for (let i = 0; a && i + 1 < t.length; ++i) {
+    const h = t[i + 1] - t[i];
+    v.push(v[i] + (h * (a[i] + a[i + 1])) / 2);
+    x.push(x[i] + h * (v[i] + (h * (2 * a[i] + a[i + 1])) / 6));
+  }
+  return (tau) => {
+    const i = Math.max(lastUpTo(t, t[0] + tau / omega0), 0);
+    const s = t[0] + tau / omega0 - t[i];
+    const inside = i + 1 < t.length;
+    const slope = (column) => (inside ? (column[i + 1] - column[i]) / (t[i + 1] - t[i]) : 0);
+    if (d) return [d[i] + slope(d) * s, slope(d) / omega0];
+    const now = inside ? a[i] : 0;
+    const velocity = v[i] + s * (now + (s * slope(a)) / 2);
+    return [x[i] + s * (v[i] + s * (now / 2 + (s * slope(a)) / 6)), velocity / omega0];
+  };
+}
+
+/** An answer whose x and y are relative to the base under a recorded load. */
+function relativeToBase(answer, load) {
+  if (load.force_N) return answer;
+  const base = baseUnder(load, answer.parameters.derived.omega0);
+  const relative = (columns) => {
+    const moves = columns.tau.map(base);
+    const less = ([name, values]) => {
+      const found = /^[xy](_dot)?(_before|_after)?$/.exec(name);
+      return [name, found ? values.map((v, i) => v - moves[i][found[1] ? 1 : 0]) : values];
+    };
+    return Object.fromEntries(Object.entries(columns).map(less));
+  };
+  return {...answer, series: relative(answer.series), impacts: relative(answer.impacts)};
+}
+
+/** Columns {tau, x, x_dot, y, y_dot} of the samples and of the impacts, each before and after. */
+function knotsOf({series, impacts, parameters: {b}}) {
+  const knots = {tau: [], x: [], x_dot: [], y: [], y_dot: []};
+  const add = (tau, x, xDot, y, yDot) => {
+    const values = Object.entries({tau, x, x_dot: xDot, y, y_dot: yDot});
+    for (const [name, value] of values) knots[name].push(value);
+  };
+  let n = 0;
+  const addUpTo = (end) => {
+    for (; series.tau[n] < end; ++n)
+      add(series.tau[n], series.x[n], series.x_dot[n], series.y[n], series.y_dot[n]);
+  };
+  const {tau, x, side} = impacts;
+  for (let i = 0; i < tau.length; ++i) {
+    addUpTo(tau[i]);
+    while (series.tau[n] === tau[i]) ++n;
+    const y = x[i] - side[i] * b;
+    add(tau[i], x[i], impacts.x_dot_before[i], y, impacts.y_dot_before[i]);
+    add(tau[i], x[i], impacts.x_dot_after[i], y, impacts.y_dot_after[i]);
+  }
+  addUpTo(Infinity);
+  return knots;
+}
+
+/** [value, first, second derivative] at tau of the cubic between knots i and i + 1. */
+function cubic(knots, name, i, tau) {
+  const [p, q] = [knots[name][i], knots[name][i + 1]];
+  const h = knots.tau[i + 1] - knots.tau[i] || 1;
+  const [u, v] = [h * knots[`${name}_dot`][i], h * knots[`${name}_dot`][i + 1]];
+  const s = (tau - knots.tau[i]) / h;
+  const [second, third] = [3 * (q - p) - 2 * u - v, 2 * (p - q) + u + v];
+  const value = p + s * (u + s * (second + s * third));
+  return [value, (u + s * (2 * second + 3 * s * third)) / h, (2 * second + 6 * s * third) / h ** 2];
+}
+
+/** Fields of a system whose motion is drawn from samples. */
+const sampledLaws = ["gravity", "inclination", "friction", "mu", "forcing"];
+export const isSampled = (fields) => sampledLaws.some((name) => fields[name]);
+
+/**
+ * The motion of an answer with impacts; with a series if isSampled(). With a recorded load of the
+ * base it is relative to the base.
+ */
+export const motionOf = (answer, load) =>
+  answer.series ? new SampledMotion(answer, load) : new Motion(answer);

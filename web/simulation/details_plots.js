@@ -141,7 +141,7 @@ function divergence(perturbation) {
 export function detailsOptions(answer) {
   const {series, exponents, regime, eigenvalues, section, parameters} = answer;
   const orbit = regime.periodic && regime.contacts > 0; // not for periodic free flight
-  reveal({"figure-multipliers": orbit});
+  reveal({"figure-multipliers": orbit, "figure-divergence": answer.perturbation});
   return {
     acceleration: acceleration(series),
     z: impactsPerCycle(regime.z_moving),
@@ -151,6 +151,6 @@ export function detailsOptions(answer) {
     stroboscopic: stroboscopic(section.stroboscopic),
     differences: differences(section.impact, parameters.Omega),
     ...(orbit && {multipliers: multiplierPlane(regime.multipliers)}),
-    divergence: divergence(answer.perturbation),
+    ...(answer.perturbation && {divergence: divergence(answer.perturbation)}),
   };
 }

@@ -5,18 +5,20 @@ import {simulate} from "../shared/api.js";
 import {
   $,
   attributes,
+  copy,
   countUp,
   nextTask,
   on,
+  onDrop,
   press,
   reveal,
   setTexts,
   showRemarks,
 } from "../shared/dom.js";
-import {copy, formsOf} from "../shared/export.js";
+
 import {Form, unknownText} from "../shared/form.js";
 import {Job, RequestTab} from "../shared/job.js";
-import {Motion} from "../shared/motion.js";
+import {isSampled, motionOf} from "../shared/motion.js";
 import {roundedRange} from "../shared/numbers.js";
 import {onUnits, unitsOf, unitsSwitch} from "../shared/units.js";
 import * as details from "./details.js";
@@ -26,14 +28,15 @@ import * as mainPlots from "./main_plots.js";
 import * as pin from "./pin.js";
 import * as player from "./player.js";
 import * as presetMenu from "./request.js";
-import {Request, toQuery} from "./request.js";
+import {formsOf, Request, toQuery} from "./request.js";
 import {run, setRun, viewport} from "./run.js";
 import * as sliders from "./sliders.js";
-import * as strip from "./strip.js";
+import {Strip} from "./strip.js";
 import {describe, showSentence} from "./words.js";
 
 // Parts requested for every slider movement, and parts requested once it rests.
 const firstParts = {include: ["impacts", "exponents", "regime", "energy"], exponents: ["qr"]};
+const sampledParts = {...firstParts, include: [...firstParts.include, "series"]};
 const deferredParts = {
   include: ["exponents", "eigenvalues", "manifold"],
   exponents: ["raw_product"],
@@ -63,6 +66,11 @@ function remark({exponents: {verdict, verdict_reason: why}, regime, warnings}, m
   showRemarks("remarks", [...new Set([...(open ? [`not decided: ${why}`] : []), ...all])]);
 }
 
+/** A request for the same run with a ball too light to matter: without the absorber. */
+function withLightBall({m2, ...fields}) {
+  return {...fields, mass_ratio: 1e-9, include: ["impacts", "series"]};
+}
+
 export class SimulationTab extends RequestTab {
   asked = null; // query of the request in the address
   mistyped = false; // true while a slider's number differs from the request
@@ -70,10 +78,16 @@ export class SimulationTab extends RequestTab {
   lastMoved = "b"; // name of the slider moved last
 
   deferred = new Job({
-    ask: (fields, signal) => simulate({...fields, ...deferredParts}, signal),
-    show: (answer, fields) => {
+    ask: (fields, signal) =>
+      Promise.all([
+        simulate({...fields, ...deferredParts}, signal),
+        run.motion.exact === false && simulate(withLightBall(fields), signal),
+      ]),
+    show: ([answer, without], fields) => {
       if (fields !== run.fields) return;
       run.deferred = answer;
+      if (without) run.motion.without = motionOf(without, run.load);
+      machine.redraw();
       remark(run.answer, answer);
       mainPlots.showDeferred();
       details.follow();
@@ -100,6 +114,7 @@ export class SimulationTab extends RequestTab {
     pin.start(changed, read);
     this.listen(measure);
     grab.start($("machine"), (fields, dragging) => this.set(fields, dragging));
+    this.strip = new Strip();
     startPlots();
     startSheet();
   }
@@ -126,6 +141,8 @@ export class SimulationTab extends RequestTab {
       for (const step of this.drawing()) step();
       details.follow();
     });
+    onDrop($("panel-simulation"), $("load"), (file) => this.readLoad(file));
+    $("load-file").onchange = ({target}) => this.readLoad(target.files[0]);
     $("measure-this").onclick = () => run && measure(run.answer);
     const texts = formsOf("v1/simulate", () => request.fields());
     for (const one of $("copies").children)
@@ -133,7 +150,8 @@ export class SimulationTab extends RequestTab {
   }
 
   ask(fields, signal) {
-    return simulate({...fields, ...firstParts}, signal);
+    const parts = isSampled(this.request.merged(fields)) ? sampledParts : firstParts;
+    return simulate({...fields, ...parts}, signal);
   }
 
   isStale(busy) {
@@ -176,7 +194,10 @@ export class SimulationTab extends RequestTab {
     const pause = answer.impacts.tau.length > large ? nextTask : null;
     if (pause) await pause();
     const fresh = run === null || fields.fresh;
-    setRun({fields, answer, motion: new Motion(answer), units: unitsOf(answer.parameters)});
+    const {forcing} = this.request.merged(fields);
+    const load = [answer.parameters.forcing, forcing].find((given) => given?.time_s);
+    const units = unitsOf(answer.parameters);
+    setRun({fields, answer, motion: motionOf(answer, load), units, load});
     this.say(fields.note || unknownText(fields.unknown));
     this.mark(false);
     this.form.showErrors([]);
@@ -215,7 +236,8 @@ export class SimulationTab extends RequestTab {
         player.show();
         describe(answer, request.textOf(fields, parameters));
         presetMenu.markPlots(request.edited ? null : request.preset);
-        strip.show(request.systemOf(fields), parameters, slider);
+        reveal({regimes: !parameters.forcing}); // which need a period
+        if (!parameters.forcing) this.strip.show(request.systemOf(fields), parameters, slider);
       },
     ];
   }
@@ -273,6 +295,20 @@ export class SimulationTab extends RequestTab {
     this.send({dragging});
   }
 
+  /** Takes a recorded load in place of the harmonic forcing. */
+  async readLoad(file) {
+    if (!file) return;
+    try {
+      const {loadOf, parse} = await import("../measurement/record.js");
+      const forcing = loadOf(await parse(file));
+      setTexts({"load-note": `${file.name}, ${forcing.time_s.length} samples`});
+      const replaced = ["F", "f", "acceleration"].filter((name) => this.form.filled(name));
+      this.set({forcing, ...Object.fromEntries(replaced.map((name) => [name, null]))}, false);
+    } catch ({message}) {
+      this.say(`${file.name} cannot be read: ${message}`, true);
+    }
+  }
+
   /** Shows the preset's note, or that the preset was changed. */
   note() {
     const {preset, edited} = this.request;
@@ -311,7 +347,7 @@ export class SimulationTab extends RequestTab {
     const view = rest.get("view")?.split(",").map(Number);
     const pinned = rest.get("pinned");
     for (const name of ["view", "pinned"]) rest.delete(name);
-    pin.restore(pinned, firstParts);
+    pin.restore(pinned, (texts) => this.ask(this.form.parse(texts)));
     if (String(rest) === this.asked) return;
     const isView = view?.length === 2 && view[0] < view[1];
     this.wantedView = isView ? view : null;
@@ -325,7 +361,8 @@ export class SimulationTab extends RequestTab {
   }
 
   redraw() {
-    for (const part of [mainPlots, details, strip, machine]) part.redraw();
+    for (const part of [mainPlots, details, machine]) part.redraw();
+    this.strip.refresh();
   }
 }
 

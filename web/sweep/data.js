@@ -1,5 +1,5 @@
 // The points of a sweep: their axes, and receiving them as lines of JSON.
-import {jsonLines, sweep, TemporaryError} from "../shared/api.js";
+import {linesOf, TemporaryError} from "../shared/api.js";
 import {defaultSet} from "../shared/form.js";
 import {coordinates} from "../shared/quantities.js";
 
@@ -194,7 +194,7 @@ export class SweepData {
  */
 export async function receive(data, signal, onLine) {
   const missing = data.received ? {indices: data.missing()} : {};
-  for await (const {text, value} of jsonLines(await sweep({...data.request, ...missing}, signal))) {
+  for await (const {text, value} of linesOf("v1/sweep", {...data.request, ...missing}, signal)) {
     if (value.type === "error")
       throw new (value.status === 503 ? TemporaryError : Error)(value.detail);
     data.take(value, text);
@@ -214,18 +214,6 @@ function placesOf(data, start) {
     const p = data.points[index];
     return p ? [{at: [at], value: axis.values[k], p, data, index, start}] : [];
   });
-}
-
-/** Stretches of neighbouring places with the same regime, null without: {regime, from, to}. */
-export function stretches(places) {
-  const list = [];
-  for (const {p, low, high} of places) {
-    const regime = p.regime ?? null;
-    const last = list.at(-1);
-    if (last?.regime === regime) last.to = high;
-    else list.push({regime, from: low, to: high});
-  }
-  return list;
 }
 
 export class Layers {

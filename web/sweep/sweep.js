@@ -4,20 +4,22 @@ import {asCurl} from "../shared/api.js";
 import {
   $,
   choose,
+  copy,
   countUp,
   element,
   fillMenu,
   reveal,
+  save,
   setTexts,
   showRemarks,
 } from "../shared/dom.js";
-import {copy, save} from "../shared/export.js";
+
 import {RequestTab} from "../shared/job.js";
-import {coordinates, menuOf, otherMotion, regimes, symbolOf} from "../shared/quantities.js";
+import {coordinates, menuOf, otherMotion, symbolOf} from "../shared/quantities.js";
 import {onUnits, unitsSwitch} from "../shared/units.js";
 import * as labels from "./axis_labels.js";
 import {Layers, receive, SweepData} from "./data.js";
-import {countRegimes, DiagramView, startKey} from "./diagram.js";
+import {countRegimes, DiagramView, startColour} from "./diagram.js";
 import {MapView} from "./map_view.js";
 import {showPeaks} from "./peaks.js";
 import {Refiner} from "./refine.js";
@@ -92,17 +94,22 @@ function showParts({axes, section, defaultSet, starts, parameters, reduced, poin
 
 /** Shows the number of points of each regime. */
 function showRegimes({points}) {
-  const item = ([regime, n]) => {
-    const none = regime === "none";
-    const className = `key regime${none ? " none" : ""}`;
-    const style = `--key: var(--regime-${regime})`;
-    const textContent = none ? regimes.none : `${regime} ${regimes[regime]}`;
-    const key = element("span", {className, style, textContent});
-    const number = element("small", {id: `sweep-regime-${regime}`, textContent: n || ""});
-    const about = {title: `Type ${regime}`, className: n ? "" : "absent", hidden: none && !n};
-    return element("li", about, key, number);
-  };
-  $("sweep-regimes").replaceChildren(...countRegimes(points).map(item));
+  for (const [regime, n] of countRegimes(points)) {
+    const number = $(`sweep-regime-${regime}`);
+    number.textContent = n || "";
+    number.parentNode.classList.toggle("absent", !n);
+    number.parentNode.hidden = regime === "none" && !n;
+  }
+}
+
+const startMarks = ["●", "■", "▲", "◆", "▼"]; // as the shapes of the points
+
+/** Legend entry of a start: its symbol and state. */
+function startKey(state, s) {
+  const key = element("span", {className: "key"}, `${s + 1}: ${labels.fields(state)}`);
+  key.dataset.mark = startMarks[s % startMarks.length];
+  key.style.color = `var(--${startColour(s)})`;
+  return element("li", {}, key);
 }
 
 export class SweepTab extends RequestTab {
@@ -264,8 +271,7 @@ export class SweepTab extends RequestTab {
     this.view = this.views[data.axes.length];
     this.form.showOrigins(data.parameters);
     this.fillMenus();
-    const key = (state, s) => element("li", {}, element("span", startKey(state, s)));
-    $("sweep-starts").replaceChildren(...data.states.map(key));
+    $("sweep-starts").replaceChildren(...data.states.map(startKey));
     this.view?.show(new Layers(data));
     this.refiner.follow(this.view);
     this.redraw();
