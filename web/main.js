@@ -14,6 +14,7 @@ import {SimulationTab} from "./simulation/simulation.js";
 const loaders = {
   simulation: async () => SimulationTab,
   sweep: async () => (await import("./sweep/sweep.js")).SweepTab,
+  motions: async () => (await import("./motions/motions.js")).MotionsTab,
   measurement: async () => (await import("./measurement/measurement.js")).MeasurementTab,
 };
 const tabs = {};

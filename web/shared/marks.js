@@ -255,6 +255,30 @@ export const names = kind(
   {above: true},
 );
 
+/** Names above points, where they do not lie on another one. */
+export const texts = kind(
+  (c, frame, {x, y, text}) => {
+    ink(c, "text");
+    c.font = font;
+    const drawn = [];
+    text.forEach((one, i) => {
+      const [px, py] = [frame.px(x[i]), frame.py(y[i])];
+      const crowded = drawn.some(([a, b]) => Math.abs(a - px) < 60 && Math.abs(b - py) < 12);
+      if (!one || crowded || !frame.holds(px, py)) return;
+      drawn.push([px, py]);
+      drawText(
+        c,
+        one,
+        clamp(px, frame.box.left + 30, frame.box.right - 30),
+        py - 8,
+        "center",
+        "bottom",
+      );
+    });
+  },
+  {above: true},
+);
+
 export const density = kind(columnDensity);
 
 /** Pixels set by paint(pixels, width, height). */
