@@ -678,7 +678,7 @@ test("all plots and the machine share a cursor, and the nearest impact is ringed
   await page.mouse.move(box.x + 0.4 * box.width, y);
   assert.match(await page.textContent("#moment"), /^τ = 1686\.\d · \d+ impacts so far · y′ = /);
   assert.notEqual(await hash(page, "#machine"), machine);
-  const shares = await page.$$eval("#instrument .cursor", (nodes) =>
+  const shares = await page.$$eval("#plots .cursor", (nodes) =>
     nodes.map((node) => {
       const {left, width} = node.parentNode.getBoundingClientRect();
       return (node.getBoundingClientRect().left - left) / width;

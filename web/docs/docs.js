@@ -17,10 +17,9 @@ function reveal(hash) {
   found.scrollIntoView({block: focused === found ? "center" : "start"});
 }
 
-/** Fills a fold with a copy of the fields of a schema or of the content of a template. */
+/** Fills a fold with a copy of the fields of a schema. */
 function fill(fold) {
-  const source = $(fold.dataset.copy);
-  const copy = (source.content ?? source.lastElementChild).cloneNode(true);
+  const copy = $(fold.dataset.copy).lastElementChild.cloneNode(true);
   for (const node of copy.querySelectorAll("[id]")) node.removeAttribute("id");
   fold.append(...copy.childNodes);
   delete fold.dataset.copy;
@@ -110,7 +109,7 @@ function foundView([name, rows]) {
   );
 }
 
-export function startFinder() {
+function startFinder() {
   const rows = document.querySelectorAll("main tr[id]");
   const box = $("docs-filter");
   const list = $("docs-found");

@@ -2,15 +2,12 @@
 import {count} from "../shared/numbers.js";
 import {commandOf, pretty} from "./example.js";
 import {
-  copyFold,
   fieldsFold,
   fieldTable,
   fold,
   html,
   load,
-  nameOf,
   resolved,
-  responsePlace,
   root,
   schemaPlace,
   schemas,
@@ -55,13 +52,6 @@ const schemasView = () =>
     return html`<details id="${id}">${title}${said}<div>${schemaView(schema, id)}</div></details>`;
   });
 
-/** Content of the responses that operations share. */
-const responseTemplates = () =>
-  Object.entries(root.components.responses).map(
-    ([name, response]) =>
-      html`<template id="${responsePlace(name)}">${answerView(response)}</template>`,
-  );
-
 function contents() {
   const entry = (path, operations) => {
     const own = operations.filter((operation) => operation.path === path);
@@ -89,7 +79,7 @@ export function docsPage(template, file) {
     summary,
     description,
     about: about(),
-    operations: [operationsView(), responseTemplates()],
+    operations: operationsView(),
     schemas: schemasView(),
   };
   return template.replace(/\{\{(\w+)\}\}/g, (_, name) => html`${parts[name]}`);
@@ -117,35 +107,23 @@ const contentView = (content = {}, open = false) =>
     return nodes;
   });
 
-const statusWords = (status, answer) => [
-  html`<code>${status}</code> `,
-  resolved(answer).description,
-];
-
-export function answerView(answer) {
+function answerView(answer) {
   const {content, headers = {}} = resolved(answer);
   const fields = Object.entries(headers).map(([name, header]) => ({name, ...resolved(header)}));
   return [contentView(content), fields.length ? fold("Headers", fieldTable(fields, null)) : []];
 }
 
-/** Responses; those that are no success are folded to a line each. Operations share components. */
+/** Responses; those that are no success in a fold. */
 function answersView({responses}) {
   const all = Object.entries(responses);
   const isSuccess = ([status]) => status.startsWith("2");
   const others = all.filter((one) => !isSuccess(one));
-  const statuses = others.map(([status]) => status).join(" ");
-  const success = ([status, answer]) => [
-    html`<p>${statusWords(status, answer)}</p>`,
+  const view = ([status, answer]) => [
+    html`<p><code>${status}</code> ${resolved(answer).description}</p>`,
     answerView(answer),
   ];
-  const folded = ([status, answer]) => {
-    const words = statusWords(status, answer);
-    if (answer.$ref) return copyFold(words, responsePlace(nameOf(answer.$ref)));
-    return fold(words, answerView(answer));
-  };
-  const title = html`Other statuses <small>${statuses}</small>`;
-  const rest = others.length ? fold(title, others.map(folded)) : [];
-  return [all.filter(isSuccess).map(success), rest];
+  const title = html`Other statuses <small>${others.map(([status]) => status).join(" ")}</small>`;
+  return [all.filter(isSuccess).map(view), others.length ? fold(title, others.map(view)) : []];
 }
 
 /** A query of the parameters with examples. */
@@ -189,7 +167,7 @@ function inside(operation) {
   ];
 }
 
-export function operationView(operation) {
+function operationView(operation) {
   const {operationId, method, path, summary} = operation;
   const verb = html`<span class="method ${method.toLowerCase()}">${method}</span>`;
   const title = html`<h3>${verb} <code>${path}</code> <small>${summary}</small></h3>`;

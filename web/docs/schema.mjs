@@ -129,7 +129,7 @@ export const fold = (summary, content) =>
   html`<details><summary>${summary}</summary>${content}</details>`;
 
 /** A fold that docs.js fills, when it is opened, with a copy of the content of the element `id`. */
-export const copyFold = (summary, id) =>
+const copyFold = (summary, id) =>
   html`<details data-copy="${id}"><summary>${summary}</summary></details>`;
 
 // The OpenAPI document, and the ids of its components on the page.
@@ -154,7 +154,6 @@ export const nameOf = ($ref) => $ref.slice($ref.lastIndexOf("/") + 1);
 
 export const schemas = () => Object.entries(root.components.schemas);
 export const schemaPlace = (name) => `schema-${name}`;
-export const responsePlace = (name) => `response-${name}`;
 
 /** All operations in document order, with path, method and resolved parameters. */
 const operations = () =>
