@@ -1,20 +1,8 @@
 // The page /docs, made from the OpenAPI document at build time.
 import {count} from "../shared/numbers.js";
 import {commandOf, pretty} from "./example.js";
-import {
-  fieldsFold,
-  fieldTable,
-  fold,
-  html,
-  load,
-  resolved,
-  root,
-  schemaPlace,
-  schemas,
-  schemaView,
-  tags,
-  typeWords,
-} from "./schema.mjs";
+import * as doc from "./schema.mjs";
+import {fieldsFold, fieldTable, fold, html, schemaView, typeWords} from "./schema.mjs";
 
 // Address of the service in the examples until example.js replaces it.
 globalThis.location = {href: "http://127.0.0.1:8080/docs"};
@@ -23,7 +11,7 @@ const link = (place, text) => html`<a href="#${place}">${text}</a>`;
 
 /** Version, server and key. docs.js fills in the address and the commit. */
 function about() {
-  const {info, servers, components} = root;
+  const {info, servers, components} = doc.root;
   const [{url, description}] = servers;
   const {description: key} = components.securitySchemes.api_key;
   return Object.entries({
@@ -35,7 +23,7 @@ function about() {
 }
 
 const operationsView = () =>
-  tags().map(({name, description, operations}) => {
+  doc.tags().map(({name, description, operations}) => {
     const id = `docs-tag-${name}`;
     const title = html`<h2 id="${id}">${name} <small>${description}</small></h2>`;
     return html`<section aria-labelledby="${id}">${title}${operations.map(operationView)}</section>`;
@@ -43,9 +31,9 @@ const operationsView = () =>
 
 /** The schemas, each with its description and, as last element, its fields. */
 const schemasView = () =>
-  schemas().map(([name, schema]) => {
-    const id = schemaPlace(name);
-    const {properties, description} = resolved(schema);
+  doc.schemas().map(([name, schema]) => {
+    const id = doc.schemaPlace(name);
+    const {properties, description} = doc.resolved(schema);
     const fields = properties ? count(Object.keys(properties).length, "field") : "one of several";
     const said = description ? html`<p>${description}</p>` : "";
     const title = html`<summary><h3>${name} <small>${fields}</small></h3></summary>`;
@@ -58,9 +46,9 @@ function contents() {
     const links = own.map(({operationId, method}) => [link(operationId, method), " "]);
     return html`<li><code>${path}</code> ${links}</li>`;
   };
-  const names = schemas().map(([name]) => html`<li>${link(schemaPlace(name), name)}</li>`);
+  const names = doc.schemas().map(([name]) => html`<li>${link(doc.schemaPlace(name), name)}</li>`);
   return [
-    tags().map(({name, operations}) => {
+    doc.tags().map(({name, operations}) => {
       const paths = [...new Set(operations.map(({path}) => path))];
       return html`<h2>${name}</h2><ul>${paths.map((path) => entry(path, operations))}</ul>`;
     }),
@@ -71,8 +59,8 @@ function contents() {
 
 /** Fills the {{names}} of a template. file: the OpenAPI document. */
 export function docsPage(template, file) {
-  load(file);
-  const {title, version, summary, description} = root.info;
+  doc.load(file);
+  const {title, version, summary, description} = doc.root.info;
   const parts = {
     version: `${title} ${version}`,
     contents: contents(),
@@ -108,8 +96,8 @@ const contentView = (content = {}, open = false) =>
   });
 
 function answerView(answer) {
-  const {content, headers = {}} = resolved(answer);
-  const fields = Object.entries(headers).map(([name, header]) => ({name, ...resolved(header)}));
+  const {content, headers = {}} = doc.resolved(answer);
+  const fields = Object.entries(headers).map(([name, header]) => ({name, ...doc.resolved(header)}));
   return [contentView(content), fields.length ? fold("Headers", fieldTable(fields, null)) : []];
 }
 
@@ -119,7 +107,7 @@ function answersView({responses}) {
   const isSuccess = ([status]) => status.startsWith("2");
   const others = all.filter((one) => !isSuccess(one));
   const view = ([status, answer]) => [
-    html`<p><code>${status}</code> ${resolved(answer).description}</p>`,
+    html`<p><code>${status}</code> ${doc.resolved(answer).description}</p>`,
     answerView(answer),
   ];
   const title = html`Other statuses <small>${others.map(([status]) => status).join(" ")}</small>`;

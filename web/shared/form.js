@@ -99,7 +99,7 @@ const longestInAddress = 1500; // characters of an object; servers accept addres
 
 /** A value as text of an address; undefined for an object that is too long for one. */
 export function queryText(value) {
-  if (!isObject(value) || Array.isArray(value)) return textOf(value).replaceAll(" ", "");
+  if (!isObject(value) || Array.isArray(value)) return textOf(value).replace(/([,;]) /g, "$1");
   const text = JSON.stringify(value);
   return text.length > longestInAddress ? undefined : text;
 }

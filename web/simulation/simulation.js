@@ -2,19 +2,8 @@
 // address holds the request and the visible range.
 
 import {simulate} from "../shared/api.js";
-import {
-  $,
-  attributes,
-  copy,
-  countUp,
-  nextTask,
-  on,
-  onDrop,
-  press,
-  reveal,
-  setTexts,
-  showRemarks,
-} from "../shared/dom.js";
+import * as dom from "../shared/dom.js";
+import {$} from "../shared/dom.js";
 
 import {Form, unknownText} from "../shared/form.js";
 import {Job, RequestTab} from "../shared/job.js";
@@ -63,7 +52,7 @@ function homeOf({parameters, status, regime}) {
 function remark({exponents: {verdict, verdict_reason: why}, regime, warnings}, more = {}) {
   const open = verdict === "not_decided" && !regime.periodic;
   const all = [...warnings, ...(more.warnings ?? [])];
-  showRemarks("remarks", [...new Set([...(open ? [`not decided: ${why}`] : []), ...all])]);
+  dom.showRemarks("remarks", [...new Set([...(open ? [`not decided: ${why}`] : []), ...all])]);
 }
 
 /** A request for the same run with a ball too light to matter: without the absorber. */
@@ -91,7 +80,7 @@ export class SimulationTab extends RequestTab {
       remark(run.answer, answer);
       mainPlots.showDeferred();
       details.follow();
-      countUp(this.results);
+      dom.countUp(this.results);
     },
     fail: ({message}) =>
       this.say(`T, the raw product and the manifold are missing: ${message}`, true),
@@ -126,7 +115,7 @@ export class SimulationTab extends RequestTab {
       input.onchange = () => this.send();
     }
     viewport.onZoom(() => {
-      reveal({whole: viewport.zoomed});
+      dom.reveal({whole: viewport.zoomed});
       this.changed({soon: true});
     });
     $("whole").onclick = () => viewport.reset();
@@ -141,12 +130,12 @@ export class SimulationTab extends RequestTab {
       for (const step of this.drawing()) step();
       details.follow();
     });
-    onDrop($("panel-simulation"), $("load"), (file) => this.readLoad(file));
+    dom.onDrop($("panel-simulation"), $("load"), (file) => this.readLoad(file));
     $("load-file").onchange = ({target}) => this.readLoad(target.files[0]);
     $("measure-this").onclick = () => run && measure(run.answer);
     const texts = formsOf("v1/simulate", () => request.fields());
     for (const one of $("copies").children)
-      one.onclick = () => copy(texts[one.textContent](), this.say);
+      one.onclick = () => dom.copy(texts[one.textContent](), this.say);
   }
 
   ask(fields, signal) {
@@ -165,7 +154,7 @@ export class SimulationTab extends RequestTab {
 
   markStale(busy) {
     super.markStale(busy);
-    reveal({again: !busy && this.isStale(false)});
+    dom.reveal({again: !busy && this.isStale(false)});
   }
 
   busy(is, cancelled) {
@@ -177,7 +166,7 @@ export class SimulationTab extends RequestTab {
   /** Errors are shown at sliders, or else at fields, without moving the focus. */
   fail({message, errors = []}, fields) {
     if (fields.linked && errors.length) return this.fallBack([...fields.unknown], errors);
-    if (!run) setTexts({sentence: "No results yet."});
+    if (!run) dom.setTexts({sentence: "No results yet."});
     const left = this.form.showErrors(errors, false);
     const ofSliders = sliders.showErrors(errors);
     if (left.length + ofSliders.length < errors.length) $("more").open = true;
@@ -191,7 +180,7 @@ export class SimulationTab extends RequestTab {
 
   /** Draws a run; a large one in several tasks, between which the browser handles events. */
   async show(answer, fields) {
-    const pause = answer.impacts.tau.length > large ? nextTask : null;
+    const pause = answer.impacts.tau.length > large ? dom.nextTask : null;
     if (pause) await pause();
     const fresh = run === null || fields.fresh;
     const {forcing} = this.request.merged(fields);
@@ -203,17 +192,17 @@ export class SimulationTab extends RequestTab {
     this.form.showErrors([]);
     this.showOrigins();
     remark(answer);
-    reveal({units: answer.parameters.si});
+    dom.reveal({units: answer.parameters.si});
     viewport.span(0, answer.status.tau, homeOf(answer), fresh);
     if (this.wantedView) viewport.range = this.wantedView;
     this.wantedView = null;
-    reveal({whole: viewport.zoomed});
+    dom.reveal({whole: viewport.zoomed});
     for (const step of this.drawing(fresh)) {
       if (pause) await pause();
       if (run.answer !== answer) return;
       step();
     }
-    countUp(this.results, "shown");
+    dom.countUp(this.results, "shown");
     clearTimeout(this.deferring);
     this.deferring = setTimeout(() => this.deferred.start(fields), idle);
   }
@@ -236,7 +225,7 @@ export class SimulationTab extends RequestTab {
         player.show();
         describe(answer, request.textOf(fields, parameters));
         presetMenu.markPlots(request.edited ? null : request.preset);
-        reveal({regimes: !parameters.forcing}); // which need a period
+        dom.reveal({regimes: !parameters.forcing}); // which need a period
         if (!parameters.forcing) this.strip.show(request.systemOf(fields), parameters, slider);
       },
     ];
@@ -301,7 +290,7 @@ export class SimulationTab extends RequestTab {
     try {
       const {loadOf, parse} = await import("../measurement/record.js");
       const forcing = loadOf(await parse(file));
-      setTexts({"load-note": `${file.name}, ${forcing.time_s.length} samples`});
+      dom.setTexts({"load-note": `${file.name}, ${forcing.time_s.length} samples`});
       const replaced = ["F", "f", "acceleration"].filter((name) => this.form.filled(name));
       this.set({forcing, ...Object.fromEntries(replaced.map((name) => [name, null]))}, false);
     } catch ({message}) {
@@ -313,7 +302,7 @@ export class SimulationTab extends RequestTab {
   note() {
     const {preset, edited} = this.request;
     const changed = preset && edited ? `${preset.source}, changed` : (preset?.note ?? "");
-    setTexts({"preset-note": changed});
+    dom.setTexts({"preset-note": changed});
   }
 
   choosePreset(name) {
@@ -371,13 +360,13 @@ function startPlots() {
   const buttons = [...document.querySelectorAll("#switch button")];
   const figures = [...document.querySelectorAll("#plots figure")];
   const enlarge = (name) => {
-    press(buttons, ({dataset}) => dataset.plot === name);
+    dom.press(buttons, ({dataset}) => dataset.plot === name);
     for (const {id, classList} of figures) classList.toggle("chosen", id === `figure-${name}`);
   };
   for (const one of buttons) one.onclick = () => enlarge(one.dataset.plot);
   for (const figure of figures) {
     const act = () => enlarge(figure.id.replace("figure-", ""));
-    on(figure, {
+    dom.on(figure, {
       click: ({target}) => target.closest("button") || act(),
       keydown: ({key, target}) => key === "Enter" && !target.closest("button") && act(),
     });
@@ -388,7 +377,7 @@ function startPlots() {
 function startSheet() {
   $("sheet").onclick = () => {
     const open = $("form").classList.toggle("open");
-    attributes($("sheet"), {"aria-expanded": open});
-    setTexts({sheet: `All ${open ? "▾" : "▴"}`});
+    dom.attributes($("sheet"), {"aria-expanded": open});
+    dom.setTexts({sheet: `All ${open ? "▾" : "▴"}`});
   };
 }
