@@ -2,8 +2,8 @@
 // Back button restore what was shown.
 
 import {get} from "./shared/api.js";
-import {onColours} from "./shared/colours.js";
 import {$, attributes, on} from "./shared/dom.js";
+import {onColours} from "./shared/ink.js";
 import {startTerms} from "./shared/terms.js";
 import {SimulationTab} from "./simulation/simulation.js";
 
@@ -14,6 +14,7 @@ import {SimulationTab} from "./simulation/simulation.js";
 const loaders = {
   simulation: async () => SimulationTab,
   sweep: async () => (await import("./sweep/sweep.js")).SweepTab,
+  motions: async () => (await import("./motions/motions.js")).MotionsTab,
   measurement: async () => (await import("./measurement/measurement.js")).MeasurementTab,
 };
 const tabs = {};

@@ -13,7 +13,7 @@ const {chromium} = require("playwright-core");
  * as it shows. Chromium sometimes also reports a fully read stream as aborted.
  */
 const brokenOff = (request) =>
-  /\/(v1\/(simulate|sweep|identify)|healthz)\b/.test(request.url()) &&
+  /\/(v1\/(simulate|sweep|continue|identify)|healthz)\b/.test(request.url()) &&
   request.failure().errorText === "net::ERR_ABORTED";
 
 /**
@@ -65,6 +65,7 @@ export async function open(context, url, options = {}) {
   await page.goto(url);
   if (url.includes("tab=measurement"))
     await page.waitForFunction(() => document.getElementById("measure-preset").value);
+  else if (url.includes("tab=motions")) await found(page, 1);
   else await (url.includes("tab=sweep") ? swept : drawn)(page, 1);
   return page;
 }
@@ -85,3 +86,4 @@ export const painted = (page) => frames(page, 2);
 export const drawn = done("results");
 export const identified = done("measure-results");
 export const swept = done("sweep-results");
+export const found = done("motions-results");

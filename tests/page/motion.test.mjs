@@ -1,7 +1,7 @@
 // The motion that the page reconstructs from impacts equals that of the service up to rounding.
 import assert from "node:assert/strict";
 import {after, before, test} from "node:test";
-import {Motion} from "../../web/shared/motion.js";
+import {Motion, motionOf} from "../../web/shared/motion.js";
 import {startService} from "../service.mjs";
 
 let service;
@@ -92,4 +92,53 @@ test("a trace is empty outside the run", async () => {
   const wide = motion.trace(0, 1000, 10);
   assert.ok(wide.dense);
   assert.ok(wide.x.slice(0, 2).every(Number.isFinite) && wide.x.slice(4).every(Number.isNaN));
+});
+
+/** A chirp of the base through the resonance of a machine. */
+function chirp() {
+  const time_s = Array.from({length: 2001}, (_, k) => k / 200);
+  const acceleration_m_s2 = time_s.map((t) => 2 * Math.sin(2 * Math.PI * (6 + 0.2 * t) * t));
+  return {time_s, acceleration_m_s2};
+}
+const machine = {m1: 2, f0: 8, damping_ratio: 0.01, m2: 0.04, b: 0.02, R: 0.5};
+const laws = {
+  gravity: {preset: "fig11", gravity: 0.002, tau_end: 300},
+  friction: {preset: "fig11", friction: 0.0003, tau_end: 300},
+  "a vertical track": {...machine, F: 0.002, f: 8, inclination: 1.5, cycles: 40},
+  "a recorded load": {...machine, forcing: chirp()},
+};
+
+for (const [name, fields] of Object.entries(laws))
+  test(`between the samples the motion is known to 0.1 % of its amplitude: ${name}`, async () => {
+    const include = ["series", "impacts", "energy"];
+    const answerWith = async (samples) => {
+      const body = JSON.stringify({...fields, include, samples_per_cycle: samples});
+      return (await fetch(`${service.url}/v1/simulate`, {method: "POST", body})).json();
+    };
+    const [coarse, fine] = [await answerWith(32), await answerWith(64)];
+    const motion = motionOf(coarse);
+    const {series} = fine;
+    let worst = 0;
+    series.tau.forEach((tau, i) => {
+      const {x, y} = motion.at(tau);
+      const apart = Math.hypot(x - series.x[i], y - x - (series.y[i] - series.x[i]));
+      worst = Math.max(worst, apart);
+    });
+    assert.ok(coarse.impacts.tau.length > 20);
+    assert.ok(worst < 1e-3 * coarse.energy.peak, `${worst} m`);
+  });
+
+test("under a load of the base the motion is relative to the base", async () => {
+  const forcing = {time_s: [0, 1, 2, 3], acceleration_m_s2: [0, 1, 1, 1]};
+  const body = JSON.stringify({...machine, forcing, include: ["series", "impacts"]});
+  const answer = await (await fetch(`${service.url}/v1/simulate`, {method: "POST", body})).json();
+  const {tau, x} = answer.series;
+  const omega0 = answer.parameters.derived.omega0;
+  // By hand: the acceleration rises to 1 m/s^2 in 1 s, then stays.
+  const base = (t) => (t < 1 ? t ** 3 / 6 : 1 / 6 + (t - 1) / 2 + (t - 1) ** 2 / 2);
+  const motion = motionOf(answer, forcing);
+  tau.forEach((moment, i) => {
+    const expected = x[i] - base(moment / omega0);
+    assert.ok(Math.abs(motion.at(moment).x - expected) < 1e-9, `${moment}`);
+  });
 });

@@ -434,6 +434,89 @@ test("My machine is a valid system in SI that is edited field by field", async (
   await page.close();
 });
 
+const machine = `m1=12&f0=14&damping_ratio=0.006&mass_ratio=0.01&F=0.0004&f=14&b=0.03`;
+
+test("inclination and friction have sliders, the machine is drawn inclined, and the motion is drawn from samples", async () => {
+  const page = await still(`?${machine}&R=0.4&inclination=0.1&mu=0.05&cycles=60`);
+  assert.equal(await page.inputValue(number("inclination")), "5.73");
+  assert.equal(await page.inputValue(number("mu")), "0.05");
+  assert.ok(!(await page.isVisible(number("gravity"))));
+  const before = await hash(page, "#machine-without");
+  await after(page, () => turn(page, "inclination", 8));
+  assert.match(page.url(), /inclination=0\.1396/);
+  assert.match(await sentence(page), /^Inclination|^inclination = 8/i);
+  assert.notEqual(await hash(page, "#machine-without"), before);
+  const reduced = await still("?preset=fig11&gravity=0.0002&friction=0.0001");
+  assert.equal(await reduced.inputValue(number("gravity")), "0.200");
+  assert.equal(await reduced.inputValue(number("friction")), "0.100");
+  assert.deepEqual(browser.complaints, []);
+  for (const each of [page, reduced]) await each.close();
+});
+
+test("R as a function of the speed is typed, stays in the address and reaches the service", async () => {
+  const page = await still(`?${machine}`);
+  await unfold(page);
+  await page.fill(input("R"), "");
+  const runs = asked(page, "/v1/simulate");
+  await after(page, async () => {
+    await page.fill(input("restitution"), "speed_m_s=0, 1; R=0.8, 0.6");
+    await page.keyboard.press("Enter");
+  });
+  const restitution = {speed_m_s: [0, 1], R: [0.8, 0.6]};
+  assert.deepEqual(runs.at(-1).restitution, restitution);
+  const again = await still(new URL(page.url()).search);
+  await unfold(again);
+  assert.equal(await again.inputValue(input("restitution")), "speed_m_s=0, 1; R=0.8, 0.6");
+  assert.deepEqual(browser.complaints, []);
+  for (const each of [page, again]) await each.close();
+});
+
+test("a load of another kind in the address reaches the service unchanged", async () => {
+  const page = await browser.context.newPage();
+  const runs = asked(page, "/v1/simulate");
+  const forcing = {kind: "harmonics", f: [14], F: [0.0004], phase: [0]};
+  const text = encodeURIComponent(JSON.stringify(forcing));
+  await page.goto(
+    `${service.url}/?m1=12&f0=14&damping_ratio=0.006&mass_ratio=0.01&forcing=${text}`,
+  );
+  await drawn(page, 1);
+  assert.deepEqual(runs[0].forcing, forcing);
+  browser.complaints.length = 0; // Chromium logs a 422 of a service without this kind
+  await page.close();
+});
+
+test("a recorded load in a file replaces F and f and is drawn above the response", async () => {
+  const page = await still(`?${machine}&R=0.4`);
+  const rows = Array.from({length: 2000}, (_, k) => {
+    const t = k / 200;
+    return `${1000 * t},${Math.sin(2 * Math.PI * (12 + 0.4 * t) * t) / 9.80665}`;
+  });
+  const buffer = Buffer.from(`time (ms),acceleration (g)\n${rows.join("\n")}\n`);
+  const runs = asked(page, "/v1/simulate");
+  await after(page, () =>
+    page.setInputFiles("#load-file", {name: "chirp.csv", mimeType: "text/csv", buffer}),
+  );
+  const {forcing, F, f} = runs[0];
+  assert.deepEqual([F, f, forcing.time_s.length], [undefined, undefined, 2000]);
+  assert.ok(Math.abs(forcing.acceleration_m_s2[3] - Math.sin(2 * Math.PI * 12.006 * 0.015)) < 1e-6);
+  assert.match(await page.textContent("#load-note"), /^chirp\.csv, 2000 samples$/);
+  assert.ok((await colours(page, "#plot-load canvas")) > 10);
+  assert.ok((await pixels(page, "#plot-x canvas", "motion")) > 500);
+  assert.ok(
+    (await colours(page, "#machine-without")) > 3,
+    "the machine without absorber, from a run",
+  );
+  assert.equal(await page.isVisible("#regimes"), false);
+  assert.ok(!(await page.isVisible(number("f"))));
+  await unfoldDetails(page);
+  assert.equal(await page.isVisible("#figure-divergence"), false);
+  const bad = {name: "bad.csv", mimeType: "text/csv", buffer: Buffer.from("a,b\n1,2\n3,4\n")};
+  await page.setInputFiles("#load-file", bad);
+  await page.waitForSelector("#message:has-text('bad.csv cannot be read: it needs a column time')");
+  assert.deepEqual(browser.complaints, []);
+  await page.close();
+});
+
 test("an error of a field is shown at the field, and correcting it draws the run", async () => {
   const page = await still("?b=0.015&tau_end=300");
   await unfold(page);
@@ -595,7 +678,7 @@ test("all plots and the machine share a cursor, and the nearest impact is ringed
   await page.mouse.move(box.x + 0.4 * box.width, y);
   assert.match(await page.textContent("#moment"), /^τ = 1686\.\d · \d+ impacts so far · y′ = /);
   assert.notEqual(await hash(page, "#machine"), machine);
-  const shares = await page.$$eval("#instrument .cursor", (nodes) =>
+  const shares = await page.$$eval("#plots .cursor", (nodes) =>
     nodes.map((node) => {
       const {left, width} = node.parentNode.getBoundingClientRect();
       return (node.getBoundingClientRect().left - left) / width;

@@ -1,8 +1,8 @@
 // Examples of an operation: a curl command that can be copied, and a button that sends the request
 // and shows the beginning of the response.
 import {asCurl, hasKey, post, sendRequest} from "../shared/api.js";
-import {button, element} from "../shared/dom.js";
-import {copy} from "../shared/export.js";
+import {button, copy, element} from "../shared/dom.js";
+
 import {count} from "../shared/numbers.js";
 
 const maxBytes = 1 << 20; // of a response that is shown completely

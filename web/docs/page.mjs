@@ -1,9 +1,8 @@
 // The page /docs, made from the OpenAPI document at build time.
 import {count} from "../shared/numbers.js";
-import {load, resolved, responsePlace, root, schemaPlace, schemas, tags} from "./document.mjs";
-import {fold, html} from "./markup.mjs";
-import {answerView, operationView} from "./operation.mjs";
-import {schemaView} from "./schema.mjs";
+import {commandOf, pretty} from "./example.js";
+import * as doc from "./schema.mjs";
+import {fieldsFold, fieldTable, fold, html, schemaView, typeWords} from "./schema.mjs";
 
 // Address of the service in the examples until example.js replaces it.
 globalThis.location = {href: "http://127.0.0.1:8080/docs"};
@@ -12,7 +11,7 @@ const link = (place, text) => html`<a href="#${place}">${text}</a>`;
 
 /** Version, server and key. docs.js fills in the address and the commit. */
 function about() {
-  const {info, servers, components} = root;
+  const {info, servers, components} = doc.root;
   const [{url, description}] = servers;
   const {description: key} = components.securitySchemes.api_key;
   return Object.entries({
@@ -24,7 +23,7 @@ function about() {
 }
 
 const operationsView = () =>
-  tags().map(({name, description, operations}) => {
+  doc.tags().map(({name, description, operations}) => {
     const id = `docs-tag-${name}`;
     const title = html`<h2 id="${id}">${name} <small>${description}</small></h2>`;
     return html`<section aria-labelledby="${id}">${title}${operations.map(operationView)}</section>`;
@@ -32,21 +31,14 @@ const operationsView = () =>
 
 /** The schemas, each with its description and, as last element, its fields. */
 const schemasView = () =>
-  schemas().map(([name, schema]) => {
-    const id = schemaPlace(name);
-    const {properties, description} = resolved(schema);
+  doc.schemas().map(([name, schema]) => {
+    const id = doc.schemaPlace(name);
+    const {properties, description} = doc.resolved(schema);
     const fields = properties ? count(Object.keys(properties).length, "field") : "one of several";
     const said = description ? html`<p>${description}</p>` : "";
     const title = html`<summary><h3>${name} <small>${fields}</small></h3></summary>`;
     return html`<details id="${id}">${title}${said}<div>${schemaView(schema, id)}</div></details>`;
   });
-
-/** Content of the responses that operations share. */
-const responseTemplates = () =>
-  Object.entries(root.components.responses).map(
-    ([name, response]) =>
-      html`<template id="${responsePlace(name)}">${answerView(response)}</template>`,
-  );
 
 function contents() {
   const entry = (path, operations) => {
@@ -54,9 +46,9 @@ function contents() {
     const links = own.map(({operationId, method}) => [link(operationId, method), " "]);
     return html`<li><code>${path}</code> ${links}</li>`;
   };
-  const names = schemas().map(([name]) => html`<li>${link(schemaPlace(name), name)}</li>`);
+  const names = doc.schemas().map(([name]) => html`<li>${link(doc.schemaPlace(name), name)}</li>`);
   return [
-    tags().map(({name, operations}) => {
+    doc.tags().map(({name, operations}) => {
       const paths = [...new Set(operations.map(({path}) => path))];
       return html`<h2>${name}</h2><ul>${paths.map((path) => entry(path, operations))}</ul>`;
     }),
@@ -67,16 +59,106 @@ function contents() {
 
 /** Fills the {{names}} of a template. file: the OpenAPI document. */
 export function docsPage(template, file) {
-  load(file);
-  const {title, version, summary, description} = root.info;
+  doc.load(file);
+  const {title, version, summary, description} = doc.root.info;
   const parts = {
     version: `${title} ${version}`,
     contents: contents(),
     summary,
     description,
     about: about(),
-    operations: [operationsView(), responseTemplates()],
+    operations: operationsView(),
     schemas: schemasView(),
   };
   return template.replace(/\{\{(\w+)\}\}/g, (_, name) => html`${parts[name]}`);
+}
+
+// One operation: examples, request and responses.
+const titled = (title, nodes) => (nodes.length ? [html`<h4>${title}</h4>`, nodes] : []);
+
+/** Parameters, in a table for each part of the request. */
+const parametersView = ({operationId, parameters}) =>
+  ["Query", "Header"].flatMap((title) => {
+    const fields = parameters.filter((parameter) => parameter.in === title.toLowerCase());
+    return fields.length ? [fieldTable(fields, operationId, title)] : [];
+  });
+
+/** Media types with their schemas. open: fields are visible; otherwise folded, with the example. */
+const contentView = (content = {}, open = false) =>
+  Object.entries(content).flatMap(([type, {schema = {}, example}]) => {
+    const description = schema.description ? `: ${schema.description}` : "";
+    const nodes = [html`<p><code>${type}</code> ${typeWords(schema)}${description}</p>`];
+    if (schema.$ref)
+      nodes.push(open ? schemaView(schema, null) : fieldsFold("Fields", schema.$ref));
+    if (!open && example !== undefined)
+      nodes.push(fold("Example", html`<pre><code>${pretty(example)}</code></pre>`));
+    return nodes;
+  });
+
+function answerView(answer) {
+  const {content, headers = {}} = doc.resolved(answer);
+  const fields = Object.entries(headers).map(([name, header]) => ({name, ...doc.resolved(header)}));
+  return [contentView(content), fields.length ? fold("Headers", fieldTable(fields, null)) : []];
+}
+
+/** Responses; those that are no success in a fold. */
+function answersView({responses}) {
+  const all = Object.entries(responses);
+  const isSuccess = ([status]) => status.startsWith("2");
+  const others = all.filter((one) => !isSuccess(one));
+  const view = ([status, answer]) => [
+    html`<p><code>${status}</code> ${doc.resolved(answer).description}</p>`,
+    answerView(answer),
+  ];
+  const title = html`Other statuses <small>${others.map(([status]) => status).join(" ")}</small>`;
+  return [all.filter(isSuccess).map(view), others.length ? fold(title, others.map(view)) : []];
+}
+
+/** A query of the parameters with examples. */
+function exampleQuery(parameters) {
+  const written = parameters
+    .filter((parameter) => parameter.in === "query" && "example" in parameter)
+    .map(({name, example}) => `${name}=${[example].flat().map(encodeURIComponent).join()}`);
+  return written.length ? `?${written.join("&")}` : "";
+}
+
+/** Requests {path, body, file, type, summary, streams, keyless}; a page cannot send a file. */
+function requestsOf({method, path, parameters, requestBody, security, responses}) {
+  const common = {
+    path: path.slice(1),
+    streams: "application/x-ndjson" in (responses[200].content ?? {}),
+    keyless: security?.length === 0,
+  };
+  if (method === "GET") return [{...common, path: common.path + exampleQuery(parameters)}];
+  return Object.entries(requestBody.content).flatMap(([type, {examples}]) =>
+    examples
+      ? Object.values(examples).map(({summary, value}) => ({...common, type, summary, body: value}))
+      : [{...common, type, file: "FILE", summary: `a file of ${type}`}],
+  );
+}
+
+/** An example; example.js adds the buttons. */
+function exampleView({summary, ...request}) {
+  const said = summary ? html`<p>${summary}</p>` : "";
+  const command = html`<pre><code>${commandOf(request)}</code></pre><p class="actions"></p>`;
+  return html`<div class="example" data-request="${JSON.stringify(request)}">${said}${command}</div>`;
+}
+
+function inside(operation) {
+  const {description, requestBody = {}, security} = operation;
+  const keyless = security?.length === 0 ? " No key is needed." : "";
+  return [
+    html`<p>${description + keyless}</p>`,
+    titled("Examples", requestsOf(operation).map(exampleView)),
+    titled("Request", [...parametersView(operation), ...contentView(requestBody.content, true)]),
+    titled("Responses", answersView(operation)),
+  ];
+}
+
+function operationView(operation) {
+  const {operationId, method, path, summary} = operation;
+  const verb = html`<span class="method ${method.toLowerCase()}">${method}</span>`;
+  const title = html`<h3>${verb} <code>${path}</code> <small>${summary}</small></h3>`;
+  const begin = html`<details id="${operationId}" class="operation"><summary>${title}</summary>`;
+  return [begin, inside(operation), html`</details>`];
 }

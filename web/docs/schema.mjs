@@ -1,8 +1,8 @@
 // Schemas as text and as tables of fields. The id of a field is its operation or schema followed by
 // field names: schema-Energy.without_absorber.rms.
+
+import {readFileSync} from "node:fs";
 import {count} from "../shared/numbers.js";
-import {nameOf, resolved, schemaPlace} from "./document.mjs";
-import {copyFold, fold, html} from "./markup.mjs";
 
 const json = (value) => html`<code>${JSON.stringify(value)}</code>`;
 
@@ -110,3 +110,65 @@ export function schemaView(schema, place) {
   const more = others.length ? html`<p>and the fields of one of:</p>` : "";
   return [fieldTable(fields, place), more, others];
 }
+
+// HTML as text: the build has no document.
+/** HTML; other texts are escaped where they are inserted. */
+class Markup extends String {}
+
+const entities = {"&": "&amp;", "<": "&lt;", ">": "&gt;", '"': "&quot;"};
+
+function written(node) {
+  if (Array.isArray(node)) return node.map(written).join("");
+  return node instanceof Markup ? node : String(node).replace(/[&<>"]/g, (c) => entities[c]);
+}
+
+/** Tag of templates, whose values are texts, HTML, and lists of both. */
+export const html = (raw, ...values) => new Markup(String.raw({raw}, ...values.map(written)));
+
+export const fold = (summary, content) =>
+  html`<details><summary>${summary}</summary>${content}</details>`;
+
+/** A fold that docs.js fills, when it is opened, with a copy of the content of the element `id`. */
+const copyFold = (summary, id) =>
+  html`<details data-copy="${id}"><summary>${summary}</summary></details>`;
+
+// The OpenAPI document, and the ids of its components on the page.
+export let root;
+
+/** Reads the document that the other functions are about. */
+export function load(file) {
+  root = JSON.parse(readFileSync(file, "utf8"));
+}
+
+/** The target of a $ref, merged with its siblings; any other node unchanged. */
+export function resolved(node) {
+  if (!node.$ref) return node;
+  const {$ref, ...beside} = node;
+  const names = $ref.slice(2).split("/");
+  const there = names.reduce((inside, name) => inside[name], root);
+  return {...resolved(there), ...beside};
+}
+
+/** Component name of a $ref. */
+export const nameOf = ($ref) => $ref.slice($ref.lastIndexOf("/") + 1);
+
+export const schemas = () => Object.entries(root.components.schemas);
+export const schemaPlace = (name) => `schema-${name}`;
+
+/** All operations in document order, with path, method and resolved parameters. */
+const operations = () =>
+  Object.entries(root.paths).flatMap(([path, methods]) =>
+    Object.entries(methods).map(([method, {parameters = [], ...operation}]) => ({
+      ...operation,
+      path,
+      method: method.toUpperCase(),
+      parameters: parameters.map(resolved),
+    })),
+  );
+
+/** {name, description, operations} of each tag. Each operation has one tag. */
+export const tags = () =>
+  root.tags.map((tag) => ({
+    ...tag,
+    operations: operations().filter((operation) => operation.tags[0] === tag.name),
+  }));

@@ -2,16 +2,25 @@
 // shown. The list of impacts can be edited and sent again.
 
 import {asCurl, identify, identifyJson, simulate} from "../shared/api.js";
-import {$, choose, countUp, element, fillMenu, reveal, setTexts} from "../shared/dom.js";
-import {copy, save} from "../shared/export.js";
+import * as dom from "../shared/dom.js";
+import {$} from "../shared/dom.js";
+
 import {Form} from "../shared/form.js";
-import {RequestTab} from "../shared/request_tab.js";
+import {RequestTab} from "../shared/job.js";
 import {ImpactList} from "./impact_list.js";
 import {summariseMeasurement} from "./measurement_summary.js";
 import * as views from "./measurement_views.js";
-import {asJson, columnsOf, parse, recordOf, spikeNear} from "./record.js";
-import {oscillatorOf, recordOfRun} from "./sample.js";
-import {afterReload, keep} from "./stored.js";
+import {
+  afterReload,
+  asJson,
+  columnsOf,
+  keep,
+  oscillatorOf,
+  parse,
+  recordOf,
+  recordOfRun,
+  spikeNear,
+} from "./record.js";
 
 const groups = {
   system: ["System", true],
@@ -92,11 +101,11 @@ export class MeasurementTab extends RequestTab {
     $("measure-download").onclick = () => {
       const text = JSON.stringify(this.answer, null, 1);
       const name = this.file.name.replace(/\.[^.]*$/, "");
-      save(new Blob([text], {type: "application/json"}), `${name}-identified.json`);
+      dom.save(new Blob([text], {type: "application/json"}), `${name}-identified.json`);
     };
     $("measure-copy").onclick = () => {
       const path = `v1/identify?${asQuery(this.sent ?? this.form.values())}`;
-      copy(asCurl({path, type: "text/csv", file: this.file?.name ?? "record.csv"}), this.say);
+      dom.copy(asCurl({path, type: "text/csv", file: this.file?.name ?? "record.csv"}), this.say);
     };
   }
 
@@ -104,12 +113,7 @@ export class MeasurementTab extends RequestTab {
   listenToFiles() {
     const input = $("measure-file");
     input.onchange = () => this.readFile(input.files[0]);
-    const drag = (event) => {
-      event.preventDefault();
-      $("measure-drop").classList.toggle("over", event.type === "dragover");
-      if (event.type === "drop") this.readFile(event.dataTransfer.files[0]);
-    };
-    for (const type of ["ondragover", "ondragleave", "ondrop"]) $("panel-measurement")[type] = drag;
+    dom.onDrop($("panel-measurement"), $("measure-drop"), (file) => this.readFile(file));
   }
 
   query() {
@@ -136,7 +140,7 @@ export class MeasurementTab extends RequestTab {
 
   /** Selects an oscillator; more: further fields. */
   choosePreset(name, more) {
-    choose(presetMenu, name);
+    dom.choose(presetMenu, name);
     this.form.set({...this.base(), ...more});
     this.remember();
   }
@@ -203,7 +207,7 @@ export class MeasurementTab extends RequestTab {
     this.say("");
     this.drawFile(fields);
     if (this.record) views.draw(answer);
-    countUp(this.results);
+    dom.countUp(this.results);
   }
 
   fail(error) {
@@ -236,7 +240,7 @@ export class MeasurementTab extends RequestTab {
     const {parsed} = this;
     this.record = parsed && recordOf(parsed, fields);
     const known = this.record !== null;
-    reveal({"measure-parts": known, "measure-list": known, "measure-add-at": known});
+    dom.reveal({"measure-parts": known, "measure-list": known, "measure-add-at": known});
     if (parsed) this.showColumns(parsed, fields);
     if (!known) return;
     const {t} = this.record;
@@ -250,7 +254,7 @@ export class MeasurementTab extends RequestTab {
     const found = columnsOf(names, fields);
     for (const menu of $("measure-picker").querySelectorAll("select")) {
       const k = found[menu.name];
-      fillMenu(menu, [["", k < 0 ? "– none –" : "by name"], ...names.map((name) => [name])]);
+      dom.fillMenu(menu, [["", k < 0 ? "– none –" : "by name"], ...names.map((name) => [name])]);
       menu.selectedIndex = k + 1;
       menu.disabled = !names.length;
     }
@@ -272,10 +276,10 @@ export class MeasurementTab extends RequestTab {
     const lines = around.map((text, k) => {
       const n = first + k;
       const textContent = `${String(n).padStart(7)}  ${text.slice(0, 120).trimEnd()}\n`;
-      return element("span", {className: n === line ? "at-fault" : "", textContent});
+      return dom.element("span", {className: n === line ? "at-fault" : "", textContent});
     });
     $("measure-lines").replaceChildren(...lines);
-    reveal({"measure-lines": lines.length});
+    dom.reveal({"measure-lines": lines.length});
   }
 
   /** Gives up the previous record. Returns isNewest(), which is false after the next call. */
@@ -294,7 +298,7 @@ export class MeasurementTab extends RequestTab {
     Object.assign(this, {file, parsed: null});
     this.setAnswer(null, null);
     const about = `${file.name}, ${(file.size / 1e6).toFixed(file.size < 1e5 ? 3 : 1)} MB`;
-    setTexts({"measure-about": about});
+    dom.setTexts({"measure-about": about});
     this.quoteLine();
     this.say("reading …");
     try {
@@ -305,8 +309,8 @@ export class MeasurementTab extends RequestTab {
       this.parsed = parsed;
       keep(file);
       const {names, columns} = parsed;
-      $("measure-columns").replaceChildren(...names.map((value) => element("option", {value})));
-      setTexts({"measure-about": `${about}, ${columns[0]?.length ?? 0} samples`});
+      $("measure-columns").replaceChildren(...names.map((value) => dom.element("option", {value})));
+      dom.setTexts({"measure-about": `${about}, ${columns[0]?.length ?? 0} samples`});
       // Clears chosen columns that the file does not have.
       for (const [name, value] of Object.entries(this.ofColumns()))
         if (isColumn(name) && names.length && !names.includes(value)) this.form.replace(name, "");

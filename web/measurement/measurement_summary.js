@@ -1,9 +1,8 @@
 // The results of a measurement as cards, and the table of fitted parameters.
 
-import {$} from "../shared/dom.js";
+import {$, cards, listWarnings} from "../shared/dom.js";
 import {count, digits, minus, withError} from "../shared/numbers.js";
 import {verdicts} from "../shared/quantities.js";
-import {cards, listWarnings} from "../shared/tables.js";
 import {isLeftOut} from "./impact_list.js";
 
 /** At most n digits; a dash for a missing value. */

@@ -2,13 +2,13 @@
 
 import {$, element} from "../shared/dom.js";
 import {exponentRange, exponentSeries} from "../shared/exponents.js";
-import {addExportButton, captionOf} from "../shared/export_dialog.js";
+import {addExportButton, captionOf} from "../shared/export.js";
 import {rangeOf} from "../shared/frame.js";
 import {makeAccessible} from "../shared/gestures.js";
 import {bands, beads, dots, layer, levels, line, lines, symbols} from "../shared/marks.js";
+import {firstFrom} from "../shared/numbers.js";
 import {LinePlot, ScatterPlot} from "../shared/plot.js";
 import {verdicts} from "../shared/quantities.js";
-import {firstFrom} from "../shared/search.js";
 import {Viewport} from "../shared/viewport.js";
 import {isLeftOut, kindOf} from "./impact_list.js";
 import {spikeNear} from "./record.js";

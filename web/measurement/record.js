@@ -1,64 +1,52 @@
-// Reads a record for drawing, by the same rules as the service, which reports the errors.
+// A record: read from a file for drawing, by the same rules as the service, which reports the errors;
+// simulated from a run; and kept by the browser.
 import {nextTask} from "../shared/dom.js";
-import {firstFrom} from "../shared/search.js";
+import {Motion} from "../shared/motion.js";
+import {firstFrom, lastUpTo} from "../shared/numbers.js";
 
 const atOnce = 50000; // lines between two progress reports
+const encodings = ["utf-8", "utf-16le", "utf-16be", "windows-1252"];
 
 /** Control characters that do not occur in text files. */
 // biome-ignore lint/suspicious/noControlCharactersInRegex: it searches for control characters
 const binary = /[\0-\x08\x0e-\x1a]/;
 
-/**
- * The text of a file in any of the usual encodings, with LF line ends. Throws for a binary file.
- */
+/** The text of a file in the first encoding that gives lines of text. Throws for a binary file. */
 async function textOf(file) {
-  const bytes = new Uint8Array(await file.arrayBuffer());
-  const begins = (first, second) => bytes[0] === first && bytes[1] === second;
-  // UTF-16 without a byte order mark: every other byte of ASCII text is zero.
-  const hasZeros = (from) => bytes[from] === 0 && bytes[from + 2] === 0;
-  let encoding = "utf-8";
-  if (begins(0xff, 0xfe) || hasZeros(1)) encoding = "utf-16le";
-  else if (begins(0xfe, 0xff) || hasZeros(0)) encoding = "utf-16be";
-  let text;
-  try {
-    text = new TextDecoder(encoding, {fatal: true}).decode(bytes);
-  } catch {
-    text = new TextDecoder("windows-1252").decode(bytes);
-  }
-  if (binary.test(text.slice(0, 100000)))
-    throw new Error(
-      "it is not a text file; scripts/to-csv converts .wav, .mat, .tdms and .uff files to CSV",
-    );
-  return text.replace(/\r\n?/g, "\n");
+  const bytes = await file.arrayBuffer();
+  for (const encoding of encodings)
+    try {
+      const text = new TextDecoder(encoding, {fatal: true}).decode(bytes);
+      const lines = text.replace(/\r\n?/g, "\n");
+      if (lines.includes("\n") && !binary.test(lines.slice(0, 100000))) return lines;
+    } catch {
+      // another encoding
+    }
+  throw new Error(
+    "it is not a text file; scripts/to-csv converts .wav, .mat, .tdms and .uff files to CSV",
+  );
 }
 
-/** The cells of a line with quotation marks; a quoted decimal comma becomes a point. */
-function quotedCellsOf(line, separator) {
-  const end = separator.replace(/\W/, "\\$&");
-  const other = `[^${end}]*`;
-  const cell = new RegExp(`([ \\t]*"[^"]*"${other}|${other})(?:${end}|$)`, "g");
-  const cells = [...line.matchAll(cell)].map(([, text]) => text.trim());
-  return cells.map((text) => text.replace(/^"([^"]*)"$/, (_, inside) => asPoint(inside)));
-}
-const asPoint = (cell) =>
-  /^[\s+-]*\d*,\d*(e[+-]?\d+)?\s*$/i.test(cell) ? cell.replace(",", ".") : cell;
+const withComma = /^[\s+-]*\d*,\d*(e[+-]?\d+)?\s*$/i;
+
+/** A quoted text without separators; a decimal comma becomes a point. */
+const unquoted = (text, separator) =>
+  withComma.test(text) ? text.replace(",", ".") : text.replaceAll(separator, " ");
 
 /** The cells of a line without trailing empty ones. */
 function cellsOf(line, separator) {
-  let cells;
-  if (separator === " ") cells = line.trim().split(/[ \t]+/);
-  else if (line.includes('"')) cells = quotedCellsOf(line, separator);
-  else cells = line.split(separator);
+  const plain = line.replace(/"([^"]*)"/g, (_, inside) => unquoted(inside, separator));
+  const cells = separator === " " ? plain.trim().split(/[ \t]+/) : plain.split(separator);
   while (cells.length && !cells.at(-1).trim()) cells.pop();
   return cells;
 }
 
-const isCode = /^\s*[+-]?0[xob]/i; // JavaScript would accept these as numbers
+const numeric = /^\s*[+-]?(\d+\.?\d*|\.\d+)(e[+-]?\d+)?\s*$/i;
 
 /** A cell as a number, NaN if it is none. A decimal comma requires another separator. */
 function numberOf(cell, separator) {
-  if (!cell.trim() || isCode.test(cell)) return NaN;
-  return Number(separator === "," ? cell : cell.replaceAll(",", "."));
+  const text = separator === "," ? cell : cell.replace(",", ".");
+  return numeric.test(text) ? Number(text) : NaN;
 }
 
 const comment = /^\s*(#|%|\/\/)/;
@@ -67,12 +55,11 @@ const comment = /^\s*(#|%|\/\/)/;
  * The separator that splits the line into two or more numbers; undefined if there is none.
  * declared: the separator of a line sep=, the only one tried.
  */
-function separatorOfNumbers(line, declared) {
-  return (declared ? [declared] : [";", "\t", ",", " "]).find((separator) => {
+const separatorOfNumbers = (line, declared) =>
+  (declared ? [declared] : [";", "\t", ",", " "]).find((separator) => {
     const cells = cellsOf(line, separator);
     return cells.length > 1 && cells.every((cell) => !Number.isNaN(numberOf(cell, separator)));
   });
-}
 
 /**
  * [names, units] from the lines above the first row of `count` numbers; units can be missing.
@@ -83,20 +70,22 @@ function separatorOfNumbers(line, declared) {
  * the comment; names alone.
  */
 function headingOf(above, count, separator) {
-  const cells = (line) => cellsOf(line, separator).map((cell) => cell.trim());
-  const [last, before, commented] = [above.last, above.before, above.comment].map(cells);
+  const [last, before, commented] = [above.last, above.before, above.comment].map((line) =>
+    cellsOf(line, separator).map((cell) => cell.trim()),
+  );
   const areNames = (row) =>
     row.length === count && row.every((cell) => Number.isNaN(numberOf(cell, separator)));
   const areUnits = (row) => row.length && row.length <= count && row.every(isUnit);
-  const candidates = [
+  const named = areUnits(commented) ? [] : commented;
+  const pairs = [
     [before, last],
-    [areUnits(commented) ? [] : commented, last],
+    [named, last],
     [last, before],
     [last, commented],
     [last],
     [commented],
   ];
-  return candidates.find(([names, units]) => areNames(names) && (!units || areUnits(units)));
+  return pairs.find(([names, units]) => areNames(names) && (!units || areUnits(units)));
 }
 
 /**
@@ -104,7 +93,7 @@ function headingOf(above, count, separator) {
  * no heading is found. Lines that the service would reject are skipped. onProgress(fraction)
  * reports progress.
  */
-export async function parse(file, onProgress) {
+export async function parse(file, onProgress = () => {}) {
   const text = await textOf(file);
   const above = {last: "", before: "", comment: ""};
   let declared;
@@ -158,9 +147,11 @@ const quantities = {
 /** Index of the column named by a field or else by a usual name; -1 if missing. */
 function find(names, wanted, [exact, ...prefixes]) {
   if (wanted) return names.findIndex((name) => name.toLowerCase() === wanted.toLowerCase());
-  return [`${exact}$`, ...prefixes.map((text) => `${text}([_ ([]|$)`)]
-    .map((text) => names.findIndex((name) => new RegExp(`^${text}`, "i").test(name)))
-    .reduce((found, at) => (found < 0 ? at : found));
+  const patterns = [`${exact}$`, ...prefixes.map((text) => `${text}([_ ([]|$)`)];
+  const places = patterns.map((text) =>
+    names.findIndex((name) => RegExp(`^${text}`, "i").test(name)),
+  );
+  return places.find((at) => at >= 0) ?? -1;
 }
 
 /** Index of the column of each quantity, or -1. */
@@ -246,6 +237,20 @@ export function recordOf(parsed, fields) {
   return {t: of(time, "s"), x: of(displacement, "m"), a: of(acceleration, "m/s2")};
 }
 
+/** A recorded load in SI, as the field `forcing`. Throws without a time or a load. */
+export function loadOf(parsed) {
+  const {time, displacement, force, ...parts} = partsOf(parsed, {});
+  const acceleration = parts.base_acceleration ?? parts.acceleration;
+  if (!time || !(acceleration ?? displacement ?? force))
+    throw new Error("it needs a column time and one of acceleration, displacement, force");
+  const inSi = ({values, unit}, usual, factor = 1) =>
+    Array.from(values, (v) => v * scales.get(unit ?? usual) * factor);
+  const time_s = inSi(time, "s");
+  if (acceleration) return {time_s, acceleration_m_s2: inSi(acceleration, "m/s2")};
+  if (displacement) return {time_s, displacement_m: inSi(displacement, "m", 1e-3)};
+  return {time_s, force_N: [...force.values]};
+}
+
 /** Fields of /v1/identify with the record in its own units. */
 export function asJson(parsed, fields) {
   const parts = Object.entries(partsOf(parsed, fields));
@@ -270,4 +275,86 @@ export function spikeNear({t, a}, time, reach) {
   for (let i = from; i < Math.min(to, t.length); ++i)
     if (Math.abs(a[i] - centre) > Math.abs(a[best] - centre)) best = i;
   return best;
+}
+
+/** Runs act(store) on the store of records and resolves to the result of the request it returns. */
+const within = (mode, act) =>
+  new Promise((resolve, reject) => {
+    const opening = indexedDB.open("vines", 1);
+    opening.onupgradeneeded = () => opening.result.createObjectStore("records");
+    opening.onerror = () => reject(opening.error);
+    opening.onsuccess = () => {
+      const request = act(opening.result.transaction("records", mode).objectStore("records"));
+      request.onsuccess = () => resolve(request.result);
+      request.onerror = () => reject(request.error);
+    };
+  });
+
+/** Keeps a file in place of the previous one; without permission to store, nothing is kept. */
+export const keep = (file) =>
+  within("readwrite", (store) => store.put(file, "last")).catch(() => {});
+
+/** The kept file if the page was reloaded, else undefined. */
+export async function afterReload() {
+  const [navigation] = performance.getEntriesByType("navigation");
+  if (navigation?.type !== "reload") return undefined;
+  return within("readonly", (store) => store.get("last")).catch(() => undefined);
+}
+
+const samplesPerCycle = 245; // about 2 kHz at 8.35 Hz, the forcing of Li et al. (2018)
+const maxSamples = 200000;
+const settling = 20; // cycles skipped: a recorder is started later than the motion
+const pulse = 1 / 150; // duration in cycles
+
+// Linear congruential generator (Numerical Recipes) with values in [-1, 1).
+function noiseFrom(seed) {
+  let state = seed;
+  return () => {
+    state = (Math.imul(state, 1664525) + 1013904223) >>> 0;
+    return state / 2 ** 31 - 1;
+  };
+}
+
+/**
+ * The oscillator of a run as fields of /v1/identify, in kg, N/m, N s/m, Hz and m. A dimensionless
+ * system gets m1 = 1 kg and k1 = 1 N/m, hence omega0 = 1 rad/s.
+ */
+export function oscillatorOf({si, b, epsilon, Omega, derived}) {
+  const system = si ?? {m1: 1, k1: 1, m2: epsilon, f: Omega / (2 * Math.PI)};
+  const {m1, k1, m2, f} = system;
+  const c1 = 2 * derived.zeta * Math.sqrt(k1 * m1); // damping of the simulated motion
+  return {m1, k1, c1, m2, f, b};
+}
+
+/**
+ * The samples of a run as CSV: time_s, displacement_m, acceleration_m_s2. Starts after `settling`
+ * cycles if the run is longer than three times that; holds at most maxSamples.
+ */
+export function recordOfRun(answer) {
+  const {parameters, impacts} = answer;
+  const omega0 = parameters.derived.omega0 ?? 1; // rad/s
+  const motion = new Motion(answer);
+  const {cycle} = motion;
+  const from = motion.end > 3 * settling * cycle ? settling * cycle : 0;
+  const count = Math.min(Math.floor(((motion.end - from) / cycle) * samplesPerCycle), maxSamples);
+  const width = pulse * cycle;
+  const noise = noiseFrom(1);
+  // Amplitudes of uniform noise, in m and m/s^2.
+  const [noiseX, noiseA] = [1.3e-4 * parameters.b, 1.2e-3 * parameters.b * omega0 ** 2];
+  const lines = ["time_s,displacement_m,acceleration_m_s2"];
+  for (let n = 0; n < count; ++n) {
+    const tau = from + (n * cycle) / samplesPerCycle;
+    const {x, x_ddot: smooth} = motion.at(tau);
+    let a = smooth; // without pulses
+    for (let i = lastUpTo(impacts.tau, tau + width / 2); i >= 0; --i) {
+      const position = (tau - impacts.tau[i]) / width + 0.5; // in the pulse, from 0 to 1
+      if (position >= 1) break;
+      const jump = impacts.x_dot_after[i] - impacts.x_dot_before[i];
+      a += ((jump * Math.PI) / 2 / width) * Math.sin(Math.PI * position);
+    }
+    const seconds = ((tau - from) / omega0).toFixed(7);
+    const measured = (x + noiseX * noise()).toExponential(7);
+    lines.push(`${seconds},${measured},${(a * omega0 ** 2 + noiseA * noise()).toExponential(4)}`);
+  }
+  return `${lines.join("\n")}\n`;
 }

@@ -1,5 +1,5 @@
 // Calls to the service. Routes are relative to the page, so they also work below a path prefix.
-import {element} from "./dom.js";
+import {$} from "./dom.js";
 
 /** A problem document (RFC 9457). errors: {pointer, value, range, detail} per invalid field. */
 class Problem extends Error {
@@ -28,40 +28,24 @@ const currentKey = () => sessionStorage.getItem(keyName);
 
 export const hasKey = () => currentKey() !== null;
 
-/** Prompts for a key after a 401 response. Resolves to whether a valid key was entered. */
+/** Prompts for a key after a 401 response. Resolves to whether one was entered. */
 function askForKey() {
-  openPrompt ??= showDialog().finally(() => {
+  openPrompt ??= enteredKey().finally(() => {
     openPrompt = null;
   });
   return openPrompt;
 }
 
-async function showDialog() {
-  const input = element("input", {
-    type: "password",
-    name: "key",
-    required: true,
-    pattern: "\\s*[A-Za-z0-9._~+\\/=\\-]{16,}\\s*", // the format that the service accepts
-    title: "16 or more letters, digits or -._~+/=",
-    autocomplete: "current-password",
-  });
-  const submit = element("button", {value: "use"}, "Use key");
-  const rejection = hasKey() ? "The server does not accept this key. " : "";
-  const dialog = element(
-    "dialog",
-    {},
-    element("h2", {}, "API key"),
-    element("p", {}, `${rejection}This server requires an API key.`),
-    element("form", {method: "dialog"}, element("label", {}, "Key ", input, " ", submit)),
-  );
-  document.body.append(dialog);
+async function enteredKey() {
+  const dialog = $("key");
+  $("key-rejected").hidden = !hasKey();
+  dialog.returnValue = "";
   dialog.showModal();
   await new Promise((resolve) => {
     dialog.onclose = resolve;
   });
-  dialog.remove();
-  const entered = dialog.returnValue === submit.value; // the form was valid
-  if (entered) sessionStorage.setItem(keyName, input.value.trim());
+  const entered = dialog.returnValue !== ""; // the form was valid
+  if (entered) sessionStorage.setItem(keyName, $("key-text").value.trim());
   return entered;
 }
 
@@ -106,10 +90,11 @@ export const identify = async (query, record, signal) =>
 /** Identifies parameters from a record that is part of the JSON fields. */
 export const identifyJson = postingJson("v1/identify");
 
-/** Starts a sweep; returns its stream of JSON lines. */
-export async function sweep(request, signal) {
-  const response = await post("v1/sweep", JSON.stringify(request), signal);
-  return response.ok ? response.body : read(response);
+/** Posts a request and yields the lines of its response, as jsonLines. */
+export async function* linesOf(path, request, signal) {
+  const response = await post(path, JSON.stringify(request), signal);
+  if (!response.ok) await read(response);
+  yield* jsonLines(response.body);
 }
 
 const quoted = (text) => `'${text.replaceAll("'", "'\\''")}'`;
@@ -131,7 +116,7 @@ export function asCurl({path, body, file, type}, flags = "-s") {
  * Yields {text, value} for each line of a stream. Lines and UTF-8 characters can be split across
  * chunks; an incomplete last line is dropped. Throws TemporaryError if the stream breaks.
  */
-export async function* jsonLines(stream) {
+async function* jsonLines(stream) {
   const reader = stream.pipeThrough(new TextDecoderStream()).getReader();
   let partial = "";
   try {

@@ -1,4 +1,5 @@
-// Short forms for creating and changing elements.
+// Short forms for creating and changing elements; saving files and copying texts.
+import {count} from "./numbers.js";
 
 export const $ = (id) => document.getElementById(id);
 
@@ -57,6 +58,16 @@ export const sayIn =
     $(id).classList.toggle("fault", fault);
   };
 
+/** read(file) gets a file that is dropped on a panel; zone: the element that shows the dragging. */
+export function onDrop(panel, zone, read) {
+  const drag = (event) => {
+    event.preventDefault();
+    zone.classList.toggle("over", event.type === "dragover");
+    if (event.type === "drop") read(event.dataTransfer.files[0]);
+  };
+  for (const type of ["ondragover", "ondragleave", "ondrop"]) panel[type] = drag;
+}
+
 /** Selects an entry, or the first if there is no such value. */
 export function choose(menu, value) {
   menu.value = value;
@@ -70,4 +81,56 @@ export function choose(menu, value) {
 export function fillMenu(menu, entries, wish = menu.value) {
   menu.replaceChildren(...entries.map(([value, text = value]) => new Option(text, value)));
   choose(menu, wish);
+}
+
+// Lists of labelled values, remarks and warnings; tables of texts.
+/** Shows entries [term, value, remark] as cards in a <dl>. */
+export function cards(list, entries) {
+  const card = ([term, value, remark]) => {
+    const small = element("small", {}, remark ? ` ${remark}` : "");
+    return element(
+      "div",
+      {className: "box"},
+      element("dt", {}, term),
+      element("dd", {}, value, small),
+    );
+  };
+  list.replaceChildren(...entries.map(card));
+}
+
+/** Lists remarks in the <details id>, with their number as summary; hides it without any. */
+export function showRemarks(id, remarks) {
+  const details = $(id);
+  details.hidden = !remarks.length;
+  details.querySelector("summary").textContent = count(remarks.length, "remark");
+  listWarnings(details.querySelector("ul"), remarks);
+}
+
+export const listWarnings = (list, warnings) =>
+  list.replaceChildren(...warnings.map((w) => element("li", {}, w)));
+
+const row = (tag, cells) =>
+  element("tr", {}, ...cells.map((textContent) => element(tag, {textContent})));
+
+/** Head and body of a table. */
+export const tableOf = (names, rows) => [
+  element("thead", {}, row("th", names)),
+  element("tbody", {}, ...rows.map((cells) => row("td", cells))),
+];
+
+/** Saves a blob under a file name. */
+export function save(blob, name) {
+  const url = URL.createObjectURL(blob);
+  element("a", {href: url, download: name}).click();
+  setTimeout(() => URL.revokeObjectURL(url), 10000);
+}
+
+/** Copies a text and reports it; without permission to copy, shows the text. */
+export async function copy(text, say) {
+  try {
+    await navigator.clipboard.writeText(text);
+    say("copied");
+  } catch {
+    say(text);
+  }
 }

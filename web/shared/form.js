@@ -14,13 +14,15 @@ export const groups = {
     false,
     "A user-defined system: m1, F and f, and one field of each pair in between.",
   ],
+  laws: ["Laws of ball and walls", false],
+  load: ["Load instead of F and f", false],
   start: ["Initial state", false],
   run: ["Run", true],
   output: ["Output", false],
 };
 /** True for fields of /v1/parameters that affect the motion. */
 export const isOfMotion = (field) =>
-  ["system", "reduced", "SI", "start"].includes(field?.group) ||
+  ["system", "reduced", "SI", "laws", "load", "start"].includes(field?.group) ||
   ["tau_end", "cycles"].includes(field?.name);
 
 // The page chooses `include` and never shows a perturbed run. A preset without choices has a menu
@@ -33,6 +35,9 @@ const equivalents = {
   f0: "k1",
   damping_ratio: "c1",
   mass_ratio: "m2",
+  acceleration: "F",
+  inclination: "gravity",
+  mu: "friction",
   x_velocity0: "x_dot0",
   y_velocity0: "y_dot0",
 };
@@ -45,9 +50,19 @@ function originOfEquivalent(name, origin) {
   return `follows from ${other}${name === "f0" || name === "mass_ratio" ? ", m1" : ""}`;
 }
 
+const standardGravity = 9.80665; // m/s^2
+
+/** {inclination, mu} of a system in SI from its gravity and friction; null without such an angle. */
+export function lawsInSi({gravity = 0, friction = 0, derived: {omega0}}) {
+  const sine = (gravity * omega0 ** 2) / standardGravity;
+  const inclination = Math.abs(sine) <= 1 ? Math.asin(sine) : null;
+  const mu = friction && (friction * omega0 ** 2) / (standardGravity * Math.cos(inclination));
+  return {inclination, mu: inclination === null ? null : mu};
+}
+
 /** {values, origins} by field name, from `parameters` of an answer. */
 export function resolved({si, derived = {}, origin = {}, ...own}) {
-  const values = {...own, ...si};
+  const values = {...own, ...si, ...(si && lawsInSi({...own, derived}))};
   const origins = {...origin};
   if (own.R_plus === own.R_minus && origin.R_plus === origin.R_minus)
     [values.R, origins.R] = [own.R_plus, origin.R_plus];
@@ -67,15 +82,36 @@ function originText(origin) {
     .replace(/^swept:.*/, "swept");
 }
 
-const isObject = (value) => typeof value === "object" && value !== null;
+export const isObject = (value) => typeof value === "object" && value !== null;
+
+const longest = 24; // entries of a list that an input shows
 
 /** The text that an input shows for a value. */
 export function textOf(value) {
+  if (Array.isArray(value) && value.length > longest) return `${value.length} values`;
   if (Array.isArray(value)) return value.map(textOf).join(isObject(value[0]) ? "; " : ", ");
   if (!isObject(value)) return String(value);
-  return Object.entries(value)
-    .map((pair) => pair.join("="))
-    .join(", ");
+  const parts = Object.entries(value).map(([name, part]) => `${name}=${textOf(part)}`);
+  return parts.join(Object.values(value).some(Array.isArray) ? "; " : ", ");
+}
+
+const longestInAddress = 1500; // characters of an object; servers accept addresses of about 8 kB
+
+/** A value as text of an address; undefined for an object that is too long for one. */
+export function queryText(value) {
+  if (!isObject(value) || Array.isArray(value)) return textOf(value).replace(/([,;]) /g, "$1");
+  const text = JSON.stringify(value);
+  return text.length > longestInAddress ? undefined : text;
+}
+
+/** The value of a text that queryText() made of an object; any other value is returned unchanged. */
+function fromQuery(value) {
+  if (typeof value !== "string" || !value.startsWith("{")) return value;
+  try {
+    return JSON.parse(value);
+  } catch {
+    return value;
+  }
 }
 
 /** Message about unknown names in the address. */
@@ -92,6 +128,16 @@ function assignment(text) {
 const state = (text) =>
   text.includes("=") ? Object.fromEntries(text.split(",").map(assignment)) : text.trim();
 const partsOf = (text) => text.split(";").filter((part) => part.trim());
+/** An object whose parts can be lists: speed_m_s=0, 0.5; R=0.8, 0.6. */
+const object = (text) =>
+  text.includes("=")
+    ? Object.fromEntries(
+        text.split(text.includes(";") ? ";" : /,(?=[^,]*=)/).map((part) => {
+          const [name, list = ""] = part.split("=");
+          return [name.trim(), list.includes(",") ? interval(list) : number(list)];
+        }),
+      )
+    : text.trim();
 export const defaultSet = "default set"; // value of `starts` in place of a list
 
 /**
@@ -121,7 +167,7 @@ const types = {
     make({choices}) {
       const boxOf = (value) => element("input", {type: "checkbox", value});
       const labels = choices.map((c) => element("label", {}, boxOf(c), c));
-      return element("div", {className: "checks"}, ...labels);
+      return element("div", {className: "checks line"}, ...labels);
     },
     get(input, standard) {
       const chosen = [...input.querySelectorAll("input:checked")].map((box) => box.value);
@@ -143,6 +189,7 @@ const types = {
     read: (text) => (text.trim() === defaultSet ? defaultSet : partsOf(text).map(state)),
     hint: "one; e.g. x0=0.01; x0=0, y0=0.002",
   },
+  object: {wide: true, read: object},
   text: {wide: true, read: (text) => text.trim()},
 };
 const typeOf = ({type}) => types[type] ?? {};
@@ -253,8 +300,9 @@ export class Form {
     const {value: text} = this.inputs.get(name);
     const {read} = typeOf(field);
     if (!text.trim()) return undefined;
-    if (read) return read(text);
     const exact = this.exact.get(name);
+    if (exact?.text === text && isObject(exact.value)) return exact.value;
+    if (read) return read(text);
     if (exact?.text === text) return number(String(exact.value));
     return times(number(text), 1 / this.factors.get(name));
   }
@@ -270,10 +318,20 @@ export class Form {
     return Object.fromEntries(values.filter(([, value]) => value !== undefined));
   }
 
+  /** The values of texts by the names of fields, for JSON. */
+  parse(texts) {
+    const value = ([name, text]) => {
+      const known = fromQuery(text);
+      const {read = number, get} = typeOf(this.fields.find((f) => f.name === name) ?? {});
+      return [name, known !== text || get ? known : read(text)];
+    };
+    return Object.fromEntries(Object.entries(texts).map(value));
+  }
+
   set(values) {
     for (const field of this.fields) {
       const {name} = field;
-      const value = values[name];
+      const value = fromQuery(values[name]);
       const {set} = typeOf(field);
       if (set) set(this.inputs.get(name), value, field.default);
       else this.setValue(name, value ?? "");

@@ -1,7 +1,6 @@
 // Frame of a plot: the mapping from values to pixels, grid lines and labels. Draws with any object
 // that has the methods of a canvas context.
-import {colour} from "./colours.js";
-import {drawText, drawTextUpwards, ink, stroke} from "./ink.js";
+import {colour, drawText, drawTextUpwards, ink, stroke} from "./ink.js";
 import {clamp, minus, shortTo} from "./numbers.js";
 
 export const font = "11px system-ui, sans-serif";
@@ -144,13 +143,16 @@ export function rangeOf(columns, log = false) {
 /** The size of a node, cached since reading it forces a layout; draw() is called when it changes. */
 export class Size {
   constructor(node, draw) {
-    const changes = () => {
-      const {width, height} = this;
-      Object.assign(this, {width: node.clientWidth, height: node.clientHeight});
-      return this.width !== width || this.height !== height;
-    };
-    changes();
-    new ResizeObserver(() => changes() && draw()).observe(node);
+    this.node = node;
+    this.measure();
+    new ResizeObserver(() => this.measure() && draw()).observe(node);
+  }
+
+  /** Returns whether the size has changed. */
+  measure() {
+    const {width, height} = this;
+    Object.assign(this, {width: this.node.clientWidth, height: this.node.clientHeight});
+    return this.width !== width || this.height !== height;
   }
 }
 

@@ -131,9 +131,7 @@ function followWheel(plot) {
   });
   const zoom = (event) => {
     const {deltaX, deltaY, deltaMode, shiftKey, ctrlKey} = event;
-    const focused =
-      document.activeElement?.matches("[tabindex='0']") && document.activeElement.contains(over);
-    hint.hidden = ctrlKey || focused;
+    hint.hidden = ctrlKey || over.closest("[tabindex='0']:focus") !== null;
     if (!hint.hidden) return;
     const sideways = Math.abs(deltaX) > Math.abs(deltaY) || shiftKey;
     if (!ctrlKey && (sideways || deltaY > 0) && !isZoomed(plot)) return;
@@ -154,13 +152,9 @@ function followFingers(plot) {
   /** Centre and distance of the fingers. */
   const span = () => {
     const [a, b = a] = fingers.values();
-    const apart = Math.hypot(...directions.map((direction) => direction.between(a, b)));
     const middle = (client) => (a[client] + b[client]) / 2;
-    return {
-      clientX: middle("clientX"),
-      clientY: middle("clientY"),
-      width: Math.max(apart, 8),
-    };
+    const apart = Math.hypot(...directions.map((direction) => direction.between(a, b)));
+    return {clientX: middle("clientX"), clientY: middle("clientY"), width: Math.max(apart, 8)};
   };
   const ends = (event) => fingers.delete(event.pointerId);
   // Vertical strokes scroll the page unless the plot is zoomed vertically.
@@ -193,7 +187,7 @@ function followFingers(plot) {
  * Keys of a plot: arrows move the cursor (with Shift faster), + and − zoom about it, Page Up and
  * Page Down scroll, 0 and Escape reset the zoom, n and p jump to the next and the previous impact.
  */
-export function followKeys(node, viewport, impacts = () => []) {
+function followKeys(node, viewport, impacts) {
   const now = () => viewport.cursor ?? viewport.range[0];
   const go = (to) => to !== undefined && viewport.point(to);
   const step = (event, sign) => go(now() + sign * (event.shiftKey ? 0.05 : 0.005) * viewport.width);
@@ -224,20 +218,18 @@ export function followKeys(node, viewport, impacts = () => []) {
  * Names a plot for screen readers. A plot over a shared axis, `viewport`, also gets the keys of
  * followKeys and the slider role; moments() returns the impact times for n and p.
  */
-export function makeAccessible({container: node}, name, moments, viewport) {
+export function makeAccessible({node}, name, moments, viewport) {
   attributes(node, {"aria-label": name, role: viewport ? "slider" : "img"});
   if (!viewport) return;
   node.tabIndex = 0;
   followKeys(node, viewport, moments);
-  const tell = () => {
+  const tell = (by) => {
+    if (by === "play") return; // not announced 60 times a second
     const now = viewport.cursor ?? viewport.range[0];
-    attributes(node, {
-      "aria-valuemin": viewport.full[0],
-      "aria-valuemax": viewport.full[1],
-      "aria-valuenow": now,
-      "aria-valuetext": short(now),
-    });
+    const [least, most] = viewport.full;
+    const about = {"aria-valuemin": least, "aria-valuemax": most, "aria-valuenow": now};
+    attributes(node, {...about, "aria-valuetext": short(now)});
   };
   tell();
-  viewport.onCursor((by) => by !== "play" && tell()); // not announced 60 times a second
+  viewport.onCursor(tell);
 }

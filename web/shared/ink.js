@@ -1,5 +1,4 @@
 // Drawing primitives for a canvas context or an SvgPen.
-import {colour} from "./colours.js";
 
 export function ink(c, name, width = 1, dash = []) {
   c.strokeStyle = c.fillStyle = colour(name);
@@ -28,3 +27,29 @@ export function drawTextUpwards(c, text, x, y) {
   drawText(c, text, 0, 0);
   c.restore();
 }
+
+// Colours by their name in the style sheet; they follow the colour scheme.
+const dark = matchMedia("screen and (prefers-color-scheme: dark)");
+const known = new Map();
+
+/** f() is called when the colours change: light or dark scheme, print. */
+export function onColours(f) {
+  for (const scheme of [dark, matchMedia("print")]) scheme.addEventListener("change", f);
+}
+onColours(() => known.clear());
+
+export function colour(name) {
+  if (!known.has(name)) {
+    const style = getComputedStyle(document.documentElement);
+    const schemes = style.getPropertyValue(`--${name}`).trim();
+    const pair = /light-dark\(\s*([^,]*),\s*([^)]*?)\s*\)/;
+    known.set(name, schemes.replace(pair, dark.matches ? "$2" : "$1"));
+  }
+  return known.get(name);
+}
+
+/** [red, green, blue], 0 to 255, of #rrggbb. */
+export const hex = (text) => [1, 3, 5].map((i) => parseInt(text.slice(i, i + 2), 16));
+
+/** [red, green, blue] of a colour of the style sheet. */
+export const rgb = (name) => hex(colour(name));

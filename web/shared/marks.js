@@ -3,9 +3,8 @@
 // last. Each kind documents its options; all have `alpha`, and a `label` in legend and table.
 import {font} from "./frame.js";
 import {drawText, ink, stroke} from "./ink.js";
-import {clamp} from "./numbers.js";
+import {clamp, firstFrom, lastUpTo} from "./numbers.js";
 import {columnDensity, drawPixels, pointDensity} from "./raster.js";
-import {firstFrom, lastUpTo} from "./search.js";
 
 /** A kind of mark from draw(c, frame, options). */
 export const kind =
@@ -131,10 +130,10 @@ function hatch(c, left, top, width, height) {
 
 /**
  * Rectangles over intervals [{from, to, colour, text, hatched}] of x, `height` px high and `down` px
- * below the upper edge. Texts that fit are written `textDown` px below it.
+ * below the upper edge. With `texts`, those that fit are written `textDown` px below it.
  */
 export const blocks = kind((c, {box, px, ...frame}, options) => {
-  const {list, down = 0, height = frame.height, textDown = 0, size = 11} = options;
+  const {list, down = 0, height = frame.height, textDown = 0, size = 11, texts} = options;
   const alpha = c.globalAlpha;
   for (const {from, to, colour, text = "", hatched} of list) {
     const ends = [from, to].map((x) => clamp(px(x), box.left, box.right));
@@ -143,7 +142,7 @@ export const blocks = kind((c, {box, px, ...frame}, options) => {
     ink(c, colour);
     c.fillRect(left, box.top + down, right - left || 1, height);
     if (hatched) hatch(c, left, box.top + down, right - left, height);
-    if (!text || 7 * text.length + 4 >= right - left) continue;
+    if (!texts || 7 * text.length + 4 >= right - left) continue;
     ink(c, "text");
     c.font = `600 ${font.replace("11", size)}`;
     c.globalAlpha = 1;
@@ -253,6 +252,30 @@ export const names = kind(
       ink(c, colour);
       drawText(c, label, box.left + 8 + 90 * k, box.top + 4, "left", "top");
     }),
+  {above: true},
+);
+
+/** Names above points, where they do not lie on another one. */
+export const texts = kind(
+  (c, frame, {x, y, text}) => {
+    ink(c, "text");
+    c.font = font;
+    const drawn = [];
+    text.forEach((one, i) => {
+      const [px, py] = [frame.px(x[i]), frame.py(y[i])];
+      const crowded = drawn.some(([a, b]) => Math.abs(a - px) < 60 && Math.abs(b - py) < 12);
+      if (!one || crowded || !frame.holds(px, py)) return;
+      drawn.push([px, py]);
+      drawText(
+        c,
+        one,
+        clamp(px, frame.box.left + 30, frame.box.right - 30),
+        py - 8,
+        "center",
+        "bottom",
+      );
+    });
+  },
   {above: true},
 );
 

@@ -1,7 +1,6 @@
 // Exact motion of a run, reconstructed from its impacts. Between events it has a closed form, so
 // any zoom level and any moment can be drawn without another request.
-import {Flow} from "./flow.js";
-import {lastUpTo} from "./search.js";
+import {clamp, lastUpTo} from "./numbers.js";
 
 // Samples per cycle of the faster of forcing and oscillator; fewer would show aliases.
 const samplesPerCycle = 32;
@@ -167,3 +166,211 @@ export class Motion {
     }
   }
 }
+
+// Motion of the oscillator between events, as in the service: x'' = -k x - d x' + f sin(theta),
+// theta' = Omega. The solution is a linear map of (x, x', sin theta, cos theta) over a time. Its
+// Taylor series covers all damping ratios and resonance without special cases; longer times are
+// composed of powers of the map over one step.
+const terms = 22; // of the series; 1/22! is below 1e-21
+
+/** The linear map of advance(state), as a function that advances a state in place, but faster. */
+function mapOf(advance) {
+  const unit = (k) => [0, 1, 2, 3].map((i) => Number(i === k));
+  const [[xx, vx], [xv, vv], [xs, vs, cos, minusSin], [xc, vc]] = [0, 1, 2, 3].map((k) =>
+    advance(unit(k)),
+  );
+  return (state) => {
+    const x = state[0]; // indexing is much faster than destructuring here
+    const v = state[1];
+    const s = state[2];
+    const c = state[3];
+    state[0] = xx * x + xv * v + xs * s + xc * c;
+    state[1] = vx * x + vv * v + vs * s + vc * c;
+    state[2] = s * cos - c * minusSin;
+    state[3] = c * cos + s * minusSin;
+    return state;
+  };
+}
+
+export class Flow {
+  /** Dimensionless stiffness and damping, forcing in m, Omega relative to omega0. */
+  constructor(stiffness, damping, forcing, Omega) {
+    Object.assign(this, {stiffness, damping, forcing, Omega});
+    /** The longest time that one series covers. */
+    this.cell = 0.5 / Math.max(1, Math.sqrt(stiffness), damping, Omega);
+    this.maps = []; // over cell, 2 cell, 4 cell, ...
+  }
+
+  /** x'' in a state. */
+  force([x, v, sin]) {
+    return this.forcing * sin - this.stiffness * x - this.damping * v;
+  }
+
+  /** The state a time 0 <= s <= cell later: the sum of the terms (A s)^n/n! of its series. */
+  near(state, s) {
+    const {stiffness, damping, forcing, Omega} = this;
+    let [x, v, sin, cos] = state; // the n-th term
+    const sum = [x, v, sin, cos];
+    for (let n = 1; n <= terms; ++n) {
+      const h = s / n;
+      const force = forcing * sin - stiffness * x - damping * v;
+      [x, v, sin, cos] = [h * v, h * force, h * Omega * cos, -h * Omega * sin];
+      sum[0] += x;
+      sum[1] += v;
+      sum[2] += sin;
+      sum[3] += cos;
+    }
+    return sum;
+  }
+
+  /** The state any time s >= 0 later. */
+  after(state, s) {
+    const cells = Math.floor(s / this.cell);
+    const now = cells ? [...state] : state;
+    for (let k = 0, left = cells; left > 0; ++k, left = Math.floor(left / 2))
+      if (left % 2) this.doubled(k)(now);
+    return this.near(now, s - cells * this.cell);
+  }
+
+  /** The map over any time s >= 0; the last one is cached. */
+  over(s) {
+    if (this.last?.s !== s) this.last = {s, map: mapOf((state) => this.after(state, s))};
+    return this.last.map;
+  }
+
+  /** The map over 2^k cells. */
+  doubled(k) {
+    for (let n = this.maps.length; n <= k; ++n) {
+      const half = this.maps[n - 1];
+      this.maps.push(mapOf((state) => (half ? half(half(state)) : this.near(state, this.cell))));
+    }
+    return this.maps[k];
+  }
+}
+
+/**
+ * A motion drawn from the samples of its series, where it has no closed form between impacts: with a
+ * recorded load, gravity or friction. In between it is a cubic in each coordinate.
+ */
+class SampledMotion extends Motion {
+  constructor(given, load) {
+    const answer = load ? relativeToBase(given, load) : given;
+    super(answer);
+    this.knots = knotsOf(answer);
+    this.sticking = answer.sticking;
+    this.exact = !answer.parameters.forcing; // without the absorber
+  }
+
+  at(tau) {
+    const {knots} = this;
+    const i = clamp(lastUpTo(knots.tau, tau), 0, knots.tau.length - 2);
+    const [x, x_dot, x_ddot] = cubic(knots, "x", i, tau);
+    const [y, y_dot] = cubic(knots, "y", i, tau);
+    const {side, tau_start: from, tau_end: to} = this.sticking;
+    const k = lastUpTo(from, tau);
+    return {x, x_dot, x_ddot, y, y_dot, side: tau < to[k] ? side[k] : 0};
+  }
+
+  withoutAbsorber(tau) {
+    if (this.exact) return super.withoutAbsorber(tau);
+    return this.without?.at(tau).x ?? null;
+  }
+
+  sample(from, step, count, use) {
+    const {knots} = this;
+    const last = knots.tau.length - 2;
+    let i = clamp(lastUpTo(knots.tau, from), 0, last);
+    for (let k = 0; k < count; ++k) {
+      const tau = from + k * step;
+      if (tau < 0 || tau > this.end) continue;
+      while (i < last && knots.tau[i + 1] <= tau) ++i;
+      const [x] = cubic(knots, "x", i, tau);
+      use(k, x, cubic(knots, "y", i, tau)[0] - x);
+    }
+  }
+}
+
+/**
+ * Returns base(tau): [displacement, velocity] of the base under a recorded load, in m and units of
+ * tau. The base starts at rest; after the record it moves on.
+ */
+function baseUnder({time_s: t, acceleration_m_s2: a, displacement_m: d}, omega0) {
+  const v = [0];
+  const x = [0];
+  for (let i = 0; a && i + 1 < t.length; ++i) {
+    const h = t[i + 1] - t[i];
+    v.push(v[i] + (h * (a[i] + a[i + 1])) / 2);
+    x.push(x[i] + h * (v[i] + (h * (2 * a[i] + a[i + 1])) / 6));
+  }
+  return (tau) => {
+    const i = Math.max(lastUpTo(t, t[0] + tau / omega0), 0);
+    const s = t[0] + tau / omega0 - t[i];
+    const inside = i + 1 < t.length;
+    const slope = (column) => (inside ? (column[i + 1] - column[i]) / (t[i + 1] - t[i]) : 0);
+    if (d) return [d[i] + slope(d) * s, slope(d) / omega0];
+    const now = inside ? a[i] : 0;
+    const velocity = v[i] + s * (now + (s * slope(a)) / 2);
+    return [x[i] + s * (v[i] + s * (now / 2 + (s * slope(a)) / 6)), velocity / omega0];
+  };
+}
+
+/** An answer whose x and y are relative to the base under a recorded load. */
+function relativeToBase(answer, load) {
+  if (load.force_N) return answer;
+  const base = baseUnder(load, answer.parameters.derived.omega0);
+  const relative = (columns) => {
+    const moves = columns.tau.map(base);
+    const less = ([name, values]) => {
+      const found = /^[xy](_dot)?(_before|_after)?$/.exec(name);
+      return [name, found ? values.map((v, i) => v - moves[i][found[1] ? 1 : 0]) : values];
+    };
+    return Object.fromEntries(Object.entries(columns).map(less));
+  };
+  return {...answer, series: relative(answer.series), impacts: relative(answer.impacts)};
+}
+
+/** Columns {tau, x, x_dot, y, y_dot} of the samples and of the impacts, each before and after. */
+function knotsOf({series, impacts, parameters: {b}}) {
+  const knots = {tau: [], x: [], x_dot: [], y: [], y_dot: []};
+  const add = (tau, x, xDot, y, yDot) => {
+    const values = Object.entries({tau, x, x_dot: xDot, y, y_dot: yDot});
+    for (const [name, value] of values) knots[name].push(value);
+  };
+  let n = 0;
+  const addUpTo = (end) => {
+    for (; series.tau[n] < end; ++n)
+      add(series.tau[n], series.x[n], series.x_dot[n], series.y[n], series.y_dot[n]);
+  };
+  const {tau, x, side} = impacts;
+  for (let i = 0; i < tau.length; ++i) {
+    addUpTo(tau[i]);
+    while (series.tau[n] === tau[i]) ++n;
+    const y = x[i] - side[i] * b;
+    add(tau[i], x[i], impacts.x_dot_before[i], y, impacts.y_dot_before[i]);
+    add(tau[i], x[i], impacts.x_dot_after[i], y, impacts.y_dot_after[i]);
+  }
+  addUpTo(Infinity);
+  return knots;
+}
+
+/** [value, first, second derivative] at tau of the cubic between knots i and i + 1. */
+function cubic(knots, name, i, tau) {
+  const [p, q] = [knots[name][i], knots[name][i + 1]];
+  const h = knots.tau[i + 1] - knots.tau[i] || 1;
+  const [u, v] = [h * knots[`${name}_dot`][i], h * knots[`${name}_dot`][i + 1]];
+  const s = (tau - knots.tau[i]) / h;
+  const [second, third] = [3 * (q - p) - 2 * u - v, 2 * (p - q) + u + v];
+  const value = p + s * (u + s * (second + s * third));
+  return [value, (u + s * (2 * second + 3 * s * third)) / h, (2 * second + 6 * s * third) / h ** 2];
+}
+
+/** Fields of a system whose motion is drawn from samples. */
+const sampledLaws = ["gravity", "inclination", "friction", "mu", "forcing"];
+export const isSampled = (fields) => sampledLaws.some((name) => fields[name]);
+
+/**
+ * The motion of an answer with impacts; with a series if isSampled(). With a recorded load of the
+ * base it is relative to the base.
+ */
+export const motionOf = (answer, load) =>
+  answer.series ? new SampledMotion(answer, load) : new Motion(answer);

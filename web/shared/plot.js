@@ -6,26 +6,39 @@ import {blank, Frame, font, rangeOf, Size} from "./frame.js";
 import {listen} from "./gestures.js";
 import {drawText, ink} from "./ink.js";
 import {names} from "./marks.js";
-import {short} from "./numbers.js";
-import {firstFrom, lastUpTo, nearest} from "./search.js";
+import {firstFrom, lastUpTo, nearest, short} from "./numbers.js";
 import {Viewport} from "./viewport.js";
+
+const small = 130; // px of height below which a plot has few labels
+
+/** Draws a prepared plot: {frame, marks}, or a text in place of both. */
+function paint(c, {frame, marks, empty, width, height}) {
+  if (!frame) {
+    c.font = font;
+    ink(c, "soft");
+    return drawText(c, empty, width / 2, height / 2);
+  }
+  frame.draw(c);
+  frame.clip(c);
+  for (const mark of marks) if (!mark.above) mark.draw(c, frame);
+  c.restore();
+  for (const mark of marks) if (mark.above) mark.draw(c, frame);
+}
 
 export class Plot {
   frame = null;
-  head = 0;
   lit = [];
 
   /**
-   * container: the node whose size counts; layer: parent of the ring; viewport: whose cursor the
-   * ring follows, if any. Subclasses implement prepare(width, height, alone), which returns {frame,
-   * marks}, or {empty} for a text in place of both, or null. head: px above the canvas; offset:
-   * position of the canvas in `layer`, px.
+   * canvas: fills its parent; node: named for screen readers; viewport: whose cursor the ring
+   * follows, if any. Subclasses implement prepare(width, height, alone), which returns {frame,
+   * marks}, or {empty} for a text in place of both, or null.
    */
-  constructor(canvas, container, layer, viewport) {
-    Object.assign(this, {canvas, container, viewport});
+  constructor(canvas, viewport, node = canvas) {
+    Object.assign(this, {canvas, viewport, node});
     this.ring = element("div", {className: "lit", hidden: true});
-    layer.append(this.ring);
-    this.size = new Size(container, () => this.resized());
+    canvas.after(this.ring);
+    this.size = new Size(canvas.parentNode, () => this.refresh());
     viewport?.onCursor(() => this.point());
   }
 
@@ -35,25 +48,23 @@ export class Plot {
     this.refresh();
   }
 
-  resized() {
-    this.refresh();
-  }
-
   refresh() {
-    const {width} = this.size;
-    if (!width) return;
-    const height = Math.max(this.size.height - this.head, 50);
-    const prepared = this.prepare(width, height);
+    const {width, height} = this.size;
+    const prepared = width && this.prepare(width, height);
     if (!prepared) return;
     this.frame = prepared.frame;
-    this.place(height);
-    paint(blank(this.canvas, {width, height}), {width, height, ...prepared});
+    paint(blank(this.canvas, this.size), {width, height, ...prepared});
     this.point();
     this.light(...this.lit);
   }
 
-  /** Positions the canvas; overridden by subclasses. */
-  place() {}
+  /** Redraws once before the next frame. */
+  soon() {
+    this.frameAsked ||= requestAnimationFrame(() => {
+      this.frameAsked = 0;
+      this.refresh();
+    });
+  }
 
   /** Draws the plot for export. */
   paintAll(c, width, height) {
@@ -76,9 +87,7 @@ export class Plot {
     const {frame, ring} = this;
     const [left, top] = frame ? [frame.px(x ?? NaN), frame.py(y ?? NaN)] : [];
     ring.hidden = !frame?.holds(left, top);
-    if (ring.hidden) return;
-    const [right, down] = this.offset;
-    ring.style.transform = `translate(${left + right}px, ${top + down}px)`;
+    if (!ring.hidden) ring.style.transform = `translate(${left}px, ${top}px)`;
   }
 }
 
@@ -91,58 +100,29 @@ export class ZoomablePlot extends Plot {
   constructor(container, viewport = new Viewport(), across = null) {
     const canvas = element("canvas");
     const over = element("div", {className: "over"});
-    super(canvas, container, over, viewport);
+    container.append(element("div", {className: "plane"}, canvas, over));
+    super(canvas, viewport, container);
     Object.assign(this, {across, over});
     this.cursor = element("div", {className: "cursor", hidden: true});
-    over.prepend(this.cursor);
-    container.append(canvas, over);
+    over.append(this.cursor);
     for (const each of [viewport, across]) each?.onZoom(() => this.soon());
     listen(over, viewport, (...where) => this.click(...where), across);
   }
 
-  /** Redraws once before the next frame. */
-  soon() {
-    this.waiting ||= requestAnimationFrame(() => {
-      this.waiting = 0;
-      this.refresh();
-    });
-  }
-
-  /** Positions the canvas and the element over it. */
-  place(height) {
-    const {box, width, height: high} = this.frame;
-    this.offset = [-box.left, -box.top];
-    const place = {left: box.left, top: box.top + this.head, width, height: high};
-    for (const [name, px] of Object.entries(place)) this.over.style[name] = `${px}px`;
-    this.canvas.style.height = `${height}px`;
-  }
-
   point() {
     super.point();
-    const {cursor, range, width} = this.viewport;
-    const share = cursor === null ? -1 : (cursor - range[0]) / width;
-    const inView = this.frame && share >= 0 && share <= 1;
-    this.cursor.hidden = !inView;
-    if (!inView) return;
-    this.cursor.style.transform = `translateX(${Math.round(share * this.frame.width)}px)`;
+    if (!this.frame) return;
+    const {box, width, height} = this.frame;
+    const place = {left: box.left, top: box.top, width, height};
+    for (const [name, px] of Object.entries(place)) this.over.style[name] = `${px}px`;
+    const {cursor, range} = this.viewport;
+    const share = cursor === null ? -1 : (cursor - range[0]) / this.viewport.width;
+    this.cursor.hidden = share < 0 || share > 1;
+    if (this.cursor.hidden) return;
+    this.cursor.style.transform = `translateX(${Math.round(share * width)}px)`;
     this.cursor.dataset.at = this.cursorText(cursor);
   }
 }
-
-function paint(c, {frame, marks, empty, width, height}) {
-  if (!frame) {
-    c.font = font;
-    ink(c, "soft");
-    return drawText(c, empty, width / 2, height / 2);
-  }
-  frame.draw(c);
-  frame.clip(c);
-  for (const mark of marks) if (!mark.above) mark.draw(c, frame);
-  c.restore();
-  for (const mark of marks) if (mark.above) mark.draw(c, frame);
-}
-
-const small = 130; // px of height below which a plot has few labels
 
 const columnsOf = (width) => Math.max(width - 60, 10);
 
@@ -156,12 +136,12 @@ export class LinePlot extends ZoomablePlot {
   /** viewport: shared with other plots over the same time. */
   constructor(container, viewport) {
     super(container, viewport);
-    this.legend = element("div", {className: "legend"});
+    this.legend = element("div", {className: "legend line"});
     container.prepend(this.legend);
   }
 
   /**
-   * x: {label, factor}; y: {range, log, label}, the range by default that of the series; span: [from,
+   * x: {label, factor, aligned: numbers at the side as in large plots}; y: {range, log, label}, the range by default that of the series; span: [from,
    * to] of the full axis, if this plot sets it; unit: of the series; click(x, reach): reach is 6 px
    * in units of x; points: as in Plot.
    *
@@ -172,11 +152,6 @@ export class LinePlot extends ZoomablePlot {
   draw(options) {
     if (options.span) this.viewport.span(...options.span);
     super.draw(options);
-  }
-
-  resized() {
-    this.head = this.legend.offsetHeight;
-    this.refresh();
   }
 
   click(...where) {
@@ -207,7 +182,8 @@ export class LinePlot extends ZoomablePlot {
     const series = seriesOf(marks);
     const columns = series.map((one) => one.y);
     const ofY = {range: rangeOf(columns, y.log) ?? [0, 1], ...y};
-    const frame = new Frame(width, height, {...x, range, bare: height < small}, ofY);
+    const bare = height < small && !x.aligned;
+    const frame = new Frame(width, height, {...x, range, bare}, ofY);
     const named = alone && series.length > 1 ? [names({series})] : [];
     return {frame, marks: [...under, ...marks, ...named]};
   }
@@ -249,14 +225,13 @@ export class LinePlot extends ZoomablePlot {
     this.written = written;
     this.values = series.map(() => element("b"));
     const keys = series.map(({label, colour, dash}, i) => {
-      const className = `key line${dash ? " dashed" : ""}`;
-      const key = element("span", {className}, label, " ", this.values[i]);
+      const key = element("span", {className: "key"}, label, " ", this.values[i]);
+      key.dataset.mark = dash ? "╍╍" : "━━";
       key.style.setProperty("--key", `var(--${colour})`);
       return key;
     });
-    this.legend.hidden = keys.length < 2;
-    this.legend.replaceChildren(...(this.legend.hidden ? [] : keys));
-    this.head = this.legend.offsetHeight;
+    this.legend.replaceChildren(...(keys.length > 1 ? keys : []));
+    this.size.measure();
   }
 }
 
@@ -266,15 +241,9 @@ const reach = 14; // px within which a point is picked
 export class ScatterPlot extends Plot {
   /** viewport: whose cursor the ring follows. */
   constructor(canvas, viewport) {
-    super(canvas, canvas, canvas.parentNode, viewport);
+    super(canvas, viewport);
     const hover = (event) => this.hover(event);
     on(canvas, {pointermove: hover, click: hover});
-    this.resized();
-  }
-
-  resized() {
-    this.offset = [this.canvas.offsetLeft, this.canvas.offsetTop];
-    this.refresh();
   }
 
   /** The marks with points. */

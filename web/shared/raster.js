@@ -1,7 +1,8 @@
 // Images of pixels in a plot: maps, and densities, which count the points at each pixel. In a density
 // a periodic orbit appears as a few opaque dots, chaos as a cloud.
-import {rgb} from "./colours.js";
+
 import {element} from "./dom.js";
+import {rgb} from "./ink.js";
 import {clamp} from "./numbers.js";
 
 /** A colour [red, green, blue] as a pixel. */

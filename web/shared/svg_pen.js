@@ -24,11 +24,9 @@ export class SvgPen {
   path = "";
   saved = [];
 
-  constructor(width, height, background) {
+  constructor(width, height) {
     const viewBox = `0 0 ${width} ${height}`;
     this.root = this.group = svg("svg", {width, height, viewBox});
-    this.fillStyle = background;
-    this.fillRect(0, 0, width, height);
   }
 
   text() {

@@ -4,12 +4,12 @@ import {simulate} from "../shared/api.js";
 import {$, countUp, sayIn} from "../shared/dom.js";
 import {Job} from "../shared/job.js";
 import {detailsOptions} from "./details_plots.js";
-import {accountEnergy, summarise, tabulate} from "./details_summary.js";
-import {listParameters} from "./parameters.js";
+import {accountEnergy, listParameters, summarise, tabulate} from "./details_summary.js";
 import {commonOptions, PlotGroup} from "./plot_group.js";
 import {run} from "./run.js";
 
 const include = ["series", "impacts", "exponents", "eigenvalues", "section", "energy", "regime"];
+const perturbation = {size: 1e-9}; // needs a motion in closed form
 
 const details = $("details");
 const say = sayIn("details-message");
@@ -17,7 +17,8 @@ let plots;
 let fieldOf;
 
 const job = new Job({
-  ask: (fields, signal) => simulate({perturbation: {size: 1e-9}, ...fields, include}, signal),
+  ask: (fields, signal) =>
+    simulate({...(!run.answer.series && {perturbation}), ...fields, include}, signal),
   show(answer, fields) {
     if (fields !== run.fields) return;
     run.details = answer;

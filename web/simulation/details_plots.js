@@ -3,9 +3,8 @@ import {reveal} from "../shared/dom.js";
 import {exponentRange} from "../shared/exponents.js";
 import {beads, curve, dots, levels, line, lines} from "../shared/marks.js";
 import {digits} from "../shared/numbers.js";
-import {alongRun, inUnits, largestMagnitude, logRange, mm, positive} from "./columns.js";
 import {exponentLines, halves, picked} from "./plot_group.js";
-import {run} from "./run.js";
+import {alongRun, inUnits, largestMagnitude, logRange, mm, positive, run} from "./run.js";
 
 const estimators = ["qr", "eigenvalues", "raw_product"];
 const matrices = ["J", "M", "T"];
@@ -142,7 +141,7 @@ function divergence(perturbation) {
 export function detailsOptions(answer) {
   const {series, exponents, regime, eigenvalues, section, parameters} = answer;
   const orbit = regime.periodic && regime.contacts > 0; // not for periodic free flight
-  reveal({"figure-multipliers": orbit});
+  reveal({"figure-multipliers": orbit, "figure-divergence": answer.perturbation});
   return {
     acceleration: acceleration(series),
     z: impactsPerCycle(regime.z_moving),
@@ -152,6 +151,6 @@ export function detailsOptions(answer) {
     stroboscopic: stroboscopic(section.stroboscopic),
     differences: differences(section.impact, parameters.Omega),
     ...(orbit && {multipliers: multiplierPlane(regime.multipliers)}),
-    divergence: divergence(answer.perturbation),
+    ...(answer.perturbation && {divergence: divergence(answer.perturbation)}),
   };
 }

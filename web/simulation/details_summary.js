@@ -1,16 +1,19 @@
 // Results of a run as text and numbers: cards of the window and the whole run, the table of
-// windows, and the energy balance.
+// windows, the energy balance, and the parameters.
 //
 // units: {si, time, velocity, ..., at(tau)}. A quantity is {of(value), unit}: of() converts a
 // dimensionless value, unit is the suffix. at(tau) formats a time.
-
-import {$, reveal, setTexts} from "../shared/dom.js";
+import {$, cards, reveal, setTexts, tableOf} from "../shared/dom.js";
+import {resolved} from "../shared/form.js";
 import {count, digits, inMm, minus, percent, shortTo} from "../shared/numbers.js";
-import {verdicts} from "../shared/quantities.js";
-import {cards, tableOf} from "../shared/tables.js";
-import {largestMagnitude} from "./columns.js";
+import {symbolOf, verdicts} from "../shared/quantities.js";
+import {largestMagnitude} from "./run.js";
 
-const exponent = ({final, status}, k) => (status[k] === "minus_infinity" ? "−∞" : digits(final[k]));
+const joined = (parts, separator = ", ") => parts.filter(Boolean).join(separator);
+
+const withErrorOf = ({standard_error: [error]}) => (error == null ? "" : `± ${digits(error)}`);
+
+const inUnit = (value, {of, unit}) => `${shortTo(3, of(value))} ${unit}`;
 
 function regimeCard({type, description, capture}, units) {
   const name = type === "none" ? "none" : `Type ${type}`;
@@ -23,33 +26,24 @@ function rhythm(r) {
   if (!r.contacts) return "";
   if (!r.periodic) return `${percent(r.synchronised.share)} of the contacts synchronised`;
   const chatter = r.chatter_impacts_per_period;
-  const sticks = r.sticks_per_period;
-  const parts = [
+  return joined([
     `period ${count(r.period_cycles, "cycle")}: ${count(r.impacts_per_period, "impact")}`,
-    chatter && `${count(chatter, "chatter impact")}`,
-    sticks && count(sticks, "stick"),
+    chatter && count(chatter, "chatter impact"),
+    r.sticks_per_period && count(r.sticks_per_period, "stick"),
     r.symmetric ? "symmetric" : "asymmetric",
     !r.stable && "unstable",
-  ];
-  return parts.filter(Boolean).join(", ");
+  ]);
 }
 
-function verdictCard({verdict, verdict_reason: given}, r) {
+function verdictCard({verdict, verdict_reason: given}, {periodic, contacts, stable}) {
   // The service writes plain text: typographic characters are substituted.
-  const text = given?.replace("lambda1", "λ₁").replace("= -", "= −");
-  const reason = text ?? "requires the estimator qr";
-  const name = verdicts[verdict] ?? "–";
-  if (!r.periodic || !r.contacts || verdict !== "not_decided") return ["verdict", name, reason];
-  const orbit = `a ${r.stable ? "stable" : "unstable"} periodic orbit`;
-  return ["verdict", name, `${reason}; the motion ends on ${orbit}`];
-}
-
-function lambdaCard({qr}, {time}) {
-  const error = qr?.standard_error[0];
-  const remark = error == null ? "" : `± ${digits(error)}`;
-  // Exponents are per unit of tau, even if times are in seconds.
-  const unit = time.unit ? " per unit of τ" : "";
-  return ["λ₁ (qr)", qr ? digits(qr.final[0]) : "–", remark + unit];
+  const reason = given?.replace("lambda1", "λ₁").replace("= -", "= −");
+  const orbit =
+    periodic && contacts && verdict === "not_decided"
+      ? `the motion ends on a ${stable ? "stable" : "unstable"} periodic orbit`
+      : "";
+  const why = joined([reason ?? "requires the estimator qr", orbit], "; ");
+  return ["verdict", verdicts[verdict] ?? "–", why];
 }
 
 /**
@@ -57,9 +51,9 @@ function lambdaCard({qr}, {time}) {
  * decided.
  */
 function positivesCard({qr, raw_product: product, verdict}) {
-  const positives = (estimator) =>
-    estimator?.final[0] == null ? "–" : String(estimator.final.filter((v) => v > 0).length);
-  const [byQr, raw] = [qr, product].map(positives);
+  const [byQr, raw] = [qr, product].map((estimator) =>
+    estimator?.final[0] == null ? "–" : String(estimator.final.filter((v) => v > 0).length),
+  );
   const decided = {regular: "none in the long run", chaotic: byQr, not_decided: "not decided"};
   const remark = raw === "–" || raw === byQr ? "" : `${raw} by the raw product`;
   return ["positive exponents (qr)", decided[verdict] ?? "–", remark];
@@ -70,36 +64,23 @@ function residualCard({qr, sum_rule_residual: residual, impacts}) {
   return ["sum rule residual", "–", qr && impacts > 1 ? "undefined after sticking" : ""];
 }
 
-const inUnit = (value, {of, unit}) => `${shortTo(3, of(value))} ${unit}`;
-
 /** Cards in SI; the median of an even count is the upper of the middle two. */
-function engineeringCards({impacts, series, parameters}, units) {
+function engineeringCards({impacts, series, parameters}, {velocity, impulse, acceleration}) {
   const {si, derived} = parameters;
-  const {relative_speed: speed, impulse} = impacts;
-  const ratio = shortTo(4, si.f / derived.f0);
+  const {relative_speed: speed} = impacts;
   const median = (values) => values.toSorted((a, b) => a - b)[values.length >> 1];
-  const highest = shortTo(3, units.velocity.of(largestMagnitude(speed)));
-  const blow = inUnit(median(impulse.map(Math.abs)), units.impulse);
+  const highest = shortTo(3, velocity.of(largestMagnitude(speed)));
+  const blow = inUnit(median(impacts.impulse.map(Math.abs)), impulse);
+  const remark = speed.length ? `median; at most ${highest}; impulse ${blow}` : "";
+  const peak = inUnit(largestMagnitude(series.x_ddot), acceleration);
+  const base = `${shortTo(4, si.f / derived.f0)} of f₀; base ± ${inMm(si.F)}`;
+  const load = parameters.forcing ? ["load", ""] : [`${shortTo(3, si.f)} Hz`, base];
   return [
-    ["forcing", `${shortTo(3, si.f)} Hz`, `${ratio} of f₀; base ± ${inMm(si.F)}`],
-    [
-      "impact speed",
-      inUnit(median(speed), units.velocity),
-      speed.length ? `median; at most ${highest}; impulse ${blow}` : "",
-    ],
-    [
-      "peak acceleration",
-      inUnit(largestMagnitude(series.x_ddot), units.acceleration),
-      "of m₁ between the impacts",
-    ],
+    ["forcing", ...load],
+    ["impact speed", inUnit(median(speed), velocity), remark],
+    ["peak acceleration", peak, "of m₁ between the impacts"],
   ];
 }
-
-const freeAmplitudeCard = (free, {peak}) => [
-  "amplitude without absorber",
-  inMm(free),
-  `with absorber: |x| up to ${inMm(peak)}`,
-];
 
 /** Title of the window's cards. */
 function windowTitle({window, impacts}, {at}, requested) {
@@ -110,81 +91,120 @@ function windowTitle({window, impacts}, {at}, requested) {
 
 export function summarise(answer, units) {
   const {exponents, regime, energy, impacts, sticking, parameters} = answer;
-  const stickingPhases = sticking.side.length;
+  const {qr} = exponents;
   const {amplitude: free} = energy.without_absorber;
+  // Exponents are per unit of tau, even if times are in seconds.
+  const perTime = units.time.unit ? " per unit of τ" : "";
   setTexts({"summary-title": windowTitle(exponents, units, parameters.window)});
+  const peak = `with absorber: |x| up to ${inMm(energy.peak)}`;
   cards($("summary"), [
     regimeCard(regime, units),
     ["impacts per cycle, z", digits(regime.z, 3), rhythm(regime)],
     verdictCard(exponents, regime),
-    lambdaCard(exponents, units),
+    ["λ₁ (qr)", qr ? digits(qr.final[0]) : "–", (qr ? withErrorOf(qr) : "") + perTime],
     positivesCard(exponents),
     residualCard(exponents),
     ["dissipated by impacts", percent(energy.share_impacts), "of all dissipation"],
     ["rms of x", percent(energy.rms_ratio), "of that without absorber"],
-    ...(free == null ? [] : [freeAmplitudeCard(free, energy)]),
+    ...(free == null ? [] : [["amplitude without absorber", inMm(free), peak]]),
   ]);
+  const stuck = sticking.side.length;
   cards($("summary-run"), [
     ["impacts", String(impacts.tau.length), "chatter included"],
-    ["sticking phases", String(stickingPhases), stickingPhases ? "shaded in the plots" : ""],
+    ["sticking phases", String(stuck), stuck ? "shaded in the plots" : ""],
     ["damping ζ", digits(parameters.derived.zeta, 5), parameters.damping.replaceAll("_", " ")],
     ...(units.si ? engineeringCards(answer, units) : []),
   ]);
 }
 
+const exponent = ({final, status}, k) => (status[k] === "minus_infinity" ? "−∞" : digits(final[k]));
+
 export function tabulate(windows = [], {time}) {
   reveal({"figure-windows": windows.length});
   const span = time.unit ? ["from (s)", "to (s)"] : ["τ from", "to"];
   const names = [...span, "impacts", "λ₁", "λ₂", "λ₃", "λ₄", "verdict"];
-  const rows = windows.map((w) => {
-    const lambda = [0, 1, 2, 3].map((k) => (w.qr ? exponent(w.qr, k) : "–"));
-    const error = w.qr?.standard_error[0];
-    const requested = w.asked.map((t) => (time.unit ? time.of(t).toFixed(2) : String(t)));
-    if (error != null) lambda[0] += ` ± ${digits(error)}`;
-    return [...requested, String(w.impacts), ...lambda, verdicts[w.verdict] ?? "–"];
+  const rows = windows.map(({qr, asked, impacts, verdict}) => {
+    const [first, ...others] = [0, 1, 2, 3].map((k) => (qr ? exponent(qr, k) : "–"));
+    const lambda = [joined([first, qr && withErrorOf(qr)], " "), ...others];
+    const requested = asked.map((t) => (time.unit ? time.of(t).toFixed(2) : String(t)));
+    return [...requested, String(impacts), ...lambda, verdicts[verdict] ?? "–"];
   });
   $("windows").replaceChildren(...tableOf(names, rows));
-}
-
-/** Energy supplied, and the decay times of a free decay. */
-function energyNote({input, at_start: start, decay}, units) {
-  const supply = [
-    input && `${inUnit(input, units.energy)} from the base`,
-    start && `${inUnit(start, units.energy)} at the start`,
-  ];
-  const parts = [supply.filter(Boolean).join(", "), ...(decay ? decayTimes(decay, units) : [])];
-  return parts.filter(Boolean).join("; ");
 }
 
 /** Times at which half and a tenth of the energy are left, with and without the absorber. */
 function decayTimes(decay, {at}) {
   const timeOf = (tau, before = "") => (tau == null ? "not in this run" : before + at(tau));
-  return Object.entries({tau_half: "half of the energy", tau_tenth: "a tenth"})
-    .map(([name, what]) => [what, decay[name], decay.without_absorber[name]])
-    .filter(([, ...taus]) => taus.some((tau) => tau != null))
-    .map(
-      ([what, tau, without]) =>
-        `${what} is left ${timeOf(tau, "at ")} (without absorber: ${timeOf(without)})`,
-    );
+  return Object.entries({tau_half: "half of the energy", tau_tenth: "a tenth"}).map(
+    ([name, what]) => {
+      const [tau, without] = [decay[name], decay.without_absorber[name]];
+      if ((tau ?? without) == null) return "";
+      return `${what} is left ${timeOf(tau, "at ")} (without absorber: ${timeOf(without)})`;
+    },
+  );
 }
 
 /**
- * Shows the energy balance: the energy supplied by the base or present at the start is dissipated by
- * the damper and the impacts, or is left at the end. The fractions are of the sum of these three,
- * which equals the energy supplied. Compares rms and peak of x with those without the absorber.
+ * Shows the energy balance: the energy supplied by the base or present at the start is dissipated, or
+ * is left at the end. The fractions are of their sum, which equals the energy supplied. Compares rms
+ * and peak of x with those without the absorber.
  */
 export function accountEnergy(energy, units) {
-  const {damper, impacts, at_end: left, without_absorber: without} = energy;
-  const total = damper + impacts + left || 1;
-  const parts = Object.entries({damper, impacts, "left at the end": left});
-  const row = ([name, value]) => [name, percent(value / total), inUnit(value, units.energy)];
-  const compared = Object.entries({rms: "rms", peak: "largest"});
-  const both = ([key, name]) => [name, inMm(energy[key]), inMm(without[key])];
-  const tables = {
-    "energy-parts": tableOf(["energy to", "fraction", "amount"], parts.map(row)),
-    "energy-compared": tableOf(["|x|", "with absorber", "without"], compared.map(both)),
-  };
-  for (const [id, rows] of Object.entries(tables)) $(id).replaceChildren(...rows);
-  setTexts({"energy-note": energyNote(energy, units)});
+  const {input, damper, impacts, friction = 0, at_start: start, at_end: left, decay} = energy;
+  const total = damper + impacts + friction + left || 1;
+  const parts = {damper, impacts, ...(friction && {friction}), "left at the end": left};
+  const rows = Object.entries(parts).map(([name, value]) => [
+    name,
+    percent(value / total),
+    inUnit(value, units.energy),
+  ]);
+  const compared = Object.entries({rms: "rms", peak: "largest"}).map(([key, name]) => [
+    name,
+    inMm(energy[key]),
+    inMm(energy.without_absorber[key]),
+  ]);
+  $("energy-parts").replaceChildren(...tableOf(["energy to", "fraction", "amount"], rows));
+  $("energy-compared").replaceChildren(...tableOf(["|x|", "with absorber", "without"], compared));
+  const supply = joined([
+    input && `${inUnit(input, units.energy)} from the base`,
+    start && `${inUnit(start, units.energy)} at the start`,
+  ]);
+  setTexts({"energy-note": joined([supply, ...(decay ? decayTimes(decay, units) : [])], "; ")});
   reveal({"energy-scale": !units.si});
+}
+
+// Derived parameters: unit and what they follow from.
+const derived = {
+  zeta: ["", "epsilon, lambda, damping"],
+  omega0: ["rad/s", "k1, m1"],
+  omega_d: ["", "zeta"],
+  A: ["m", "G, epsilon, lambda, Omega"],
+  phi: ["rad", "epsilon, lambda, Omega"],
+  cycle: ["", "Omega"],
+  cycle_s: ["s", "f"],
+  time_end_s: ["s", "tau_end, omega0"],
+  window_s: ["s", "window, omega0"],
+};
+
+function precise(value) {
+  if (Array.isArray(value)) return value.map(precise).join(" to ");
+  if (typeof value === "number") return minus(String(Number(value.toPrecision(6))));
+  if (typeof value === "object") return Object.keys(value).join(", ");
+  return String(value).replaceAll("_", " ");
+}
+
+/** Lists the parameters of a run: name, symbol, value with unit, and origin. */
+export function listParameters(parameters, fieldOf) {
+  const {values, origins} = resolved(parameters);
+  const all = {...values, ...parameters.derived};
+  const known = [...Object.keys(fieldOf), ...Object.keys(derived)].filter(
+    (name) => name !== "R" && all[name] != null, // R: each wall has its own row
+  );
+  const rows = known.map((name) => {
+    const [unit, from] = derived[name] ?? [fieldOf[name].unit ?? ""];
+    const shown = unit === "dimensionless" ? "" : unit.replace("tau", "τ");
+    const origin = origins[name] ?? (from && `follows from ${from}`) ?? "";
+    return [name, symbolOf(name), `${precise(all[name])} ${shown}`.trim(), origin];
+  });
+  $("parameters").replaceChildren(...tableOf(["name", "symbol", "value", "origin"], rows));
 }

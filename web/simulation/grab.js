@@ -8,7 +8,8 @@ import {run, viewport} from "./run.js";
 const reach = 14; // px within which a part is grabbed
 
 /** The part at a position of the drawing with the absorber: "ball", "wall" or undefined. */
-function partAt({ball, wall}, x) {
+function partAt({ball, wall, along}, event) {
+  const x = along(event);
   if (Math.abs(ball - x) < reach) return "ball";
   return [1, -1].some((side) => Math.abs(wall(side) - x) < reach) ? "wall" : undefined;
 }
@@ -20,9 +21,9 @@ function partAt({ball, wall}, x) {
 export function start(canvas, set) {
   let part;
   let drawing;
-  const drag = ({offsetX}, dragging) => {
+  const drag = (event, dragging) => {
     const {b, parameters} = run.motion;
-    const away = (offsetX - drawing.px(drawing.x)) / drawing.scale; // y - x
+    const away = (drawing.along(event) - drawing.px(drawing.x)) / drawing.scale; // y - x
     const most = 0.999 * b;
     const fields =
       part === "ball"
@@ -39,7 +40,7 @@ export function start(canvas, set) {
   on(canvas, {
     pointerdown(event) {
       drawing = machine.drawn();
-      part = drawing && partAt(drawing, event.offsetX);
+      part = drawing && partAt(drawing, event);
       if (!part) return;
       event.preventDefault();
       canvas.setPointerCapture(event.pointerId);
@@ -49,7 +50,7 @@ export function start(canvas, set) {
     },
     pointermove(event) {
       if (part) return drag(event, true);
-      const at = machine.drawn() && partAt(machine.drawn(), event.offsetX);
+      const at = machine.drawn() && partAt(machine.drawn(), event);
       canvas.style.cursor = at ? "ew-resize" : "";
     },
     pointerup: end,

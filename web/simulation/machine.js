@@ -2,9 +2,10 @@
 // base: spring, damper, oscillator, walls, and the ball with a short trail; impacts flash. A band
 // below each shows how far its oscillator moves.
 import {$, setTexts} from "../shared/dom.js";
+import {lawsInSi} from "../shared/form.js";
 import {blank, font, Size} from "../shared/frame.js";
 import {drawText, ink} from "../shared/ink.js";
-import {inMm, percent} from "../shared/numbers.js";
+import {clamp, inMm, percent, shortTo} from "../shared/numbers.js";
 import {run, viewport} from "./run.js";
 
 const flashDuration = 0.12; // cycles
@@ -26,6 +27,24 @@ export function holdScale(scale) {
 
 /** {px, scale, wall, x: displacement, ball: px} of the machine with the absorber. */
 export const drawn = () => last;
+
+const [leastTilt, mostTilt] = [4, 12].map((degrees) => (degrees * Math.PI) / 180);
+
+/**
+ * {text, drawn} of an inclined track: small angles are exaggerated, large ones are drawn smaller, so
+ * that the machine fits. Without an angle only the sign of gravity is known. null without gravity.
+ */
+function tiltOf(parameters) {
+  const {gravity, si} = parameters;
+  if (!gravity) return null;
+  const {inclination} = si ? lawsInSi(parameters) : {inclination: null};
+  const size = clamp(Math.abs(inclination ?? leastTilt), leastTilt, mostTilt);
+  const degrees = (radians) => `${shortTo(3, (radians * 180) / Math.PI)}°`;
+  const drawn = Math.sign(gravity) * size;
+  if (inclination === null) return {drawn, text: `, gravity ${inMm(gravity)}`};
+  const scale = drawn === inclination ? "" : `, drawn at ${degrees(drawn)}`;
+  return {drawn, text: `, inclined by ${degrees(inclination)}${scale}`};
+}
 
 /** Draws a path in the notation of SVG. */
 const line = (c, path) => c.stroke(new Path2D(path));
@@ -81,6 +100,10 @@ class Drawing {
     Object.assign(this, {c, top, bottom: floor - 12, level: (top + floor - 12) / 2});
     const [left, right] = [this.wall(1) - ballRadius, this.wall(-1) + ballRadius];
     Object.assign(this, {left, right});
+    const tilt = tiltOf(run.answer.parameters);
+    const text = `${title}: ± ${inMm(peak, 2)}${tilt?.text ?? ""}`;
+    this.name("text", text, width / 2, 1, "top", `600 ${font}`);
+    if (tilt) this.turn(c, size, tilt.drawn);
     ink(c, "soft");
     line(c, `M${anchor} ${floor + 0.5}H${width - 8}`);
     ink(c, "soft", 3);
@@ -94,7 +117,23 @@ class Drawing {
     ink(c, colour, 1.2);
     c.stroke();
     this.band(floor + 5, peak, x, colour);
-    this.name("text", `${title}: ± ${inMm(peak, 2)}`, width / 2, 1, "top", `600 ${font}`);
+  }
+
+  /** Turns what is drawn afterwards by an angle, made smaller so that it fits below the title. */
+  turn(c, {width, height}, angle) {
+    const [sin, cos] = [Math.sin(angle), Math.cos(angle)];
+    const [x, y, top] = [width / 2, height / 2, 16];
+    const fit = Math.min(1, (height - top) / (width * Math.abs(sin) + (height - top) * cos));
+    c.translate(x, y + top / 2);
+    c.transform(fit * cos, fit * sin, -fit * sin, fit * cos, 0, 0);
+    c.translate(-x, -y - top / 2);
+    this.along = ({offsetX, offsetY}) =>
+      x + ((offsetX - x) * cos + (offsetY - y - top / 2) * sin) / fit;
+  }
+
+  /** The place of a pointer along the track, px. */
+  along({offsetX}) {
+    return offsetX;
   }
 
   /** The range of the oscillator, and its place in it. */
@@ -156,6 +195,7 @@ function ball({c, px, level}, x) {
 
 function drawWithout(canvas, size, cursor) {
   const x = run.motion.withoutAbsorber(cursor);
+  if (x === null) return blank(canvas, size); // not known yet
   const {peak} = run.answer.energy.without_absorber;
   const {c, level, left, right} = new Drawing(canvas, size, {
     x,

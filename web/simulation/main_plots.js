@@ -1,15 +1,13 @@
 // Plots of the first screen: motion over time (reconstructed from the impacts), largest modulus of
 // T, exponents, section and manifold. They share a cursor, and the impact nearest to it is ringed
 // in each.
-import {$, attributes, setTexts} from "../shared/dom.js";
+import {$, attributes, reveal, setTexts} from "../shared/dom.js";
 import {exponentRange} from "../shared/exponents.js";
 import {beads, curve, dots, levels, line, symbols} from "../shared/marks.js";
-import {inMm, short} from "../shared/numbers.js";
-import {firstFrom, lastUpTo} from "../shared/search.js";
+import {firstFrom, inMm, lastUpTo, short} from "../shared/numbers.js";
 import {unitsOf} from "../shared/units.js";
-import {alongRun, inUnits, largestMagnitude, logRange, mm, positive} from "./columns.js";
 import {commonOptions, exponentLines, halves, PlotGroup, picked} from "./plot_group.js";
-import {run, viewport} from "./run.js";
+import {alongRun, inUnits, largestMagnitude, logRange, mm, positive, run, viewport} from "./run.js";
 
 const mostSamples = 100000; // samples in an exported table
 // Side of the impacts of each colour, and their name in tables.
@@ -27,7 +25,7 @@ export function start() {
 
 export const redraw = () => plots.refresh();
 
-const optionsOf = {x: displacement, relative, lambda: exponents, section, largest, manifold};
+const optionsOf = {load, x: displacement, relative, lambda: exponents, section, largest, manifold};
 const deferredPlots = ["largest", "manifold"];
 
 /**
@@ -41,9 +39,11 @@ function stepsOf(...names) {
 
 export function drawing() {
   traced = null;
-  byWall = impactsByWall(run.answer.impacts);
+  byWall = impactsByWall(run.motion.impacts);
   plots.common = commonOptions(run.answer);
-  return stepsOf("x", "relative", "lambda", "section", ...(run.deferred ? deferredPlots : []));
+  reveal({"figure-load": run.load});
+  const first = [...(run.load ? ["load"] : []), "x", "relative", "lambda", "section"];
+  return stepsOf(...first, ...(run.deferred ? deferredPlots : []));
 }
 
 /** Draws the deferred answer: eigenvalues, raw product, manifold. */
@@ -107,13 +107,32 @@ function partOf(name, label, heights) {
   };
 }
 
+// Columns of a load: name of the axis, factor of its numbers.
+const loads = {
+  acceleration_m_s2: ["base x″ (m/s²)", 1],
+  displacement_m: ["base (mm)", 1000],
+  force_N: ["force (N)", 1],
+};
+
+/** The samples of a load that has no period. */
+function load() {
+  const {time_s: time, ...columns} = run.load;
+  const {omega0} = run.answer.parameters.derived;
+  const [name] = Object.keys(loads).filter((each) => Array.isArray(columns[each]));
+  const [label, factor] = loads[name];
+  const x = time.map((t) => (t - time[0]) * omega0);
+  const y = columns[name].map((v) => v * factor);
+  const marks = [levels({y: 0}), line({label, colour: "trace", x, y})];
+  return {marks, y: {label}, x: {...run.units.x, aligned: true}};
+}
+
 /** The range does not change with the zoom. */
 function displacement() {
   inView(0, run.motion.end, plots.all.x.columns); // also sets motion.reach
   const reach = 1080 * Math.max(run.motion.reach, pinned?.motion.reach ?? 0) || 1;
   return {
-    ...partOf("x", "x", mm(run.answer.impacts.x)),
-    y: {label: "x (mm)", range: [-reach, reach]},
+    ...partOf("x", "x", mm(run.motion.impacts.x)),
+    y: {label: run.load ? "x − base (mm)" : "x (mm)", range: [-reach, reach]},
   };
 }
 
@@ -166,7 +185,7 @@ function exponents() {
 
 /** States after each impact, by wall. */
 function section() {
-  const {impacts} = run.answer;
+  const {impacts} = run.motion;
   const {velocity} = run.units;
   const place = (of, units = run.units) => ({
     x: mm(of.x),

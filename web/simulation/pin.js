@@ -1,7 +1,6 @@
 // The pinned run, compared with the runs that follow. The address holds its query.
-import {get} from "../shared/api.js";
 import {$, reveal, setTexts} from "../shared/dom.js";
-import {Motion} from "../shared/motion.js";
+import {motionOf} from "../shared/motion.js";
 import {digits, percent} from "../shared/numbers.js";
 import * as mainPlots from "./main_plots.js";
 import {toQuery} from "./request.js";
@@ -36,17 +35,15 @@ function keep(other) {
   mainPlots.pin(there);
 }
 
-/** Pins the run of a query, or none; ask: the parts to request. */
+/** Pins the run of a query, or none; ask(fields) requests a run. */
 export async function restore(wanted, ask) {
   if (wanted === query()) return;
   keep(wanted === null ? null : {query: wanted});
   if (wanted === null) return;
-  const all = new URLSearchParams(wanted);
-  for (const [name, list] of Object.entries(ask)) all.set(name, list.join());
-  if (!all.get("preset")) all.delete("preset");
+  const {preset, ...texts} = Object.fromEntries(new URLSearchParams(wanted));
   try {
-    const answer = await get(`v1/simulate?${all}`);
-    if (query() === wanted) keep({query: wanted, answer, motion: new Motion(answer)});
+    const answer = await ask({...(preset && {preset}), ...texts});
+    if (query() === wanted) keep({query: wanted, answer, motion: motionOf(answer)});
   } catch (error) {
     setTexts({"pinned-run": `the pinned run cannot be shown: ${error.message}`});
   }

@@ -1,7 +1,7 @@
 // The player: moves the cursor through the visible range in a loop, at a number of cycles per
 // second, optionally with a knock at each impact.
-import {$, attributes, setTexts} from "../shared/dom.js";
-import {save} from "../shared/export.js";
+import {$, attributes, save, setTexts} from "../shared/dom.js";
+
 import {count, shortTo} from "../shared/numbers.js";
 import * as machine from "./machine.js";
 import {run, viewport} from "./run.js";

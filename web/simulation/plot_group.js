@@ -1,11 +1,10 @@
 // The plots of a run: lines over time and planes.
 import {exponentSeries} from "../shared/exponents.js";
-import {addExportButton} from "../shared/export_dialog.js";
+import {addExportButton} from "../shared/export.js";
 import {makeAccessible} from "../shared/gestures.js";
 import {bands, dots, levels, lines, uprights} from "../shared/marks.js";
 import {LinePlot, ScatterPlot} from "../shared/plot.js";
-import {alongRun} from "./columns.js";
-import {run, viewport} from "./run.js";
+import {alongRun, run, viewport} from "./run.js";
 import {aboutFigure} from "./words.js";
 
 /** The plots inside an element by name: canvases are planes, the others lines over time. */

@@ -2,7 +2,10 @@
 //
 // `name` is the selected preset, "" if none. The form holds the given fields only. The service merges
 // them with the preset, and its answer has the values and origins of the others.
-import {isOfMotion, resolved, textOf} from "../shared/form.js";
+
+import {absoluteUrl, asCurl} from "../shared/api.js";
+import {$, element, press, setTexts} from "../shared/dom.js";
+import {isObject, isOfMotion, queryText, resolved, textOf} from "../shared/form.js";
 import {run} from "./run.js";
 import {differenceText, parameterLine} from "./sliders.js";
 
@@ -30,7 +33,14 @@ export class Request {
     const {values, origins} = resolved(run?.answer.parameters ?? {});
     const isPresets = ([name]) => origins[name] === `preset ${this.name}`;
     const own = Object.entries(values).filter(isPresets);
-    return {...Object.fromEntries(own), ...this.form.values()};
+    // An answer describes objects, such as a load, in other words.
+    const objects = Object.entries(this.preset?.parameters ?? {}).filter(([, v]) => isObject(v));
+    return {...Object.fromEntries([...own, ...objects]), ...this.form.values()};
+  }
+
+  /** The fields of a request and those of its preset. */
+  merged({preset: name, ...fields}) {
+    return {...this.presets.find((p) => p.name === name)?.parameters, ...fields};
   }
 
   /** True when the motion, or the part of it that is analysed, is no longer that of the preset. */
@@ -72,7 +82,11 @@ export class Request {
    * "preset=NAME" if that preset is unknown.
    */
   read(query) {
-    const spaced = ([name, text]) => [name, text.replace(/[,;](?=\S)/g, "$& ")];
+    const isJson = (text) => text.startsWith("{");
+    const spaced = ([name, text]) => [
+      name,
+      isJson(text) ? text : text.replace(/[,;](?=\S)/g, "$& "),
+    ];
     const given = Object.fromEntries([...new URLSearchParams(query)].map(spaced));
     const {preset: named = Object.keys(given).length ? "" : "fig3", ...fields} = given;
     this.choose(named, fields);
@@ -83,6 +97,79 @@ export class Request {
 
 /** A request as a query. Without fields it is `preset=`, because an empty query selects fig3. */
 export function toQuery(fields) {
-  const entries = Object.entries(fields).map(([name, v]) => [name, textOf(v).replaceAll(" ", "")]);
+  const texts = Object.entries(fields).map(([name, value]) => [name, queryText(value)]);
+  const entries = texts.filter(([, text]) => text !== undefined);
   return String(new URLSearchParams(entries.length ? entries : {preset: ""}));
 }
+
+// Presets: figures and tables of the paper, some as chips, all in a menu; and the plots that
+// correspond to them.
+const chips = document.querySelectorAll("#chips button");
+
+/**
+ * choose(name) is called with the name of a preset; "" means user-defined parameters; read(query)
+ * with the query of a machine.
+ */
+export function start(presets, choose, read) {
+  const menu = $("preset");
+  menu.append(new Option("user-defined parameters", ""));
+  for (const {name, source, title} of presets) menu.append(new Option(`${source}: ${title}`, name));
+  menu.onchange = () => choose(menu.value);
+  for (const chip of chips) {
+    const {preset, query} = chip.dataset;
+    if (preset) chip.title = menu.querySelector(`[value="${preset}"]`).text;
+    chip.onclick = () => (preset ? choose(preset) : read(query));
+  }
+}
+
+/** Selects the preset, and its chip unless the parameters were changed; own: a user's machine. */
+export function markChip(name, changed, own) {
+  $("preset").value = name;
+  press(chips, ({dataset: {preset}}) => (preset ? preset === name && !changed : own));
+}
+
+/** Tags the plots of a preset, and links to one in the details if all of them are there. */
+export function markPlots(preset) {
+  const name = preset?.name.split("_")[0]; // rows of a table share their plots
+  const source = preset?.source.split(",")[0];
+  for (const figure of document.querySelectorAll("[data-of]")) {
+    const isOf = figure.dataset.of.split(" ").includes(name);
+    figure.classList.toggle("about", isOf);
+    figure.querySelector(".tag")?.remove();
+    if (isOf)
+      figure.querySelector("figcaption").append(element("span", {className: "tag"}, source));
+  }
+  const own = [...document.querySelectorAll("figure.about")];
+  const alone = own.length && own.every((figure) => figure.closest("#details"));
+  $("to-details").href = alone ? `#${own[0].id}` : "#details";
+  setTexts({"to-details": alone ? `${source} is below ▾` : "details ▾"});
+}
+
+/** A Python program for the request that needs only the standard library. */
+const asPython = (path, fields) => `import json, urllib.request
+
+request = json.loads(${JSON.stringify(JSON.stringify(fields))})
+url = ${JSON.stringify(absoluteUrl(path))}
+body = json.dumps(request).encode()
+head = {"Content-Type": "application/json"}
+with urllib.request.urlopen(urllib.request.Request(url, body, head)) as answer:
+    result = json.load(answer)
+print(result["exponents"].get("qr", {}).get("final"), result["regime"]["type"])
+`;
+
+/** A frame for another page, of a site that the service allows to embed it. */
+function asFrame() {
+  const address = new URL(location.href);
+  address.searchParams.set("embed", "1");
+  address.hash = "";
+  return `<iframe src="${address}" width="800" height="600" allow="autoplay"></iframe>`;
+}
+
+/** Functions that return the text, by form. request() returns the fields of the request. */
+export const formsOf = (path, request) => ({
+  link: () => location.href,
+  embed: asFrame,
+  curl: () => asCurl({path, body: request()}),
+  Python: () => asPython(path, {...request(), include: ["impacts", "exponents", "regime"]}),
+  JSON: () => JSON.stringify(request(), null, 2),
+});

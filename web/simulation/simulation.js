@@ -2,14 +2,13 @@
 // address holds the request and the visible range.
 
 import {simulate} from "../shared/api.js";
-import {$, attributes, countUp, nextTask, on, press, reveal, setTexts} from "../shared/dom.js";
-import {copy, formsOf} from "../shared/export.js";
+import * as dom from "../shared/dom.js";
+import {$} from "../shared/dom.js";
+
 import {Form, unknownText} from "../shared/form.js";
-import {Job} from "../shared/job.js";
-import {Motion} from "../shared/motion.js";
+import {Job, RequestTab} from "../shared/job.js";
+import {isSampled, motionOf} from "../shared/motion.js";
 import {roundedRange} from "../shared/numbers.js";
-import {RequestTab} from "../shared/request_tab.js";
-import {showRemarks} from "../shared/tables.js";
 import {onUnits, unitsOf, unitsSwitch} from "../shared/units.js";
 import * as details from "./details.js";
 import * as grab from "./grab.js";
@@ -17,15 +16,16 @@ import * as machine from "./machine.js";
 import * as mainPlots from "./main_plots.js";
 import * as pin from "./pin.js";
 import * as player from "./player.js";
-import * as presetMenu from "./preset_menu.js";
-import {Request, toQuery} from "./request.js";
+import * as presetMenu from "./request.js";
+import {formsOf, Request, toQuery} from "./request.js";
 import {run, setRun, viewport} from "./run.js";
 import * as sliders from "./sliders.js";
-import * as strip from "./strip.js";
+import {Strip} from "./strip.js";
 import {describe, showSentence} from "./words.js";
 
 // Parts requested for every slider movement, and parts requested once it rests.
 const firstParts = {include: ["impacts", "exponents", "regime", "energy"], exponents: ["qr"]};
+const sampledParts = {...firstParts, include: [...firstParts.include, "series"]};
 const deferredParts = {
   include: ["exponents", "eigenvalues", "manifold"],
   exponents: ["raw_product"],
@@ -52,7 +52,12 @@ function homeOf({parameters, status, regime}) {
 function remark({exponents: {verdict, verdict_reason: why}, regime, warnings}, more = {}) {
   const open = verdict === "not_decided" && !regime.periodic;
   const all = [...warnings, ...(more.warnings ?? [])];
-  showRemarks("remarks", [...new Set([...(open ? [`not decided: ${why}`] : []), ...all])]);
+  dom.showRemarks("remarks", [...new Set([...(open ? [`not decided: ${why}`] : []), ...all])]);
+}
+
+/** A request for the same run with a ball too light to matter: without the absorber. */
+function withLightBall({m2, ...fields}) {
+  return {...fields, mass_ratio: 1e-9, include: ["impacts", "series"]};
 }
 
 export class SimulationTab extends RequestTab {
@@ -62,14 +67,20 @@ export class SimulationTab extends RequestTab {
   lastMoved = "b"; // name of the slider moved last
 
   deferred = new Job({
-    ask: (fields, signal) => simulate({...fields, ...deferredParts}, signal),
-    show: (answer, fields) => {
+    ask: (fields, signal) =>
+      Promise.all([
+        simulate({...fields, ...deferredParts}, signal),
+        run.motion.exact === false && simulate(withLightBall(fields), signal),
+      ]),
+    show: ([answer, without], fields) => {
       if (fields !== run.fields) return;
       run.deferred = answer;
+      if (without) run.motion.without = motionOf(without, run.load);
+      machine.redraw();
       remark(run.answer, answer);
       mainPlots.showDeferred();
       details.follow();
-      countUp(this.results);
+      dom.countUp(this.results);
     },
     fail: ({message}) =>
       this.say(`T, the raw product and the manifold are missing: ${message}`, true),
@@ -92,6 +103,7 @@ export class SimulationTab extends RequestTab {
     pin.start(changed, read);
     this.listen(measure);
     grab.start($("machine"), (fields, dragging) => this.set(fields, dragging));
+    this.strip = new Strip();
     startPlots();
     startSheet();
   }
@@ -103,7 +115,7 @@ export class SimulationTab extends RequestTab {
       input.onchange = () => this.send();
     }
     viewport.onZoom(() => {
-      reveal({whole: viewport.zoomed});
+      dom.reveal({whole: viewport.zoomed});
       this.changed({soon: true});
     });
     $("whole").onclick = () => viewport.reset();
@@ -118,14 +130,17 @@ export class SimulationTab extends RequestTab {
       for (const step of this.drawing()) step();
       details.follow();
     });
+    dom.onDrop($("panel-simulation"), $("load"), (file) => this.readLoad(file));
+    $("load-file").onchange = ({target}) => this.readLoad(target.files[0]);
     $("measure-this").onclick = () => run && measure(run.answer);
     const texts = formsOf("v1/simulate", () => request.fields());
     for (const one of $("copies").children)
-      one.onclick = () => copy(texts[one.textContent](), this.say);
+      one.onclick = () => dom.copy(texts[one.textContent](), this.say);
   }
 
   ask(fields, signal) {
-    return simulate({...fields, ...firstParts}, signal);
+    const parts = isSampled(this.request.merged(fields)) ? sampledParts : firstParts;
+    return simulate({...fields, ...parts}, signal);
   }
 
   isStale(busy) {
@@ -139,7 +154,7 @@ export class SimulationTab extends RequestTab {
 
   markStale(busy) {
     super.markStale(busy);
-    reveal({again: !busy && this.isStale(false)});
+    dom.reveal({again: !busy && this.isStale(false)});
   }
 
   busy(is, cancelled) {
@@ -151,7 +166,7 @@ export class SimulationTab extends RequestTab {
   /** Errors are shown at sliders, or else at fields, without moving the focus. */
   fail({message, errors = []}, fields) {
     if (fields.linked && errors.length) return this.fallBack([...fields.unknown], errors);
-    if (!run) setTexts({sentence: "No results yet."});
+    if (!run) dom.setTexts({sentence: "No results yet."});
     const left = this.form.showErrors(errors, false);
     const ofSliders = sliders.showErrors(errors);
     if (left.length + ofSliders.length < errors.length) $("more").open = true;
@@ -165,26 +180,29 @@ export class SimulationTab extends RequestTab {
 
   /** Draws a run; a large one in several tasks, between which the browser handles events. */
   async show(answer, fields) {
-    const pause = answer.impacts.tau.length > large ? nextTask : null;
+    const pause = answer.impacts.tau.length > large ? dom.nextTask : null;
     if (pause) await pause();
     const fresh = run === null || fields.fresh;
-    setRun({fields, answer, motion: new Motion(answer), units: unitsOf(answer.parameters)});
+    const {forcing} = this.request.merged(fields);
+    const load = [answer.parameters.forcing, forcing].find((given) => given?.time_s);
+    const units = unitsOf(answer.parameters);
+    setRun({fields, answer, motion: motionOf(answer, load), units, load});
     this.say(fields.note || unknownText(fields.unknown));
     this.mark(false);
     this.form.showErrors([]);
     this.showOrigins();
     remark(answer);
-    reveal({units: answer.parameters.si});
+    dom.reveal({units: answer.parameters.si});
     viewport.span(0, answer.status.tau, homeOf(answer), fresh);
     if (this.wantedView) viewport.range = this.wantedView;
     this.wantedView = null;
-    reveal({whole: viewport.zoomed});
+    dom.reveal({whole: viewport.zoomed});
     for (const step of this.drawing(fresh)) {
       if (pause) await pause();
       if (run.answer !== answer) return;
       step();
     }
-    countUp(this.results, "shown");
+    dom.countUp(this.results, "shown");
     clearTimeout(this.deferring);
     this.deferring = setTimeout(() => this.deferred.start(fields), idle);
   }
@@ -207,7 +225,8 @@ export class SimulationTab extends RequestTab {
         player.show();
         describe(answer, request.textOf(fields, parameters));
         presetMenu.markPlots(request.edited ? null : request.preset);
-        strip.show(request.systemOf(fields), parameters, slider);
+        dom.reveal({regimes: !parameters.forcing}); // which need a period
+        if (!parameters.forcing) this.strip.show(request.systemOf(fields), parameters, slider);
       },
     ];
   }
@@ -265,11 +284,25 @@ export class SimulationTab extends RequestTab {
     this.send({dragging});
   }
 
+  /** Takes a recorded load in place of the harmonic forcing. */
+  async readLoad(file) {
+    if (!file) return;
+    try {
+      const {loadOf, parse} = await import("../measurement/record.js");
+      const forcing = loadOf(await parse(file));
+      dom.setTexts({"load-note": `${file.name}, ${forcing.time_s.length} samples`});
+      const replaced = ["F", "f", "acceleration"].filter((name) => this.form.filled(name));
+      this.set({forcing, ...Object.fromEntries(replaced.map((name) => [name, null]))}, false);
+    } catch ({message}) {
+      this.say(`${file.name} cannot be read: ${message}`, true);
+    }
+  }
+
   /** Shows the preset's note, or that the preset was changed. */
   note() {
     const {preset, edited} = this.request;
     const changed = preset && edited ? `${preset.source}, changed` : (preset?.note ?? "");
-    setTexts({"preset-note": changed});
+    dom.setTexts({"preset-note": changed});
   }
 
   choosePreset(name) {
@@ -303,7 +336,7 @@ export class SimulationTab extends RequestTab {
     const view = rest.get("view")?.split(",").map(Number);
     const pinned = rest.get("pinned");
     for (const name of ["view", "pinned"]) rest.delete(name);
-    pin.restore(pinned, firstParts);
+    pin.restore(pinned, (texts) => this.ask(this.form.parse(texts)));
     if (String(rest) === this.asked) return;
     const isView = view?.length === 2 && view[0] < view[1];
     this.wantedView = isView ? view : null;
@@ -317,7 +350,8 @@ export class SimulationTab extends RequestTab {
   }
 
   redraw() {
-    for (const part of [mainPlots, details, strip, machine]) part.redraw();
+    for (const part of [mainPlots, details, machine]) part.redraw();
+    this.strip.refresh();
   }
 }
 
@@ -326,13 +360,13 @@ function startPlots() {
   const buttons = [...document.querySelectorAll("#switch button")];
   const figures = [...document.querySelectorAll("#plots figure")];
   const enlarge = (name) => {
-    press(buttons, ({dataset}) => dataset.plot === name);
+    dom.press(buttons, ({dataset}) => dataset.plot === name);
     for (const {id, classList} of figures) classList.toggle("chosen", id === `figure-${name}`);
   };
   for (const one of buttons) one.onclick = () => enlarge(one.dataset.plot);
   for (const figure of figures) {
     const act = () => enlarge(figure.id.replace("figure-", ""));
-    on(figure, {
+    dom.on(figure, {
       click: ({target}) => target.closest("button") || act(),
       keydown: ({key, target}) => key === "Enter" && !target.closest("button") && act(),
     });
@@ -343,7 +377,7 @@ function startPlots() {
 function startSheet() {
   $("sheet").onclick = () => {
     const open = $("form").classList.toggle("open");
-    attributes($("sheet"), {"aria-expanded": open});
-    setTexts({sheet: `All ${open ? "▾" : "▴"}`});
+    dom.attributes($("sheet"), {"aria-expanded": open});
+    dom.setTexts({sheet: `All ${open ? "▾" : "▴"}`});
   };
 }

@@ -1,14 +1,18 @@
 // The main parameters, each with a slider, a number and a unit. They set fields of the
 // form.
 import {$, attributes} from "../shared/dom.js";
+import {lawsInSi} from "../shared/form.js";
 import {inMm, short, shortTo, toNumber} from "../shared/numbers.js";
 import {symbolOf} from "../shared/quantities.js";
+
+const factors = {mm: 1000, "°": 180 / Math.PI};
 
 /**
  * A slider from its row of the page. of(parameters): value in the field's unit; fields(value,
  * parameters): fields to set, null to clear one; usualRange(parameters): in the slider's unit;
  * aboutOf(parameters): description where it depends on the system; textOf(parameters): the value as
- * text. span: the current range, once it is shown.
+ * text; isShown(parameters): false where the system does without. span: the current range, once it is
+ * shown.
  */
 function slider(name, more) {
   const node = $(`slider-${name}`).parentNode;
@@ -18,7 +22,7 @@ function slider(name, more) {
     label: title.firstChild.textContent.trim(),
     about: note.textContent,
     symbol: symbolOf(name),
-    factor: unit === "mm" ? 1000 : 1,
+    factor: factors[unit] ?? 1,
     of: (p) => p[name] ?? p.si[name],
     fields: (value) => ({[name]: value}),
     ...more,
@@ -40,6 +44,7 @@ const restitution = slider("R", {
     return both && `mean of ${both}`;
   },
 });
+const isGiven = (name) => (p) => p[name] !== 0 || p.origin[name] === "given";
 const reduced = [
   clearance,
   restitution,
@@ -54,19 +59,41 @@ const reduced = [
       damping: parameters.damping,
     }),
   }),
+  slider("gravity", {
+    isShown: isGiven("gravity"),
+    usualRange: ({gravity}) => [-1, 1].map((sign) => sign * (2000 * Math.abs(gravity) || 10)),
+  }),
+  slider("friction", {
+    isShown: isGiven("friction"),
+    usualRange: ({friction}) => [0, 2000 * friction || 10],
+  }),
 ];
+const isHarmonic = ({forcing}) => !forcing;
 const si = [
   clearance,
   restitution,
-  slider("F", {usualRange: ({si: {F}}) => [0, 2500 * F || 1]}),
-  slider("f", {usualRange: ({derived: {f0}}) => [0.9 * f0, 1.1 * f0]}),
+  slider("F", {isShown: isHarmonic, usualRange: ({si: {F}}) => [0, 2500 * F || 1]}),
+  slider("f", {isShown: isHarmonic, usualRange: ({derived: {f0}}) => [0.9 * f0, 1.1 * f0]}),
   slider("c1", {
     usualRange: ({si: {c1}}) => [0, 3 * c1 || 1],
     fields: (value) => ({c1: value, damping_ratio: null}),
   }),
+  slider("inclination", {
+    isShown: isGiven("gravity"),
+    usualRange: () => [-90, 90],
+    of: (p) => lawsInSi(p).inclination ?? 0,
+    fields: (value) => ({inclination: value, gravity: null}),
+  }),
+  slider("mu", {
+    isShown: isGiven("friction"),
+    usualRange: (p) => [0, Math.max(1, 2 * lawsInSi(p).mu)],
+    of: (p) => lawsInSi(p).mu ?? 0,
+    fields: (value) => ({mu: value, friction: null}),
+  }),
 ];
 const all = new Set([...reduced, ...si]);
-const slidersOf = (parameters) => (parameters.si ? si : reduced);
+const slidersOf = (parameters) =>
+  (parameters.si ? si : reduced).filter(({isShown}) => isShown?.(parameters) ?? true);
 
 /** A slider by name; clearance if the system has none of that name. */
 export const sliderOf = (name, parameters) =>

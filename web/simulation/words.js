@@ -1,6 +1,6 @@
 // The results of a run in words: a sentence, and descriptions of the plots.
 import {$, attributes, element, setTexts} from "../shared/dom.js";
-import {captionOf} from "../shared/export_dialog.js";
+import {captionOf} from "../shared/export.js";
 import {count, digits, percent, withError} from "../shared/numbers.js";
 import {regimes} from "../shared/quantities.js";
 import {run} from "./run.js";

@@ -1,7 +1,7 @@
 // Colour scales of maps, and the bar that shows them.
-import {colour, hex} from "../shared/colours.js";
+
 import {font, ticks} from "../shared/frame.js";
-import {drawText, drawTextUpwards, ink} from "../shared/ink.js";
+import {colour, drawText, drawTextUpwards, hex, ink} from "../shared/ink.js";
 import {kind} from "../shared/marks.js";
 import {clamp, short} from "../shared/numbers.js";
 

@@ -1,48 +1,40 @@
 // A sweep over one axis: the bifurcation diagram of its section, lambda1, and another quantity with
 // the regimes, stacked. They share the axis and the tooltip.
 import {rangeOf} from "../shared/frame.js";
-import {blocks, density, dots, levels, line} from "../shared/marks.js";
+import {levels} from "../shared/marks.js";
 import {clamp, short} from "../shared/numbers.js";
-import {
-  coordinates,
-  describe,
-  otherMotion,
-  quantities,
-  quantityOf,
-  regimeColour,
-  regimes,
-  startNames,
-  untouched,
-  verdictColour,
-  verdicts,
-} from "../shared/quantities.js";
+import * as q from "../shared/quantities.js";
 import {inSeconds} from "../shared/units.js";
 import {Viewport} from "../shared/viewport.js";
 import * as labels from "./axis_labels.js";
-import {stretches} from "./layers.js";
+import {dotsOf, lineOf, regimesOf, sectionOf} from "./points.js";
 import {missingPoint, SweepPlot, SweepView} from "./sweep_view.js";
 
 const startColours = ["c1", "minus", "c2", "c4", "c3"];
-const startColour = (s) => startColours[s % startColours.length];
+export const startColour = (s) => startColours[s % startColours.length];
 
 const startShapes = ["dot", "box", "triangle", "diamond", "pointed"];
 
 /** Applies `of` to the best or second motion of a point. */
 const ofOtherMotion = (of) => (p) => {
-  const m = otherMotion(p);
+  const m = q.otherMotion(p);
   return m && of(m);
 };
 
 /** Number of points of each regime: [regime, number]. */
 export const countRegimes = (points) =>
-  Object.keys(regimes).map((regime) => [regime, points.filter((p) => p?.regime === regime).length]);
+  Object.keys(q.regimes).map((regime) => [
+    regime,
+    points.filter((p) => p?.regime === regime).length,
+  ]);
 
 /** A plot of `view`, the DiagramView. Subclasses implement y() (as in Frame) and marks(frame). */
 class Diagram extends SweepPlot {
   prepare(width, height) {
     if (!this.view.byStart) return null;
     const frame = this.frameOf(width, height);
-    return {frame, marks: [...this.marks(frame), ...this.strips()]};
+    const strips = this.view.starts().map((s) => this.regimes(s, {down: 6 * s, height: 5}));
+    return {frame, marks: [...this.marks(frame), ...strips]};
   }
 
   /** The value of a point drawn as a single dot; null if it has several. */
@@ -60,32 +52,17 @@ class Diagram extends SweepPlot {
     return this.view.several ? startColour(start) : alone;
   }
 
-  /** Radius of the dots; smaller where there are many. */
-  radius(frame) {
-    const {data, several} = this.view;
-    const room = (frame.width / Math.max(this.view.visiblePlaces().length / data.starts, 1)) * 0.62;
-    return clamp(room, 1.3, 3.4) * (several ? 1.15 : 1);
-  }
-
-  /** {x, y} of a start's points; y is null for a failed point or without a value. */
-  columnsOf(start, of) {
-    const places = this.view.byStart[start];
-    const y = places.map(({p}) => (p.error ? null : (of(p) ?? null)));
-    return {x: places.map(({value}) => value), y};
-  }
-
   line(start, of, colour, more) {
-    return line({...this.columnsOf(start, of), colour, ...more});
+    return lineOf(this.view.byStart[start], of, colour, more);
   }
 
-  /** Dots of a start, in the colours nameOf(point) and with bars of errorOf(point). */
-  dots(frame, start, nameOf, errorOf = () => null) {
-    const [tints, errors] = [nameOf, errorOf].map((of) =>
-      this.view.byStart[start].map(({p}) => of(p)),
-    );
+  /** Dots of a start, in the colours tint(point); smaller where there are many. */
+  dots(frame, start, of, more) {
+    const {data, several} = this.view;
+    const count = this.view.visiblePlaces().length / data.starts;
+    const size = clamp((0.62 * frame.width) / Math.max(count, 1), 1.3, 3.4) * (several ? 1.15 : 1);
     const shape = startShapes[start % startShapes.length];
-    const columns = this.columnsOf(start, (p) => this.drawn({p}));
-    return dots({...columns, tints, errors, shape, size: this.radius(frame)});
+    return dotsOf(this.view.byStart[start], of, {shape, size, ...more});
   }
 
   /**
@@ -94,28 +71,19 @@ class Diagram extends SweepPlot {
    */
   rings(frame, of) {
     if (this.view.several) return [];
-    const columns = {...this.columnsOf(0, ofOtherMotion(of)), colour: "best"};
-    const ring = {shape: "ring", size: this.radius(frame), width: 1.5};
-    return [line({...columns, alpha: 0.6}), dots({...columns, ...ring})];
+    const other = ofOtherMotion(of);
+    const ring = {tint: () => "best", shape: "ring", width: 1.5};
+    return [this.line(0, other, "best", {alpha: 0.6}), this.dots(frame, 0, other, ring)];
   }
 
-  /** Stretches of the same regime of a start, as a list for blocks(). */
-  stretches(start) {
-    const {from: value} = this.view.data.axes[0];
-    return stretches(this.view.byStart[start])
-      .filter(({regime}) => regime)
-      .map(({regime, from, to}) => ({
-        from: value(from),
-        to: value(to),
-        colour: regimeColour(regime),
-        hatched: regime === "none",
-        regime,
-      }));
+  /** Stretches of the same regime of a start. */
+  regimes(start, more) {
+    return regimesOf(this.view.byStart[start], this.view.data.axes[0], more);
   }
 
-  /** Regimes as a narrow strip along the top, a row for each start. */
-  strips() {
-    return this.view.starts().map((s) => blocks({list: this.stretches(s), down: 6 * s, height: 5}));
+  /** The points of the first start. */
+  get points() {
+    return this.view.byStart[0].map(({p}) => p);
   }
 }
 
@@ -126,37 +94,27 @@ const phaseLabels = (min, max) =>
     .map((text, i) => ({at: (i * Math.PI) / 2, text}))
     .filter(({at}) => at >= min - 1e-9 && at <= max + 1e-9);
 
-/** A column of a point's section, from SweepData. */
-const section = (p, column) => p.section?.[column] ?? [];
-
-/** Density of the section: periodic orbits are a few opaque dots, chaos is a cloud. */
 class SectionDiagram extends Diagram {
   /** The coordinate drawn and its column; velocities can be in mm/s. */
   shown() {
     const {data, choice} = this.view;
     const name = choice.coordinate;
-    const own = coordinates[data.section]?.[name] ?? {label: "", title: ""};
+    const own = q.coordinates[data.section]?.[name] ?? {label: "", title: ""};
     const seconds = data.parameters.si && inSeconds() && own.seconds;
     return {...own, ...(seconds ? {label: seconds.label, column: `${name}_SI`} : {column: name})};
   }
 
   y() {
     const {column, range, log, least = -Infinity, turns: phase, label} = this.shown();
-    const large = (p) => section(p, column).filter((v) => !(v <= least));
-    const held = range ?? rangeOf(this.values(large), {log}) ?? (log ? [0.1, 10] : [-1, 1]);
+    const large = (p) => p.section?.[column]?.filter((v) => !(v <= least)) ?? [];
+    const held = range ?? rangeOf(this.values(large), log) ?? (log ? [0.1, 10] : [-1, 1]);
     return {range: held, log, label, labels: phase && phaseLabels};
   }
 
   marks() {
     const {column, levels: y = []} = this.shown();
-    const {from: value} = this.view.data.axes[0];
-    const cell = ({p, low, high}) => ({
-      from: value(low),
-      to: value(high),
-      values: section(p, column),
-    });
-    const ofStart = (s) =>
-      density({columns: this.view.byStart[s].map(cell), colour: this.tint(s, "c1")});
+    const [axis] = this.view.data.axes;
+    const ofStart = (s) => sectionOf(this.view.byStart[s], axis, column, this.tint(s, "c1"));
     return [levels({y}), ...this.view.starts().map(ofStart)];
   }
 
@@ -165,34 +123,30 @@ class SectionDiagram extends Diagram {
   }
 
   rows(p) {
-    return Array.from(section(p, this.shown().column), (v) => [v]);
+    return Array.from(p.section?.[this.shown().column] ?? [], (v) => [v]);
   }
 
   about() {
     const {title, label} = this.shown();
-    const n = this.view.byStart[0].length;
-    return {
-      title: `Section: ${title}`,
-      summary: `${label} of the section at ${n} points`,
-    };
+    const summary = `${label} of the section at ${this.points.length} points`;
+    return {title: `Section: ${title}`, summary};
   }
 }
 
 const lambda = (i) => (p) => p.lambda?.[i] ?? null;
 const errorOf = (p) => p.standard_error?.[0] ?? null;
+const drawnLambda = (p) => (q.untouched(p) ? 0 : lambda(0)(p));
 
 class LambdaDiagram extends Diagram {
   drawn({p}) {
-    return untouched(p) ? 0 : quantities.lambda1.of(p);
+    return drawnLambda(p);
   }
 
   y() {
     const held = (p) => {
-      const first = lambda(0)(p);
-      const error = errorOf(p);
-      return first === null
-        ? []
-        : [first - error, first + error, lambda(1)(p), ofOtherMotion(lambda(0))(p)];
+      const [first, error] = [lambda(0)(p), errorOf(p)];
+      if (first === null) return [];
+      return [first - error, first + error, lambda(1)(p), ofOtherMotion(lambda(0))(p)];
     };
     return {range: rangeOf([[0], ...this.values(held)]), label: "λ"};
   }
@@ -200,10 +154,10 @@ class LambdaDiagram extends Diagram {
   marks(frame) {
     const alpha = this.view.several ? 0.5 : 1;
     const ofStart = (s) => {
-      const colour = (p) => this.tint(s, verdictColour(p));
+      const tint = (p) => this.tint(s, q.verdictColour(p));
       return [
         this.line(s, lambda(1), this.tint(s, "second"), {alpha}),
-        this.dots(frame, s, colour, errorOf),
+        this.dots(frame, s, drawnLambda, {tint, error: errorOf}),
       ];
     };
     const zero = levels({y: 0, colour: "soft"});
@@ -215,27 +169,24 @@ class LambdaDiagram extends Diagram {
       "λ₁": lambda(0),
       "standard error": errorOf,
       "λ₂": lambda(1),
-      verdict: (p) => verdicts[p.verdict] ?? "–",
+      verdict: (p) => q.verdicts[p.verdict] ?? "–",
     };
   }
 
   about() {
-    const points = this.view.byStart[0].map(({p}) => p).filter((p) => p.lambda);
+    const points = this.points.filter((p) => p.lambda);
     const chaotic = points.filter((p) => p.verdict === "chaotic").length;
     const values = points.map(lambda(0)).filter((v) => v !== null);
-    const ends = values.length
-      ? `λ₁ from ${short(Math.min(...values))} to ${short(Math.max(...values))}; `
-      : "";
-    return {
-      title: "Largest exponent λ₁",
-      summary: `${ends}chaotic at ${chaotic} of ${points.length} points`,
-    };
+    const [least, most] = [Math.min(...values), Math.max(...values)].map(short);
+    const ends = values.length ? `λ₁ from ${least} to ${most}; ` : "";
+    const summary = `${ends}chaotic at ${chaotic} of ${points.length} points`;
+    return {title: "Largest exponent λ₁", summary};
   }
 }
 
 class QuantityDiagram extends Diagram {
   quantity() {
-    return quantityOf(this.view.choice.beside, this.view.data);
+    return q.quantityOf(this.view.choice.beside, this.view.data);
   }
 
   drawn({p}) {
@@ -251,23 +202,19 @@ class QuantityDiagram extends Diagram {
     return {range: [0, most], label};
   }
 
-  /** Pale bands labelled with the regimes; omitted for several starts, whose regimes can differ. */
-  bands() {
-    if (this.view.several) return [];
-    const list = this.stretches(0).map((one) => ({...one, text: one.regime}));
-    return [blocks({list, alpha: 0.2, textDown: 12, size: 12})];
-  }
-
   marks(frame) {
     const {of, levels: y = [], free} = this.quantity();
     const ofStart = (s) => {
       const name = this.tint(s, "text");
-      const marks = [this.line(s, of, name, {alpha: 0.35}), this.dots(frame, s, () => name)];
-      if (free) marks.push(this.line(s, free, "wall", {width: 1.4, dash: [6, 4]}));
-      return marks;
+      const dots = this.dots(frame, s, of, {tint: () => name});
+      const without = free && this.line(s, free, "wall", {width: 1.4, dash: [6, 4]});
+      return [this.line(s, of, name, {alpha: 0.35}), dots, ...(free ? [without] : [])];
     };
+    // Labelled bands of the regimes; omitted for several starts, whose regimes can differ.
+    const named = {alpha: 0.2, textDown: 12, size: 12, texts: true};
+    const bands = this.view.several ? [] : [this.regimes(0, named)];
     const ofStarts = this.view.starts().flatMap(ofStart);
-    return [...this.bands(), levels({y}), ...ofStarts, ...this.rings(frame, of)];
+    return [...bands, levels({y}), ...ofStarts, ...this.rings(frame, of)];
   }
 
   columns() {
@@ -280,19 +227,13 @@ class QuantityDiagram extends Diagram {
   }
 
   about() {
-    const counts = countRegimes(this.view.byStart[0].map(({p}) => p)).filter(([, n]) => n);
-    const texts = counts.map(([regime, n]) => `${regime === "none" ? regimes.none : regime}: ${n}`);
-    const {title} = this.quantity();
-    return {title: `Regimes and ${title}`, summary: `points of each regime: ${texts.join(", ")}`};
+    const texts = countRegimes(this.points)
+      .filter(([, n]) => n)
+      .map(([regime, n]) => `${regime === "none" ? q.regimes.none : regime}: ${n}`);
+    const summary = `points of each regime: ${texts.join(", ")}`;
+    return {title: `Regimes and ${this.quantity().title}`, summary};
   }
 }
-
-/** Legend entry of a start: its symbol and state. */
-export const startKey = (state, s) => ({
-  className: `key start start${s % startColours.length}`,
-  style: `color: var(--${startColour(s)})`,
-  textContent: `${s + 1}: ${labels.fields(state)}`,
-});
 
 /** Steps of the keys along the axis. */
 const steps = {
@@ -311,11 +252,8 @@ const closest = (places, away) =>
 export class DiagramView extends SweepView {
   constructor(root, ...rest) {
     super(root, [new Viewport()], ...rest);
-    this.plots = [
-      new SectionDiagram(this, "section"),
-      new LambdaDiagram(this, "lambda"),
-      new QuantityDiagram(this, "other"),
-    ];
+    const kinds = {section: SectionDiagram, lambda: LambdaDiagram, other: QuantityDiagram};
+    this.plots = Object.entries(kinds).map(([name, Kind]) => new Kind(this, name));
   }
 
   refresh(choice) {
@@ -324,7 +262,7 @@ export class DiagramView extends SweepView {
   }
 
   starts() {
-    return Array.from({length: this.data.starts}, (_, s) => s);
+    return [...Array(this.data.starts).keys()];
   }
 
   get several() {
@@ -358,7 +296,7 @@ export class DiagramView extends SweepView {
   rowsOf(place) {
     const {data, several} = this;
     const rows = this.placesAt(place).map((found, s) => {
-      const own = found ? describe(found.p, labels.where(data)) : missingPoint;
+      const own = found ? q.describe(found.p, labels.where(data)) : missingPoint;
       return several ? [[`start ${s + 1}`, ""], ...own.slice(0, 5)] : own;
     });
     return [labels.place(data.axes[0], place.value), ...rows.flat()];
@@ -366,15 +304,14 @@ export class DiagramView extends SweepView {
 
   startOf({p, data}) {
     const {start} = data.defaultSet ? p : {};
-    return start ? `, from its start: ${startNames[start]}` : super.startOf({data});
+    return start ? `, from its start: ${q.startNames[start]}` : super.startOf({data});
   }
 
   move(key) {
     if (!(key in steps)) return false;
     const [list] = this.byStart;
     const i = this.current ? list.indexOf(this.nearest(this.current)) : -1;
-    const next = Math.max(0, Math.min(list.length - 1, i + steps[key]));
-    if (list.length) this.goTo(...list[next].at);
+    if (list.length) this.goTo(...list[clamp(i + steps[key], 0, list.length - 1)].at);
     return true;
   }
 }

@@ -1,12 +1,10 @@
 // A map: a sweep over two axes, or one slice of a sweep over three. A quantity is shown as colours
 // with a scale. Missing points take the colour of a coarser neighbour.
-
-import {rgb} from "../shared/colours.js";
+import {rgb} from "../shared/ink.js";
 import {raster} from "../shared/marks.js";
-import {short} from "../shared/numbers.js";
+import {lastUpTo, short} from "../shared/numbers.js";
 import {bestMotion, describe, quantityOf, regimeColour} from "../shared/quantities.js";
 import {pixel} from "../shared/raster.js";
-import {lastUpTo} from "../shared/search.js";
 import {Viewport} from "../shared/viewport.js";
 import * as labels from "./axis_labels.js";
 import {bar, barWidth, endsOf, scaleOf} from "./colour_scale.js";
@@ -28,18 +26,8 @@ export class MapView extends SweepView {
     const {start, best, slice} = this.choice;
     const index = data.index(k, l, start, data.slice === null ? slice : 0);
     const [x, y] = data.axes;
-    const at = [x.at[k], y.at[l]];
-    return {
-      p: data.points[index],
-      data,
-      index,
-      best,
-      k,
-      l,
-      at,
-      value: x.values[k],
-      height: y.values[l],
-    };
+    const place = {at: [x.at[k], y.at[l]], value: x.values[k], height: y.values[l], k, l};
+    return {...place, p: data.points[index], data, index, best};
   }
 
   /** Cells of a layer with a point. */
@@ -133,48 +121,41 @@ class MapPlot extends SweepPlot {
   prepare(width, height) {
     if (!this.view.layers) return null;
     const scale = this.scale();
-    const colourOf = this.colours(scale);
-    const marks = [raster({paint: (...image) => this.fill(...image, colourOf)})];
+    const marks = [raster({paint: (...image) => this.fill(...image, scale)})];
     if (scale) marks.push(bar({scale, title: this.quantity().label}));
     return {marks, frame: this.frameOf(width, height, scale ? barWidth : 12)};
   }
 
-  /** Returns a function that gives the pixel of a point. */
-  colours(scale) {
-    const colourOf = (v) => (scale ? scale.at(v) : rgb(regimeColour(v)));
-    return (p) => {
-      const v = this.valueOf(p);
-      return pixel(v === null ? rgb("nothing") : colourOf(v));
-    };
-  }
-
   /** Sets the pixels of all layers; those without a regime are hatched. */
-  fill(pixels, width, height, colourOf) {
+  fill(pixels, width, height, scale) {
     const [none, line] = ["regime-none", "panel"].map((name) => pixel(rgb(name)));
-    const hatched = this.quantity().categories;
     for (const data of this.view.over()) {
       const [first, second] = data.axes;
       const columns = positions(first, this.viewport.range, width);
       const rows = positions(second, this.across.range, height).reverse();
-      const cells = this.pixels(data, colourOf);
+      const cells = this.pixels(data, scale);
       for (let j = 0; j < height; ++j)
         for (let i = 0; i < width; ++i) {
           const inside = rows[j] >= 0 && columns[i] >= 0;
           const colour = inside && cells[rows[j] * first.at.length + columns[i]];
-          const isLine = hatched && colour === none && (i + j) % 8 < 2;
+          const isLine = !scale && colour === none && (i + j) % 8 < 2;
           if (colour) pixels[j * width + i] = isLine ? line : colour;
         }
     }
   }
 
   /** A pixel for each cell of a layer; 0 without a point. */
-  pixels(data, colourOf) {
+  pixels(data, scale) {
     const [first, second] = data.axes;
     const n = first.at.length;
     const pixels = new Uint32Array(n * second.at.length);
-    for (const {p, k, l} of this.view.cells(data)) pixels[l * n + k] = colourOf(p);
+    const colourOf = scale ? scale.at : (v) => rgb(regimeColour(v));
+    for (const {p, k, l} of this.view.cells(data)) {
+      const v = this.valueOf(p);
+      pixels[l * n + k] = pixel(v === null ? rgb("nothing") : colourOf(v));
+    }
     // Only the base layer is filled: below a finer layer the coarser one shows through.
-    if (!data.complete && data === this.view.data) fill(pixels, first.order, second.order);
+    if (!data.complete && data === this.view.data) fillGaps(pixels, first.order, second.order);
     return pixels;
   }
 
@@ -195,10 +176,7 @@ class MapPlot extends SweepPlot {
       defaultSet && `${best ? "best" : "worst"} start`,
       starts > 1 && `start ${start + 1}`,
     ];
-    return of
-      .filter(Boolean)
-      .map((text) => `, ${text}`)
-      .join("");
+    return of.map((text) => (text ? `, ${text}` : "")).join("");
   }
 
   about() {
@@ -207,10 +185,8 @@ class MapPlot extends SweepPlot {
     const of = this.shown();
     const [first, second] = this.view.data.axes.map((a) => labels.label(a.parameter));
     const colours = scale ? `, colours from ${scale.ends.map(short).join(" to ")}` : "";
-    return {
-      title: `Map of ${title}${of}`,
-      summary: `${title} over ${first} and ${second}${of}${colours}`,
-    };
+    const summary = `${title} over ${first} and ${second}${of}${colours}`;
+    return {title: `Map of ${title}${of}`, summary};
   }
 }
 
@@ -234,7 +210,7 @@ const coarsest = (n) => 2 ** Math.floor(Math.log2(Math.max(Math.floor(n / 8), 1)
  * the service computes. columns, rows: index of each position in the requested axis, ascending or
  * descending, which makes them their own inverses.
  */
-function fill(cells, columns, rows) {
+function fillGaps(cells, columns, rows) {
   const n = columns.length;
   const [widest, highest] = [coarsest(n), coarsest(rows.length)];
   for (let l = 0; l < rows.length; ++l)

@@ -1,8 +1,7 @@
 // Table of the largest |x| from each start over a whole axis: for a reduction that leaves no axis,
 // and for the default set of starts over one axis.
-import {$, reveal} from "../shared/dom.js";
+import {$, reveal, tableOf} from "../shared/dom.js";
 import {regimeText, startNames, symbolOf, verdicts} from "../shared/quantities.js";
-import {tableOf} from "../shared/tables.js";
 import * as labels from "./axis_labels.js";
 
 const names = {...startNames, free: "without the absorber"};

@@ -1,16 +1,15 @@
 // The sweep tab: the form starts a stream of points, drawn while they arrive. The query holds the
 // request and the menus.
 import {asCurl} from "../shared/api.js";
-import {$, choose, countUp, element, fillMenu, reveal, setTexts} from "../shared/dom.js";
-import {copy, save} from "../shared/export.js";
-import {coordinates, menuOf, otherMotion, regimes, symbolOf} from "../shared/quantities.js";
-import {RequestTab} from "../shared/request_tab.js";
-import {showRemarks} from "../shared/tables.js";
+import * as dom from "../shared/dom.js";
+import {$} from "../shared/dom.js";
+
+import {RequestTab} from "../shared/job.js";
+import {coordinates, menuOf, otherMotion, symbolOf} from "../shared/quantities.js";
 import {onUnits, unitsSwitch} from "../shared/units.js";
 import * as labels from "./axis_labels.js";
-import {receive, SweepData} from "./data.js";
-import {countRegimes, DiagramView, startKey} from "./diagram.js";
-import {Layers} from "./layers.js";
+import {Layers, receive, SweepData} from "./data.js";
+import {countRegimes, DiagramView, startColour} from "./diagram.js";
 import {MapView} from "./map_view.js";
 import {showPeaks} from "./peaks.js";
 import {Refiner} from "./refine.js";
@@ -85,17 +84,22 @@ function showParts({axes, section, defaultSet, starts, parameters, reduced, poin
 
 /** Shows the number of points of each regime. */
 function showRegimes({points}) {
-  const item = ([regime, n]) => {
-    const none = regime === "none";
-    const className = `key regime${none ? " none" : ""}`;
-    const style = `--key: var(--regime-${regime})`;
-    const textContent = none ? regimes.none : `${regime} ${regimes[regime]}`;
-    const key = element("span", {className, style, textContent});
-    const number = element("small", {id: `sweep-regime-${regime}`, textContent: n || ""});
-    const about = {title: `Type ${regime}`, className: n ? "" : "absent", hidden: none && !n};
-    return element("li", about, key, number);
-  };
-  $("sweep-regimes").replaceChildren(...countRegimes(points).map(item));
+  for (const [regime, n] of countRegimes(points)) {
+    const number = $(`sweep-regime-${regime}`);
+    number.textContent = n || "";
+    number.parentNode.classList.toggle("absent", !n);
+    number.parentNode.hidden = regime === "none" && !n;
+  }
+}
+
+const startMarks = ["●", "■", "▲", "◆", "▼"]; // as the shapes of the points
+
+/** Legend entry of a start: its symbol and state. */
+function startKey(state, s) {
+  const key = dom.element("span", {className: "key"}, `${s + 1}: ${labels.fields(state)}`);
+  key.dataset.mark = startMarks[s % startMarks.length];
+  key.style.color = `var(--${startColour(s)})`;
+  return dom.element("li", {}, key);
 }
 
 export class SweepTab extends RequestTab {
@@ -109,9 +113,9 @@ export class SweepTab extends RequestTab {
     drawn: () => this.drawSoon(),
     settled: () => {
       this.redraw();
-      countUp(this.results, "refined");
+      dom.countUp(this.results, "refined");
     },
-    say: (text) => setTexts({"sweep-refined": text}),
+    say: (text) => dom.setTexts({"sweep-refined": text}),
   });
 
   constructor(tables, changed, {simulate}) {
@@ -145,10 +149,10 @@ export class SweepTab extends RequestTab {
     $("sweep-download").onclick = (event) => {
       event.preventDefault();
       const names = this.data.request.axes.map((a) => a.parameter).join("-");
-      save(this.data.file(), `sweep-${names}.ndjson`);
+      dom.save(this.data.file(), `sweep-${names}.ndjson`);
     };
     $("sweep-copy").onclick = () =>
-      copy(asCurl({path: "v1/sweep", body: this.form.request()}, "-sN"), this.say);
+      dom.copy(asCurl({path: "v1/sweep", body: this.form.request()}, "-sN"), this.say);
   }
 
   /** The request of the sweep shown, as a query; null before the first. */
@@ -170,7 +174,7 @@ export class SweepTab extends RequestTab {
     const ends = numbers.every(Number.isFinite) ? numbers : [];
     if (this.data && requestOf(given) === requestOf(this.shown())) {
       // The same sweep with other menus: Back or Forward.
-      for (const [name, menu] of Object.entries(ofQuery)) choose(menu, given.get(name));
+      for (const [name, menu] of Object.entries(ofQuery)) dom.choose(menu, given.get(name));
       this.view?.zoomTo(ends);
       this.menuChanged();
     } else this.openSweep(given, ends);
@@ -219,7 +223,7 @@ export class SweepTab extends RequestTab {
     this.say(remarksOn(this.data));
     this.redraw();
     this.refiner.schedule();
-    countUp(this.results);
+    dom.countUp(this.results);
   }
 
   fail(error) {
@@ -230,7 +234,7 @@ export class SweepTab extends RequestTab {
   busy(is, cancelled) {
     super.busy(is, cancelled);
     const lacking = this.data && !this.data.complete;
-    reveal({"sweep-resume": !is && lacking, "sweep-bar": is || lacking});
+    dom.reveal({"sweep-resume": !is && lacking, "sweep-bar": is || lacking});
     if (cancelled) this.stopped();
   }
 
@@ -257,8 +261,7 @@ export class SweepTab extends RequestTab {
     this.view = this.views[data.axes.length];
     this.form.showOrigins(data.parameters);
     this.fillMenus();
-    const key = (state, s) => element("li", {}, element("span", startKey(state, s)));
-    $("sweep-starts").replaceChildren(...data.states.map(key));
+    $("sweep-starts").replaceChildren(...data.states.map(startKey));
     this.view?.show(new Layers(data));
     this.refiner.follow(this.view);
     this.redraw();
@@ -271,7 +274,7 @@ export class SweepTab extends RequestTab {
   fillMenus() {
     const {section, defaultSet, axes, states} = this.data;
     const {parameter = "", values = []} = axes[2] ?? {};
-    setTexts({"sweep-slice-word": `where ${symbolOf(parameter)} =`});
+    dom.setTexts({"sweep-slice-word": `where ${symbolOf(parameter)} =`});
     const entries = {
       coordinate: Object.entries(coordinates[section] ?? {}).map(([name, {title}]) => [
         name,
@@ -282,7 +285,7 @@ export class SweepTab extends RequestTab {
       slice: values.map((v, m) => [m, labels.valueText(parameter, v)]),
     };
     for (const [name, menu] of Object.entries(menus))
-      fillMenu(menu, entries[name] ?? [], this.wanted[name]);
+      dom.fillMenu(menu, entries[name] ?? [], this.wanted[name]);
     this.wanted = {};
   }
 
@@ -301,7 +304,7 @@ export class SweepTab extends RequestTab {
   showCount(more = "") {
     const {total, received} = this.data;
     Object.assign($("sweep-bar"), {max: total || 1, value: received});
-    setTexts({"sweep-rate": `${grouped(received)} of ${grouped(total)} points${more}`});
+    dom.setTexts({"sweep-rate": `${grouped(received)} of ${grouped(total)} points${more}`});
   }
 
   /** Draws at most ten times a second, using at most a fifth of the time. */
@@ -326,6 +329,6 @@ export class SweepTab extends RequestTab {
     if (!this.data) return;
     this.draw();
     this.view?.describe();
-    showRemarks("sweep-remarks", [...this.data.warnings]);
+    dom.showRemarks("sweep-remarks", [...this.data.warnings]);
   }
 }

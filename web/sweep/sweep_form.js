@@ -1,7 +1,7 @@
 // The form of a sweep: axes, run of each point, shared fields; and its conversion to and from a
 // query. The fields of an axis have its name in front: axis1_from.
 import {$, element, fillMenu, setTexts} from "../shared/dom.js";
-import {defaultSet, Form, groups, smallScreen, textOf, unknownText} from "../shared/form.js";
+import {defaultSet, Form, groups, queryText, smallScreen, unknownText} from "../shared/form.js";
 import {unitShown} from "../shared/units.js";
 
 const none = "none";
@@ -51,10 +51,10 @@ export const grouped = (n) => String(n).replace(/\B(?=(\d{3})+$)/g, " ");
 export class SweepForm extends Form {
   /** tables: the answer of /v1/parameters; changed: called after each change. */
   constructor(container, tables, changed) {
-    const {start, system, reduced, SI} = groups;
+    const {start, system, reduced, SI, laws} = groups;
     const choices = tables.presets.map(({name}) => name);
     const shared = tables.fields
-      .filter((f) => f.group in {system, reduced, SI, start})
+      .filter((f) => f.group in {system, reduced, SI, laws, start})
       .map((f) => (f.name === "preset" ? {...f, choices} : f));
     const swept = new Map(shared.filter((f) => f.type === "number").map((f) => [f.name, f]));
     const fields = [
@@ -67,7 +67,7 @@ export class SweepForm extends Form {
       axis2: ["Second axis", true],
       axis3: ["Third axis", false],
       sweep: ["Each point", true],
-      ...{system, reduced, SI, start},
+      ...{system, reduced, SI, laws, start},
     };
     super(container, fields, {prefix: "sweep-", grouped});
     $("sweep-more").open = !smallScreen; // the results lie below the form
@@ -174,7 +174,8 @@ export class SweepForm extends Form {
       const parts = [parameter, from, to, count, ...(scale ? [scale] : [])];
       query.set(axisNames[i], parts.join(","));
     }
-    for (const [name, value] of Object.entries({...run, ...base})) query.set(name, textOf(value));
+    for (const [name, value] of Object.entries({...run, ...base}))
+      query.set(name, queryText(value));
     return String(query);
   }
 

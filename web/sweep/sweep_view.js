@@ -1,10 +1,10 @@
 // Base of the views of a sweep, over one axis or two: its plots share viewports, choices and a
 // tooltip, which follows the mouse, a tap or the keys.
 import {$, button, element} from "../shared/dom.js";
-import {addExportButton} from "../shared/export_dialog.js";
+import {addExportButton} from "../shared/export.js";
 import {Frame} from "../shared/frame.js";
 import {makeAccessible} from "../shared/gestures.js";
-import {roundedRange} from "../shared/numbers.js";
+import {clamp, roundedRange} from "../shared/numbers.js";
 import {ZoomablePlot} from "../shared/plot.js";
 import * as labels from "./axis_labels.js";
 
@@ -73,12 +73,11 @@ export class SweepPlot extends ZoomablePlot {
   numbers() {
     const {data, viewports, several} = this.view;
     const shown = data.axes.slice(0, viewports.length).map(({parameter}) => parameter);
-    const names = shown.map((parameter) => labels.label(parameter));
-    if (several) names.push("start");
-    names.push(...Object.keys(this.columns()));
+    const starts = several ? ["start"] : [];
+    const names = [...shown.map(labels.label), ...starts, ...Object.keys(this.columns())];
     const rows = this.view.visiblePlaces().flatMap(({p, value, height, start}) => {
       const at = shown.map((parameter, i) => labels.number(parameter, i ? height : value));
-      return this.rows(p).map((row) => [...at, ...(several ? [start + 1] : []), ...row]);
+      return this.rows(p).map((row) => [...at, ...starts.map(() => start + 1), ...row]);
     });
     return {names, columns: names.map((_, i) => rows.map((row) => row[i]))};
   }
@@ -99,17 +98,18 @@ export class SweepPlot extends ZoomablePlot {
  * `current` is the position of the tooltip: {plot, at, act: true if it has a button}.
  */
 export class SweepView {
+  layers = null;
+  current = null;
+  tip = element("div", {className: "tip", hidden: true, ariaLive: "polite"});
+
   /**
    * root: contains the plots and receives the keys; open({data, index, best}): called for a chosen
    * point.
    */
   constructor(root, viewports, open) {
-    Object.assign(this, {root, viewports, open, layers: null, current: null});
-    this.tip = element("div", {className: "tip", hidden: true, ariaLive: "polite"});
+    Object.assign(this, {root, viewports, open});
     root.append(this.tip);
-    root.onpointerleave = (event) => {
-      if (event.pointerType === "mouse") this.hideTip();
-    };
+    root.onpointerleave = ({pointerType}) => pointerType === "mouse" && this.hideTip();
     root.onkeydown = (event) => {
       if (event.target === root && this.key(event.key)) event.preventDefault();
     };
@@ -234,19 +234,18 @@ export class SweepView {
     const [box, plot] = [this.root, over].map((node) => node.getBoundingClientRect());
     const x = plot.left - box.left + frame.px(value) - frame.box.left;
     const down = height === undefined ? frame.height / 2 : frame.py(height) - frame.box.top;
-    const space = this.root.clientWidth - offsetWidth;
+    const space = Math.max(this.root.clientWidth - offsetWidth, 0);
+    const lowest = Math.max(this.root.clientHeight - offsetHeight, 0);
     const left = x + gap <= space ? x + gap : x - gap - offsetWidth;
-    const top = plot.top - box.top + down - offsetHeight / 2;
-    const lowest = this.root.clientHeight - offsetHeight;
-    style.left = `${Math.max(0, Math.min(left, space))}px`;
-    style.top = `${Math.max(0, Math.min(top, lowest))}px`;
+    style.left = `${clamp(left, 0, space)}px`;
+    style.top = `${clamp(plot.top - box.top + down - offsetHeight / 2, 0, lowest)}px`;
   }
 
   /** Hides tooltip, rings and cursor. */
   hideTip() {
     this.current = null;
     this.tip.hidden = true;
-    for (const plot of this.plots) plot.light();
+    for (const plot of this.plots ?? []) plot.light();
     for (const viewport of this.viewports) if (viewport.cursor !== null) viewport.point(null);
   }
 }

@@ -1,0 +1,265 @@
+// The motions tab: which motions exist over a parameter. A sweep from several starts finds what the
+// system settles on, and continuations follow each periodic orbit, stable or not. Both are drawn
+// while they are computed.
+import {linesOf} from "../shared/api.js";
+import {$, button, countUp, element, setTexts, tableOf} from "../shared/dom.js";
+import {addExportButton} from "../shared/export.js";
+import {defaultSet, Form, groups, queryText, unknownText} from "../shared/form.js";
+import {makeAccessible} from "../shared/gestures.js";
+import {RequestTab} from "../shared/job.js";
+import {count, short} from "../shared/numbers.js";
+import {unitShown} from "../shared/units.js";
+import * as labels from "../sweep/axis_labels.js";
+import {Motions} from "./data.js";
+import {MotionsPlot, quantities} from "./motions_plot.js";
+
+const ownFields = ["parameter", "from", "to", "switch"];
+const cycles = {cycles: 300, transient_cycles: 200}; // of each start
+const mostBranches = 12; // continuations in addition to that of the base
+const cyclesOfOrbit = 100; // for the simulation of an orbit
+const countField = {
+  name: "count",
+  type: "integer",
+  description: "values of the parameter at which the system settles from several starts",
+  default: 61,
+  minimum: 2,
+  maximum: 1000,
+};
+
+/** Names of the kinds of special points. */
+const kinds = {
+  fold: "fold",
+  flip: "flip: period doubling",
+  symmetry_breaking: "symmetry breaking",
+  torus: "torus: quasi-periodic motion begins",
+  grazing: "grazing",
+  stick: "sticking begins",
+  end: "end",
+};
+
+export class MotionsTab extends RequestTab {
+  asked = null; // query of the form when it was sent
+  motions = null;
+
+  constructor(tables, changed, {simulate}) {
+    super("motions-", changed);
+    labels.useFields(tables.fields);
+    this.makeForm(tables);
+    const open = ({value, state}) => {
+      const {base, parameter} = this.motions.request;
+      simulate({...base, [parameter]: value, ...state, cycles: cyclesOfOrbit});
+    };
+    this.plot = new MotionsPlot($("plot-motions"), {open, place: (value) => this.place(value)});
+    this.quantity = $("motions-quantity");
+    this.quantity.onchange = () => this.draw();
+    this.results.addEventListener("click", ({target}) => target.orbit && open(target.orbit));
+    addExportButton($("figure-motions"), this.plot, () => this.about());
+    $("motions-example").onchange = ({target}) => {
+      const {query} = target.selectedOptions[0].dataset;
+      if (query) this.open(new URLSearchParams(query));
+    };
+  }
+
+  makeForm({fields, continue_fields: own, presets}) {
+    this.presets = presets;
+    const {system, reduced, SI, laws, start} = groups;
+    const shared = fields.filter((f) => f.group in {system, reduced, SI, laws, start});
+    const numbers = shared.filter((f) => f.type === "number").map(({name}) => name);
+    const choices = {parameter: numbers, preset: presets.map(({name}) => name)};
+    const first = [...own.filter((f) => ownFields.includes(f.name)), countField];
+    const all = [
+      ...first.map((f) => ({...f, group: "motions", narrow: true})),
+      ...shared.map((f) => ({...f, part: "base"})),
+    ].map((f) => (choices[f.name] ? {...f, choices: choices[f.name]} : f));
+    const standard = all.find(({name}) => name === "parameter");
+    standard.default = "b";
+    const grouped = {motions: ["Parameter", true], system, reduced, SI, laws, start};
+    this.form = new Form($("motions-fields"), all, {prefix: "motions-", grouped});
+    this.units = Object.fromEntries(fields.map(({name, unit}) => [name, unit]));
+    const menu = this.form.inputs.get("parameter");
+    menu.onchange = () => {
+      this.scale(menu.value);
+      for (const end of ["from", "to"]) this.form.replace(end, "");
+    };
+    $("motions-fields").oninput = () => this.markStale();
+  }
+
+  /** The ends of the range are typed in the unit of the parameter. */
+  scale(parameter) {
+    const {factor} = unitShown(this.units[parameter]);
+    for (const end of ["from", "to"]) this.form.factors.set(end, factor);
+  }
+
+  /** {base, parameter, from, to, ...} of the form. */
+  request() {
+    const request = {parameter: "b", base: {}};
+    const inBase = ({name}) => this.form.fields.find((f) => f.name === name).part === "base";
+    for (const [name, value] of Object.entries(this.form.values()))
+      (inBase({name}) ? request.base : request)[name] = value;
+    return request;
+  }
+
+  formQuery() {
+    const {base, ...own} = this.request();
+    const entries = Object.entries({...own, ...base}).map(([name, v]) => [name, queryText(v)]);
+    return String(new URLSearchParams(entries));
+  }
+
+  query() {
+    return this.asked;
+  }
+
+  isStale() {
+    return this.asked !== null && this.formQuery() !== this.asked;
+  }
+
+  /** Shows the motions of a query, or of the first example. */
+  open(given) {
+    const query = given.size
+      ? given
+      : new URLSearchParams($("motions-example").options[1].dataset.query);
+    const fields = Object.fromEntries(query);
+    const unknown = Object.keys(fields).filter((name) => !this.form.inputs.has(name));
+    this.scale(fields.parameter ?? "b");
+    this.form.set(fields);
+    setTexts({"motions-note": unknownText(unknown)});
+    if (this.formQuery() !== this.asked) this.send();
+  }
+
+  submit() {
+    this.send();
+    this.scrollToResults();
+  }
+
+  send() {
+    const edit = this.asked !== null;
+    this.asked = this.formQuery();
+    const shown = [...$("motions-example").options].find(
+      ({dataset: {query}}) => query && String(new URLSearchParams(query)) === this.asked,
+    );
+    $("motions-example").value = shown?.value ?? "";
+    this.form.showErrors([]);
+    this.changed({edit});
+    this.markStale();
+    this.start(this.request());
+  }
+
+  /** Sweep and continuation from the base; then continuations of what no branch explains. */
+  async ask(request, signal) {
+    const preset = this.presets.find(({name}) => name === request.base.preset);
+    this.motions = new Motions(request, preset?.parameters);
+    this.plot.show(this.motions);
+    const {start} = this.motions;
+    const base = {...request.base, ...(Number.isFinite(start) && {[request.parameter]: start})};
+    await Promise.all([this.settle(signal), this.follow(base, signal)]);
+    for (let n = 0; n < mostBranches; ++n) {
+      const found = this.motions.unexplained();
+      if (!found) break;
+      const {value, state} = found;
+      await this.follow({...base, [request.parameter]: value, ...state}, signal);
+    }
+  }
+
+  /** Collects the motions that the system settles on. */
+  async settle(signal) {
+    const {count: given = countField.default, switch: _, base, ...axis} = this.motions.request;
+    const axes = [{...axis, count: given}];
+    const sweep = {base, axes, starts: defaultSet, ...cycles};
+    await this.receive("v1/sweep", sweep, signal, (line) => this.motions.settled(line));
+  }
+
+  /** Follows the orbit on which a base settles. */
+  async follow(base, signal) {
+    const {count: _, ...request} = this.motions.request;
+    const offset = this.motions.branches.length;
+    const take = (line) => this.motions.continued(line, offset);
+    await this.receive("v1/continue", {...request, base}, signal, take);
+  }
+
+  async receive(path, request, signal, take) {
+    for await (const {value: line} of linesOf(path, request, signal)) {
+      if (line.type === "error") throw new Error(line.detail);
+      take(line);
+      this.drawSoon();
+      if (signal.aborted) return;
+    }
+  }
+
+  drawSoon() {
+    this.waiting ||= setTimeout(() => {
+      this.waiting = 0;
+      this.draw();
+    }, 100);
+  }
+
+  show() {
+    this.draw();
+    countUp(this.results);
+  }
+
+  fail({message, errors = []}) {
+    const placed = errors.map((e) => ({...e, pointer: e.pointer.replace(/^\/(base|axes\/0)/, "")}));
+    super.fail({message, errors: placed});
+  }
+
+  redraw() {
+    if (this.motions) this.draw();
+  }
+
+  draw() {
+    const {branches, attractors, specials} = this.motions;
+    this.plot.draw({quantity: this.quantity.value});
+    const parts = [
+      `${count(attractors.length, "run")} from several starts`,
+      `${branches.length} ${branches.length === 1 ? "branch" : "branches"}`,
+      count(specials.length, "special point"),
+    ];
+    const text = parts.join(", ");
+    setTexts({"motions-count": text});
+    makeAccessible(this.plot, `${quantities[this.quantity.value].title} of all motions: ${text}`);
+    this.listSpecials();
+    this.place(this.plot.marked);
+  }
+
+  /** Lists the special points; each opens its orbit. */
+  listSpecials() {
+    const {parameter} = this.motions.request;
+    const head = ["special point", labels.label(parameter), "branch", "largest |x| (mm)", ""];
+    const rows = this.motions.specials.map(({kind, value, branch, x_max, detail}) => [
+      kinds[kind] ?? kind,
+      labels.text(parameter, value),
+      branch === null ? "–" : String(branch + 1),
+      x_max == null ? "–" : short(1000 * x_max),
+      detail ?? "",
+    ]);
+    $("motions-special").replaceChildren(...tableOf(head, rows));
+  }
+
+  /** Describes the motions at a value of the parameter, each with a button that simulates it. */
+  place(value) {
+    const {parameter} = this.motions.request;
+    if (value == null) return;
+    const {title, unit, of} = quantities[this.quantity.value];
+    const found = this.motions.distinctAt(value).map((orbit) => {
+      const text =
+        `${orbit.stable ? "stable" : "unstable"}, ${title} ${short(of(orbit))} ${unit}`.trim();
+      return Object.assign(button(text, null, {className: "small"}), {orbit});
+    });
+    const where = `At ${labels.fields({[parameter]: value})}:`;
+    $("motions-at").replaceChildren(
+      element("b", {}, where),
+      ...(found.length ? found : [" no orbit"]),
+    );
+  }
+
+  about() {
+    const {base, parameter} = this.motions.request;
+    const title = `Motions over ${labels.label(parameter)}`;
+    return {
+      title,
+      summary: $("motions-count").textContent,
+      caption: labels.fields(base),
+      name: "motions",
+    };
+  }
+}
