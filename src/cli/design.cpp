@@ -40,8 +40,8 @@ int design_absorber(const DesignOptions& o) {
 
 Command add_design(CLI::App& app) {
     const auto options = std::make_shared<DesignOptions>();
-    CLI::App* command = app.add_subcommand(
-        "design", "the best absorber over a band, next to its alternatives: POST /v1/design");
+    CLI::App* command =
+        app.add_subcommand("design", "the best absorber over a band: POST /v1/design");
     add_files(*command, options->files);
     add_request_fields(*command, options->fields);
     command->add_option("--threads", options->threads, "number of threads; 0: one per core")

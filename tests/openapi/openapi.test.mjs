@@ -97,6 +97,7 @@ test("every example request gets a response that matches the document and its ex
     }
   assert.deepEqual([...shown].sort(), [
     "ContinueLine",
+    "DesignLine",
     "Identification",
     "Manifold",
     "Simulation",

@@ -60,16 +60,14 @@ class Client(ABC):
         result. `DesignFields` lists the fields. Raises `Problem` at once for an invalid request,
         and `Incomplete` if the computation ends early."""
         lines = self._lines("design", body_of(_named(fields)))
-        done = Answer({})
         for line in lines:
-            if line.get("type") == "done":
-                done = Answer(line)
-            elif line.get("type") == "error":
+            if line.get("type") == "error":
                 lines.close()
                 raise Incomplete(int(line.get("status", 0)), str(line.get("detail", "")))
-        if not done.get("complete"):
-            raise Incomplete(0, "the design ended before its result")
-        return done
+            if line.get("type") == "done" and line.get("complete"):
+                lines.close()
+                return Answer(line)
+        raise Incomplete(0, "the design ended before its result")
 
     def identify(
         self,

@@ -65,7 +65,9 @@ class Program(Client):
             assert running.stdout is not None
             try:
                 for line in running.stdout:
-                    if line.endswith(b"\n") and not line.startswith(_DONE):
+                    # The last line of a design is its result.
+                    is_end = line.startswith(_DONE) and verb != "design"
+                    if line.endswith(b"\n") and not is_end:
                         yield json.loads(line)
                 yield from _end(running.wait(), said)
             finally:
