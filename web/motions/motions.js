@@ -193,6 +193,7 @@ export class MotionsTab extends RequestTab {
   }
 
   show() {
+    this.say("");
     this.draw();
     countUp(this.results);
   }
