@@ -5,6 +5,7 @@ import {get} from "./shared/api.js";
 import {$, attributes, on} from "./shared/dom.js";
 import {onColours} from "./shared/ink.js";
 import {startTerms} from "./shared/terms.js";
+import {toQuery} from "./simulation/request.js";
 import {SimulationTab} from "./simulation/simulation.js";
 
 // The class of each tab, a RequestTab; all but the first are loaded on demand. It is made with
@@ -149,7 +150,7 @@ function navigate(name, query) {
 /** Opens the simulation of a sweep's point. */
 function simulatePoint(fields) {
   scrolled.simulation = 0; // the new simulation is shown from the top
-  navigate("simulation", new URLSearchParams(Object.entries(fields)));
+  navigate("simulation", toQuery(fields));
 }
 
 /** Opens the record of a run, an answer of /v1/simulate with impacts, in Measurement. */

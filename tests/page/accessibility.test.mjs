@@ -2,7 +2,7 @@
 import assert from "node:assert/strict";
 import {test} from "node:test";
 import {measured} from "../record.mjs";
-import {drawn, identified, swept} from "./browser.mjs";
+import {drawn, found, identified, swept} from "./browser.mjs";
 import {leastDifference} from "./palette.mjs";
 import {browser, findingsInBothSchemes, service} from "./support.mjs";
 
@@ -27,6 +27,12 @@ const tabs = {
   "a map": async (page) => {
     await page.goto(`${service.url}/?tab=sweep&axis1=b,0.005,0.035,8&axis2=R,0.4,0.8,6&cycles=30`);
     await swept(page, 1);
+  },
+  "all motions over a parameter": async (page) => {
+    await page.goto(
+      `${service.url}/?tab=motions&parameter=b&from=0.014&to=0.018&count=5&preset=fig11`,
+    );
+    await found(page, 1);
   },
   "a measurement": async (page) => {
     await page.goto(`${service.url}/?tab=measurement&preset=fig15`);
@@ -62,6 +68,7 @@ for (const [name, [width, height]] of Object.entries(screens))
       ["?preset=fig11", drawn],
       ["?preset=fig11&embed=1", drawn],
       ["?tab=sweep&axis1=b,0.003,0.04,24&cycles=60", swept],
+      ["?tab=motions&parameter=b&from=0.014&to=0.018&count=5&preset=fig11", found],
       ["?tab=measurement", identified],
     ]) {
       await page.goto(`${service.url}/${address}`);

@@ -193,6 +193,7 @@ export class MotionsTab extends RequestTab {
   }
 
   show() {
+    this.say("");
     this.draw();
     countUp(this.results);
   }
@@ -216,7 +217,10 @@ export class MotionsTab extends RequestTab {
     ];
     const text = parts.join(", ");
     setTexts({"motions-count": text});
-    makeAccessible(this.plot, `${quantities[this.quantity.value].title} of all motions: ${text}`);
+    makeAccessible(
+      {node: this.plot.canvas},
+      `${quantities[this.quantity.value].title} of all motions: ${text}`,
+    );
     this.listSpecials();
     this.place(this.plot.marked);
   }
@@ -224,7 +228,7 @@ export class MotionsTab extends RequestTab {
   /** Lists the special points; each opens its orbit. */
   listSpecials() {
     const {parameter} = this.motions.request;
-    const head = ["special point", labels.label(parameter), "branch", "largest |x| (mm)", ""];
+    const head = ["special point", labels.label(parameter), "branch", "largest |x| (mm)", "reason"];
     const rows = this.motions.specials.map(({kind, value, branch, x_max, detail}) => [
       kinds[kind] ?? kind,
       labels.text(parameter, value),

@@ -31,6 +31,7 @@ const deferredParts = {
   exponents: ["raw_product"],
 };
 
+const mostSamples = 60000; // of a run that is drawn from samples
 const large = 20000; // impacts above which a run is drawn in several tasks
 const idle = 100; // ms without an edit before the deferred parts are requested
 
@@ -57,7 +58,8 @@ function remark({exponents: {verdict, verdict_reason: why}, regime, warnings}, m
 
 /** A request for the same run with a ball too light to matter: without the absorber. */
 function withLightBall({m2, ...fields}) {
-  return {...fields, mass_ratio: 1e-9, include: ["impacts", "series"]};
+  const include = ["impacts", "series"];
+  return {max_points: mostSamples, ...fields, mass_ratio: 1e-9, include};
 }
 
 export class SimulationTab extends RequestTab {
@@ -140,7 +142,7 @@ export class SimulationTab extends RequestTab {
 
   ask(fields, signal) {
     const parts = isSampled(this.request.merged(fields)) ? sampledParts : firstParts;
-    return simulate({...fields, ...parts}, signal);
+    return simulate({max_points: mostSamples, ...fields, ...parts}, signal);
   }
 
   isStale(busy) {
@@ -191,6 +193,8 @@ export class SimulationTab extends RequestTab {
     this.mark(false);
     this.form.showErrors([]);
     this.showOrigins();
+    // The identification assumes straight flights and one R.
+    $("measure-this").disabled = Boolean(answer.series || answer.parameters.restitution_plus);
     remark(answer);
     dom.reveal({units: answer.parameters.si});
     viewport.span(0, answer.status.tau, homeOf(answer), fresh);
