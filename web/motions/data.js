@@ -44,7 +44,7 @@ export class Motions {
       branch.slice(1).flatMap((next, i) => {
         const last = branch[i];
         const share = (value - last.value) / (next.value - last.value);
-        if (!(share >= 0 && share < 1)) return [];
+        if (!(share >= 0 && share <= 1)) return [];
         const closest = share < 0.5 ? last : next;
         const between = (name) => last[name] + share * (next[name] - last[name]);
         return [{...closest, x_max: between("x_max"), x_rms: between("x_rms")}];

@@ -163,8 +163,9 @@ export class MotionsTab extends RequestTab {
   /** Collects the motions that the system settles on. */
   async settle(signal) {
     const {count: given = countField.default, switch: _, base, ...axis} = this.motions.request;
+    const {[axis.parameter]: swept, ...others} = base;
     const axes = [{...axis, count: given}];
-    const sweep = {base, axes, starts: defaultSet, ...cycles};
+    const sweep = {base: others, axes, starts: defaultSet, ...cycles};
     await this.receive("v1/sweep", sweep, signal, (line) => this.motions.settled(line));
   }
 
