@@ -180,9 +180,8 @@ export class MotionsTab extends RequestTab {
   async receive(path, request, signal, take) {
     for await (const {value: line} of linesOf(path, request, signal)) {
       if (line.type === "error") throw new Error(line.detail);
-      take(line);
+      if (take(line) === false || signal.aborted) return;
       this.drawSoon();
-      if (signal.aborted) return;
     }
   }
 
