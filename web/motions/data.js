@@ -29,13 +29,22 @@ export class Motions {
     for (const motion of starts) if (motion.x_max != null) this.attractors.push({...motion, value});
   }
 
-  /** Takes a line of a continuation; offset: number of the branches of earlier ones. */
+  /**
+   * Takes a line of a continuation; offset: number of the branches of earlier ones. Returns false if
+   * it begins on one of these.
+   */
   continued({type, branch, ...orbit}, offset) {
     const value = orbit[this.request.parameter];
     const number = branch == null ? null : branch + offset;
+    const begins = type === "point" && number === offset && !this.branches[number].length;
+    if (begins && this.at(value).some((known) => isSame(known, orbit))) {
+      this.branches.length = offset;
+      return false;
+    }
     if (type === "branch") this.branches[number] ??= [];
     else if (type === "point") this.branches[number].push({...orbit, value});
     else if (type === "special") this.specials.push({...orbit, value, branch: number});
+    return true;
   }
 
   /** The orbits of all branches at a value, from their neighbours by linear interpolation. */
@@ -44,7 +53,7 @@ export class Motions {
       branch.slice(1).flatMap((next, i) => {
         const last = branch[i];
         const share = (value - last.value) / (next.value - last.value);
-        if (!(share >= 0 && share < 1)) return [];
+        if (!(share >= 0 && share <= 1)) return [];
         const closest = share < 0.5 ? last : next;
         const between = (name) => last[name] + share * (next[name] - last[name]);
         return [{...closest, x_max: between("x_max"), x_rms: between("x_rms")}];

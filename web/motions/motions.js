@@ -163,8 +163,9 @@ export class MotionsTab extends RequestTab {
   /** Collects the motions that the system settles on. */
   async settle(signal) {
     const {count: given = countField.default, switch: _, base, ...axis} = this.motions.request;
+    const {[axis.parameter]: swept, ...others} = base;
     const axes = [{...axis, count: given}];
-    const sweep = {base, axes, starts: defaultSet, ...cycles};
+    const sweep = {base: others, axes, starts: defaultSet, ...cycles};
     await this.receive("v1/sweep", sweep, signal, (line) => this.motions.settled(line));
   }
 
@@ -179,9 +180,8 @@ export class MotionsTab extends RequestTab {
   async receive(path, request, signal, take) {
     for await (const {value: line} of linesOf(path, request, signal)) {
       if (line.type === "error") throw new Error(line.detail);
-      take(line);
+      if (take(line) === false || signal.aborted) return;
       this.drawSoon();
-      if (signal.aborted) return;
     }
   }
 
