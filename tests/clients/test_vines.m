@@ -141,6 +141,15 @@ function a_continuation_has_points_special_points_and_branches()
   assert(abs(broken.b - 7.046736303e-3) < 1e-12);
 end
 
+function basins_have_points_and_a_result()
+  base = struct('b', 0.0065, 'damping', 'closed_form', 'y0', 0);
+  box = struct('x0', [-0.003 0.003], 'y_dot0', [-0.02 0.02]);
+  [points, result] = vines.basins('base', base, 'box', box, 'count', 60, 'pairs', 0);
+  assert(numel(points) == 60 && numel(result.attractors) == 2);
+  same(sort({result.attractors.attractor}), unique({points.attractor}));
+  same(result.attractors(1).mirror, result.attractors(2).attractor);
+end
+
 function an_invalid_sweep_raises()
   refused('vines:problem', @() vines.sweep('axes', line(-3)));
   problem = vines.problem();

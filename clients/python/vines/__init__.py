@@ -19,7 +19,7 @@ The functions send requests to the service at the address in VINES_URL, with the
 set. Without VINES_URL they run the program in VINES_PROGRAM, or `vines` on the PATH. `Service` and
 `Program` have the same functions.
 
-`help(vines.SimulateFields)`, `SweepFields`, `ContinueFields` and `IdentifyFields` list the fields
+`help(vines.SimulateFields)`, `SweepFields`, `BasinsFields`, `ContinueFields` and `IdentifyFields` list the fields
 with unit, range and default; `help(vines.Answer)` describes answers.
 """
 
@@ -33,6 +33,7 @@ from ._client import Client, Columns
 from ._continuation import Continuation
 from ._fields import (
     Axis,
+    BasinsFields,
     ContinueFields,
     IdentifyFields,
     Perturbation,
@@ -55,6 +56,7 @@ __all__ = [
     "Answer",
     "Axis",
     "Client",
+    "BasinsFields",
     "Continuation",
     "ContinueFields",
     "FieldError",
@@ -73,6 +75,7 @@ __all__ = [
     "SweepBase",
     "SweepFields",
     "client",
+    "basins",
     "continue_",
     "identify",
     "simulate",
@@ -97,6 +100,11 @@ def simulate(**fields: Unpack[SimulateFields]) -> Answer:
 def sweep(**fields: Unpack[SweepFields]) -> Sweep:
     """`Client.sweep` of the client chosen by the environment."""
     return client().sweep(**fields)
+
+
+def basins(**fields: Unpack[BasinsFields]) -> Sweep:
+    """`Client.basins` of the client chosen by the environment."""
+    return client().basins(**fields)
 
 
 def continue_(**fields: Unpack[ContinueFields]) -> Continuation:

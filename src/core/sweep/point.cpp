@@ -6,6 +6,7 @@
 
 #include "core/measures/energy.hpp"
 #include "core/motion/elementary.hpp"
+#include "core/sweep/basins.hpp"
 
 namespace vines {
 
@@ -14,6 +15,8 @@ namespace {
 // Largest relative difference of x_rms of two runs on the same orbit (same period and contacts).
 // x_rms of irregular motions is a mean over a finite run and varies more by chance.
 constexpr double same_orbit = 0.01, same_irregular = 0.25;
+// Cycles between two comparisons of a transient with known motions.
+constexpr double cycles_between_looks = 4;
 
 /// Run from a state at a whole cycle: the forcing phase is that of tau = 0.
 RunPlan cycles_from(
@@ -102,21 +105,28 @@ PointRun::PointRun(
     : parameters_(parameters),
       start_(start),
       options_(options),
-      stop_(std::move(stop)) {}
+      stop_(std::move(stop)),
+      left_(std::round(options.transient_cycles)) {}
 
 std::optional<RunPlan> PointRun::next(const std::optional<Outcome>& last) {
     if (analysis_) {
         conclude(*last);
         return std::nullopt;
     }
-    if (!last) {
-        const double transient = std::round(options_.transient_cycles);
-        if (transient > 0) return cycles_from(parameters_, start_, 0, transient, stop_);
-        return measured_from(start_);
+    const State& from = last ? last->state : start_;
+    if (last) {
+        result_.outcome = *last;
+        if (last->reason != End::tau_end) return std::nullopt;
+        const PointResult* known = options_.known ? options_.known->reached_from(from) : nullptr;
+        if (known) {
+            result_ = *known;
+            return std::nullopt;
+        }
     }
-    result_.outcome = *last;
-    if (last->reason != End::tau_end) return std::nullopt;
-    return measured_from(last->state);
+    if (left_ <= 0) return measured_from(from);
+    const double now = options_.known ? std::min(left_, cycles_between_looks) : left_;
+    left_ -= now;
+    return cycles_from(parameters_, from, 0, now, stop_);
 }
 
 std::optional<RunPlan> PointRun::measured_from(const State& begin) {
@@ -150,7 +160,9 @@ void PointRun::conclude(const Outcome& outcome) {
     r.share_impacts = energy.share_impacts;
     r.impacts = outcome.impacts;
     r.sticks = a.stick_count;
+    r.name = name_of(p, r.regime, r.verdict, r.x_rms, stop_);
     if (a.sections) r.sections = std::move(*a.sections);
+    if (options_.known) options_.known->name_as_known(r);
     if (options_.carry) r.at_end = last_state(p, outcome, stop_);
 }
 

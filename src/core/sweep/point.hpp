@@ -6,12 +6,14 @@
 #pragma once
 
 #include <functional>
+#include <memory>
 #include <optional>
 #include <span>
 #include <string>
 #include <vector>
 
 #include "core/analysis/analysis.hpp"
+#include "core/measures/attractor.hpp"
 #include "core/motion/parameters.hpp"
 #include "core/sweep/parallel.hpp"
 
@@ -37,6 +39,8 @@ inline constexpr std::size_t most_starts = 6;
 /// same relative position in its cavity.
 State carried(const State& state, const Parameters& from, const Parameters& to);
 
+class KnownMotions;
+
 /// Section that a sweep keeps for a bifurcation diagram.
 enum class SectionKind { none, impact, stroboscopic };
 
@@ -51,6 +55,8 @@ struct PointOptions {
     double section_phase = 0;          ///< stroboscopic section: rad after each whole cycle
     /// A neighbour continues from the last state: computes PointResult::at_end.
     bool carry = false;
+    /// Ends the transient as soon as it reaches one of these motions, which then is the result.
+    const KnownMotions* known = nullptr;
 };
 
 struct PointResult {
@@ -69,6 +75,7 @@ struct PointResult {
     /// until its capture, or as long as it was followed. Empty if no chaos is shown.
     std::optional<double> chaotic_cycles;
     Regime regime;  ///< without its lists
+    AttractorName name;
     /// m; m; x_rms over that of the steady motion (free decay: same start) without absorber.
     double x_max, x_rms, x_rms_ratio;
     double x_rms_error, share_impacts_error;  ///< standard errors (EnergyBalance)
@@ -95,7 +102,8 @@ public:
         const Parameters& parameters, const State& start, const PointOptions& options,
         std::function<bool()> stop);
 
-    /// Next run: the transient, the measured part, then empty; as RunSource::next().
+    /// Next run: the transient, in parts if motions are known, the measured part, then empty; as
+    /// RunSource::next().
     std::optional<RunPlan> next(const std::optional<Outcome>& last);
     /// The result, once next() returned empty.
     PointResult take() { return std::move(result_); }
@@ -108,6 +116,7 @@ private:
     const State start_;
     const PointOptions options_;
     const std::function<bool()> stop_;
+    double left_;  ///< cycles of the transient
     State begin_;  ///< start of the measured part
     std::optional<AnalysisRun> analysis_;
     PointResult result_;
@@ -122,6 +131,7 @@ struct PointSystem {
     Parameters parameters;
     State start;
     long max_impacts;
+    std::shared_ptr<const KnownMotions> known = nullptr;
 };
 
 /// A motion and its start, named in the default set of starts, else unnamed.

@@ -59,6 +59,7 @@ std::size_t most_together(const PointOptions& o) {
 
 PointOptions options_of(const PointSystem& system, PointOptions options) {
     options.max_impacts = system.max_impacts;
+    options.known = system.known.get();
     return options;
 }
 
