@@ -96,6 +96,7 @@ int main(int argc, char** argv) {
     const std::vector<vines::Command> commands = {
         vines::cli::add_simulate(app),
         vines::cli::add_sweep(app),
+        vines::cli::add_basins(app),
         vines::cli::add_continue(app),
         vines::cli::add_design(app),
         vines::cli::add_identify(app),

@@ -30,6 +30,7 @@ from typing import Literal, TypedDict
 KEYWORDS = [
     ("SimulateFields", "SimulateRequest", "Fields of a simulation."),
     ("SweepFields", "SweepRequest", "Fields of a sweep."),
+    ("BasinsFields", "BasinsRequest", "Fields of basins."),
     ("ContinueFields", "ContinueRequest", "Fields of a continuation."),
     ("DesignFields", "DesignRequest", "Fields of a design."),
     ("IdentifyFields", "IdentifyRequest", "Fields of an identification."),
@@ -42,6 +43,7 @@ NESTED = {
     "restitution": "RestitutionTable",
     "restitution_plus": "RestitutionTable",
     "restitution_minus": "RestitutionTable",
+    "box": "StartBox",
 }
 
 # Not passed by the user: the client chooses the format, and identify has arguments for the others.
@@ -61,7 +63,7 @@ def main() -> None:
 
 
 def module(schemas: dict[str, Any]) -> str:
-    fields = schemas["SimulateRequest"]["properties"]
+    fields = schemas["SimulateRequest"]["properties"] | schemas["BasinsRequest"]["properties"]
     objects = {name: fields[field] for field, name in NESTED.items()}
     objects |= {name: schemas[name] for name in OBJECTS}
     parts = [HEAD, number_lists(schemas)]

@@ -133,14 +133,10 @@ public:
 
 private:
     Json place(const char* type, int branch, const OrbitPoint& point) const {
-        const auto& m = point.multipliers;
         Json line = {{"type", type}, {"branch", branch}, {r_.parameter, point.parameters[0]}};
         if (point.parameters.size() > 1) line[r_.second] = point.parameters[1];
         line.update(describe(properties::branch_point, point));
-        line["multipliers"] = {
-            {"re", column(m, [](auto value) { return value.real(); })},
-            {"im", column(m, [](auto value) { return value.imag(); })},
-            {"modulus", column(m, elementary::modulus)}};
+        line["multipliers"] = describe_multipliers(point.multipliers);
         line["state"] = describe(properties::start, point.measures.at_whole_cycle);
         return line;
     }

@@ -297,4 +297,11 @@ Json describe_exponents(
     return j;
 }
 
+Json describe_multipliers(const std::array<std::complex<double>, 4>& m) {
+    return {
+        {"re", column(m, [](auto value) { return value.real(); })},
+        {"im", column(m, [](auto value) { return value.imag(); })},
+        {"modulus", column(m, elementary::modulus)}};
+}
+
 }  // namespace vines::api

@@ -40,4 +40,6 @@ Json describe_perturbation(Perturbation&& perturbation);
 /// Type, impacts per cycle, periodic orbit and capture; null where a part does not exist.
 Json describe_regime(const Regime& regime);
 
+Json describe_multipliers(const std::array<std::complex<double>, 4>& multipliers);
+
 }  // namespace vines::api

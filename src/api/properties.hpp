@@ -7,6 +7,7 @@
 #include "api/columns.hpp"
 #include "api/schema/enum_names.hpp"
 #include "core/motion/elementary.hpp"
+#include "core/sweep/basins.hpp"
 #include "core/sweep/recommend.hpp"
 
 namespace vines::api {
@@ -24,6 +25,7 @@ inline Json json_of(double value) { return finite_or_null(value); }
 inline Json json_of(std::integral auto value) { return value; }
 inline Json json_of(const Interval& interval) { return {interval.from, interval.to}; }
 inline Json json_of(const Exponents& values) { return column(values); }
+inline Json json_of(const std::string& text) { return text; }
 inline Json json_of(RegimeType type) { return name_of(type); }
 inline Json json_of(Verdict verdict) { return enum_json(verdict); }
 inline Json json_of(Damping damping) { return enum_json(damping); }
@@ -282,6 +284,17 @@ inline constexpr auto orbit_at = [](const MeasuredPoint& p) {
     return orbit ? json_of(std::invoke(member, *orbit)) : Json(nullptr);
 };
 
+inline constexpr Quantity attractor_quantity{
+    "attractor",
+    "name of the motion, equal wherever a run settles on it: see attractors.md; not_decided if it "
+    "has not settled",
+    word};
+inline constexpr Quantity mirror_quantity{
+    "mirror",
+    "name of the orbit's mirror image, equal to attractor if the orbit is symmetric; null without "
+    "an orbit or without a mirror image",
+    word_or_null};
+
 inline constexpr Property<MeasuredPoint> point[] = {
     {{"lambda", "four exponents by qr", exponents}, result_at<&PointResult::lambda>},
     {{"status", "status of each exponent", statuses},
@@ -318,6 +331,8 @@ inline constexpr Property<MeasuredPoint> point[] = {
      result_at<&PointResult::lambda1_before>},
     {{"lambda1_after", "lambda1 of the orbit, from its multipliers", number_or_null},
      result_at<&PointResult::lambda1_after>},
+    {attractor_quantity, [](const MeasuredPoint& p) { return Json(p.result.name.motion); }},
+    {mirror_quantity, [](const MeasuredPoint& p) { return json_of(p.result.name.mirror); }},
     {{"multiplier", "largest modulus of the Floquet multipliers"},
      orbit_at<[](const PeriodicOrbit& o) { return elementary::modulus(o.multipliers[0]); }>},
     {{"synchronised", "fraction of the contacts that lie in synchronised stretches"},
@@ -362,6 +377,42 @@ inline constexpr Property<PointResult> peak[] = {
     {{"z", "contacts per cycle at x_peak"},
      [](const PointResult& p) { return json_of(p.regime.z); }},
     {{"x_rms", "rms of x at x_peak, m"}, at<&PointResult::x_rms>},
+};
+
+inline constexpr Property<AttractorName> motion_name[] = {
+    {attractor_quantity, at<&AttractorName::motion>},
+    {mirror_quantity, at<&AttractorName::mirror>},
+};
+
+/// The starts that lead to a motion.
+inline constexpr Property<Basin> basin[] = {
+    {{"branch",
+      "number of the branch of orbits, the same at neighbouring values; null without an orbit",
+      whole},
+     at<&Basin::branch>},
+    {attractor_quantity, [](const Basin& b) { return json_of(b.motion.name.motion); }},
+    {mirror_quantity, [](const Basin& b) { return json_of(b.motion.name.mirror); }},
+    {{"regime", "I to VI, or none", regime},
+     [](const Basin& b) { return json_of(b.motion.regime.type); }},
+    {{"period_cycles", "period in forcing cycles; null without an orbit", whole},
+     [](const Basin& b) {
+         const auto& orbit = b.motion.regime.orbit;
+         return orbit ? Json(orbit->cycles) : Json(nullptr);
+     }},
+    {{"z", "contacts per cycle"}, [](const Basin& b) { return json_of(b.motion.regime.z); }},
+    {{"x_max", "maximum of |x|, m"}, [](const Basin& b) { return json_of(b.motion.x_max); }},
+    {{"starts", "number of starts that lead to it", whole}, at<&Basin::starts>},
+    {{"fraction", "fraction of all starts"}, at<&Basin::fraction>},
+    {{"interval", "95 % interval of the fraction, from the number of starts", interval},
+     at<&Basin::interval>},
+};
+
+/// All starts at a value of the axis.
+inline constexpr Property<BasinsAt> basins[] = {
+    {{"starts", "number of starts", whole}, at<&BasinsAt::starts>},
+    {{"not_decided", "number of those whose motion has not settled", whole},
+     at<&BasinsAt::not_decided>},
+    {{"cells", "cells of the box with at least ten starts", whole}, at<&BasinsAt::cells>},
 };
 
 inline constexpr Property<Lifetime> lifetime[] = {

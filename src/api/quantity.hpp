@@ -23,6 +23,7 @@ enum class ValueType : std::uint8_t {
     wall,            ///< 1 for the wall at +b, -1 for the wall at -b
     flag,
     word,
+    word_or_null,
     component,  ///< a component of the state
     moduli,     ///< four numbers
     exponents,  ///< four numbers or nulls

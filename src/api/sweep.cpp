@@ -121,6 +121,7 @@ public:
     PointLineWriter(const SweepRequest& r, const TakeLine& take) : r_(r), take_(take) {}
 
     void point(std::size_t index, const SweepPoint& point) override {
+        if (r_.basins) r_.basins->add(index, point.motions[0].result);
         pass_on(index, json_text(describe_point(r_, index, point)));
     }
     void row(std::size_t index, const RowSummary& row) override {
@@ -145,7 +146,8 @@ Json describe_place(const SweepRequest& r, std::size_t line) {
     Json j = {{"type", "point"}, {"index", line}};
     for (std::size_t a = 0; a < r.axes.size(); ++a)
         if (a != r.plan.grid.reduced) j[r.axes[a].parameter] = r.axes[a].values[place.at[a]];
-    if (r.starts.size() > 1) j["start"] = place.start;
+    if (r.basins) j["start"] = describe(properties::start, r.basins->system_of(place)->start);
+    else if (r.starts.size() > 1) j["start"] = place.start;
     return j;
 }
 
@@ -154,6 +156,10 @@ Json describe_point(const SweepRequest& r, std::size_t index, const SweepPoint& 
     Json line = describe_place(r, index);
     if (!point.system) {
         line["error"] = fault_of(r, place);
+        return line;
+    }
+    if (r.basins) {
+        line.update(describe(properties::motion_name, point.motions[0].result.name));
         return line;
     }
     if (point.afresh) line["carried"] = false;
@@ -254,8 +260,10 @@ std::string warning_line(const std::string& message) {
     return json_line({{"type", "warning"}, {"message", message}});
 }
 
-std::string done_line(std::size_t points) {
-    return json_line({{"type", "done"}, {"points", points}});
+std::string done_line(std::size_t points, const SweepRequest* r) {
+    Json line = {{"type", "done"}, {"points", points}};
+    if (r && r->basins) line.update(describe_basins(*r));
+    return json_line(std::move(line));
 }
 
 std::string error_line(int status, const std::string& detail, std::size_t points) {
@@ -266,7 +274,14 @@ std::string error_line(int status, const std::string& detail, std::size_t points
 std::string run_sweep(
     const SweepRequest& r, int threads, RunControl& control, const TakeLine& take) {
     PointLineWriter lines(r, take);
-    return start_warning(vines::run_sweep(r.plan, threads, control, lines));
+    if (!r.basins) return start_warning(vines::run_sweep(r.plan, threads, control, lines));
+    try {
+        r.basins->explore(threads, r.plan.options, control);
+        vines::run_sweep(r.plan, threads, control, lines);
+        if (r.plan.lines.size() == r.plan.grid.lines())
+            r.basins->run_pairs(threads, r.plan.options, control);
+    } catch (const Stopped&) {}
+    return "";
 }
 
 }  // namespace vines::api

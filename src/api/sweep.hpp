@@ -38,8 +38,9 @@ std::string progress_line(const SweepProgress& progress);
 /// {type: warning, message}, about all points.
 std::string warning_line(const std::string& message);
 
-/// {type: done, points}: the sweep is complete, with `points` lines of points.
-std::string done_line(std::size_t points);
+/// {type: done, points}: the sweep is complete, with `points` lines of points. With a request of
+/// basins also describe_basins().
+std::string done_line(std::size_t points, const SweepRequest* request = nullptr);
 /// {type: error, status, detail, points}: some points are missing. status 503: a request for the
 /// missing points can succeed; 500: the server failed.
 std::string error_line(int status, const std::string& detail, std::size_t points);
@@ -53,6 +54,9 @@ Json describe_point(const SweepRequest& request, std::size_t line, const SweepPo
 
 /// The line of a row of points along a reduced axis.
 Json describe_row(const SweepRequest& request, std::size_t line, const RowSummary& row);
+
+/// {attractors, basins}: the result of /v1/basins.
+Json describe_basins(const SweepRequest& request);
 
 /// A warning if motions depend on the start; empty otherwise.
 std::string start_warning(const StartTrial& trial);

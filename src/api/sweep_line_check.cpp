@@ -29,6 +29,7 @@ std::vector<Motion> sample_motions() {
     measured.result.measured = true;
     Motion periodic = measured;
     periodic.result.regime.orbit.emplace();
+    periodic.result.name.mirror.emplace();
     measured.result.verdict = Verdict::none;
     return {periodic, measured, not_measured};
 }
@@ -168,7 +169,8 @@ Samples samples_for(const Json& line, const std::vector<Json>& all) {
 std::vector<Json> sample_lines(const SweepRequest& r) {
     if (r.plan.grid.reduced) return sample_rows(r);
     std::vector<Json> samples = sample_points(r, r.plan.tries_second_start(0));
-    samples.push_back(read_back(describe_point(r, 0, SweepPoint())));
+    // All starts of basins are valid.
+    if (!r.basins) samples.push_back(read_back(describe_point(r, 0, SweepPoint())));
     return samples;
 }
 

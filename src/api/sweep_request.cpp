@@ -1,6 +1,7 @@
 #include "api/sweep_request.hpp"
 
 #include <algorithm>
+#include <map>
 #include <numeric>
 
 #include "api/schema/enum_names.hpp"
@@ -10,22 +11,35 @@
 namespace vines::api {
 
 SweepSystems::SweepSystems(
-    std::vector<SystemFields> bases, std::vector<Axis> axes, long max_impacts)
+    std::vector<SystemFields> bases, std::vector<Start> starts, std::vector<Axis> axes,
+    long max_impacts)
     : bases_(std::move(bases)),
+      starts_(std::move(starts)),
       max_impacts_(max_impacts) {
     for (Axis& axis : axes)
         columns_.push_back({system_number(axis.parameter), std::move(axis.values)});
 }
 
 SystemFields SweepSystems::fields_at(const Place& place) const {
-    SystemFields fields = bases_[place.start];
+    const Start& start = starts_[place.start];
+    SystemFields fields = bases_[start.base];
+    for (const auto& [number, value] : start.numbers) fields.*number = value;
     for (std::size_t a = 0; a < columns_.size(); ++a)
         fields.*columns_[a].number = columns_[a].values[place.at[a]];
     return fields;
 }
 
 std::optional<PointSystem> SweepSystems::at(const Place& place) const {
-    const SystemFields fields = fields_at(place);
+    return system_of(fields_at(place));
+}
+
+std::optional<PointSystem> SweepSystems::at_value(double value) const {
+    SystemFields fields = fields_at({0, std::vector<std::size_t>(columns_.size(), 0)});
+    if (!columns_.empty()) fields.*columns_[0].number = value;
+    return system_of(fields);
+}
+
+std::optional<PointSystem> SweepSystems::system_of(const SystemFields& fields) const {
     // f can be omitted only if F = 0.
     if (fields.is_in_si() && !fields.is_reduced() && !fields.f && fields.F != 0.0)
         return std::nullopt;
@@ -163,9 +177,23 @@ void add_point_errors(
     }
 }
 
+std::vector<std::string> names_of(const Json& object) {
+    std::vector<std::string> names;
+    for (const auto& [name, value] : object.items()) names.push_back(name);
+    return names;
+}
+
+/// The starts that are the first with their set of fields.
+std::map<std::vector<std::string>, std::size_t> kinds_of_starts(const SweepRequest& r) {
+    std::map<std::vector<std::string>, std::size_t> first;
+    for (std::size_t start = 0; start < r.starts.size(); ++start)
+        first.try_emplace(names_of(r.starts[start]), start);
+    return first;
+}
+
 /// Checks that the fields can be combined, with the first and with the last values of the axes.
 void check_fields(const SweepRequest& r, std::vector<FieldError>& errors) {
-    for (std::size_t start = 0; start < r.starts.size(); ++start)
+    for (const auto& [names, start] : kinds_of_starts(r))
         for (const bool last : {false, true}) {
             Place place{start, {}};
             for (const Axis& a : r.axes) place.at.push_back(last ? a.values.size() - 1 : 0);
@@ -209,7 +237,7 @@ void read_reduction(SweepRequest& r, const std::string& text, std::vector<FieldE
 
 void read_axes(
     SweepRequest& r, const Json& axes, std::size_t most_points, std::vector<FieldError>& errors) {
-    if (axes.empty() || axes.size() > most_axes)
+    if (axes.size() > most_axes)
         errors.push_back(
             {"/axes", axes.size(), Json::array({1, most_axes}), "a sweep has one to three axes"});
     for (std::size_t i = 0; i < std::min(axes.size(), most_axes); ++i)
@@ -224,12 +252,12 @@ void read_axes(
 
 void read_starts(SweepRequest& r, const Json& given, std::vector<FieldError>& errors) {
     r.plan.default_set = given == default_set_of_starts;
-    const Json starts = given.is_string() ? Json::array() : given;
-    for (std::size_t i = 0; i < starts.size() && errors.size() < most_errors; ++i) {
+    const std::size_t count = given.is_string() ? 0 : given.size();
+    for (std::size_t i = 0; i < count && errors.size() < most_errors; ++i) {
         const std::string where = "/starts/" + std::to_string(i);
-        if (starts[i].is_object()) add_errors(where, check(start_fields(), starts[i]), errors);
-        else errors.push_back({where, starts[i], nullptr, "a start is {x0, x_dot0, y0, y_dot0}"});
-        r.starts.push_back(starts[i]);
+        if (given[i].is_object()) add_errors(where, check(start_fields(), given[i]), errors);
+        else errors.push_back({where, given[i], nullptr, "a start is {x0, x_dot0, y0, y_dot0}"});
+        r.starts.push_back(given[i]);
     }
     if (r.starts.empty()) r.starts.push_back(Json::object());
 }
@@ -306,14 +334,23 @@ void refuse_any(std::vector<FieldError>& errors) {
 /// Expects fields that can be combined: then only their values can make a point invalid.
 std::shared_ptr<const SweepSystems> systems_of(const SweepRequest& r) {
     std::vector<SystemFields> bases;
+    std::map<std::vector<std::string>, std::size_t> base_of;
     long max_impacts = 0;
-    for (std::size_t start = 0; start < r.starts.size(); ++start) {
+    for (const auto& [names, start] : kinds_of_starts(r)) {
         const MergedFields l = merge_with_preset(
             sweep_base_fields(), fields_of(r, {start, std::vector<std::size_t>(r.axes.size(), 0)}));
+        base_of[names] = bases.size();
         bases.push_back(system_fields(l.fields));
         max_impacts = static_cast<long>(l.number("max_impacts"));
     }
-    return std::make_shared<const SweepSystems>(std::move(bases), r.axes, max_impacts);
+    std::vector<SweepSystems::Start> starts;
+    for (const Json& start : r.starts) {
+        starts.push_back({base_of[names_of(start)], {}});
+        for (const auto& [name, value] : start.items())
+            starts.back().numbers.emplace_back(system_number(name), value.get<double>());
+    }
+    return std::make_shared<const SweepSystems>(
+        std::move(bases), std::move(starts), r.axes, max_impacts);
 }
 
 }  // namespace
@@ -326,15 +363,8 @@ Json fields_of(const SweepRequest& r, const Place& place) {
     return object;
 }
 
-SweepRequest read_sweep_request(const Json& given, std::size_t most_points) {
-    std::vector<FieldError> errors = check(sweep_fields(), given);
-    if (!given.contains("axes"))
-        errors.push_back(
-            {"/axes", nullptr, nullptr,
-             "a sweep needs axes: one to three of {parameter, from, to, count} or {parameter, "
-             "values}"});
-    refuse_any(errors);
-
+SweepRequest read_grid(const Json& given, std::size_t starts, std::size_t most_points) {
+    std::vector<FieldError> errors;
     SweepRequest r;
     r.given = given;
     r.given.erase("indices");
@@ -342,17 +372,18 @@ SweepRequest read_sweep_request(const Json& given, std::size_t most_points) {
     r.base = field(given, "base");
     read_axes(r, given["axes"], most_points, errors);
     add_errors("/base", check(sweep_base_fields(), r.base), errors);
-    read_starts(r, field(given, "starts"), errors);
+    const Json none = Json::array();
+    read_starts(r, given.contains("starts") ? given["starts"] : none, errors);
     check_overlaps(r, errors);
     refuse_any(errors);
 
-    r.plan.grid = {.steps = {}, .starts = r.starts.size()};
+    r.plan.grid = {.steps = {}, .starts = std::max(starts, r.starts.size())};
     for (const Axis& a : r.axes) r.plan.grid.steps.push_back(a.values.size());
     if (given.contains("reduce")) read_reduction(r, given["reduce"], errors);
     const std::size_t computed = r.plan.grid.points();
     if (computed > most_points)
         refuse(
-            {{"/axes", computed, Json::array({1, most_points}),
+            {{starts > 0 ? "/count" : "/axes", computed, Json::array({1, most_points}),
               "the sweep has " + std::to_string(computed) + " points; at most " +
                   std::to_string(most_points) + " are computed at once"}});
     check_fields(r, errors);
@@ -362,6 +393,22 @@ SweepRequest read_sweep_request(const Json& given, std::size_t most_points) {
     r.systems = systems_of(r);
     check_systems(r, errors);
     refuse_any(errors);
+    return r;
+}
+
+SweepRequest read_sweep_request(const Json& given, std::size_t most_points) {
+    std::vector<FieldError> errors = check(sweep_fields(), given);
+    if (!given.contains("axes") || given["axes"].empty())
+        errors.push_back(
+            {"/axes", nullptr, nullptr,
+             "a sweep needs axes: one to three of {parameter, from, to, count} or {parameter, "
+             "values}"});
+    if (given.contains("starts") && given["starts"].size() > most_points)
+        errors.push_back(
+            {"/starts", given["starts"].size(), Json::array({1, most_points}),
+             "there are more starts than a sweep can have points"});
+    refuse_any(errors);
+    SweepRequest r = read_grid(given, 0, most_points);
     r.plan.system_at = [systems = r.systems](const Place& place) { return systems->at(place); };
     return r;
 }

@@ -97,7 +97,12 @@ Json given_over_base(const RequestFields& given, const FieldTable& table) {
     if (object.contains("base") && !base.empty()) refuse_both("base", base[0].first);
     if (object.contains("axes") && !given.axes.empty()) refuse_both("axes", "--axis");
     if (!base.empty()) object["base"] = fields_of_pairs(base, api::sweep_base_fields());
-    for (const std::string& axis : given.axes) object["axes"].push_back(axis_of(axis));
+    const bool has_one = api::find(table, "axis");
+    if (has_one && given.axes.size() + object.contains("axis") > 1)
+        throw api::Problem(400, "there is only one axis");
+    for (const std::string& axis : given.axes)
+        if (has_one) object["axis"] = axis_of(axis);
+        else object["axes"].push_back(axis_of(axis));
     if (!given.format.empty()) object["format"] = given.format;
     return object;
 }

@@ -10,7 +10,6 @@
 #include <algorithm>
 #include <atomic>
 #include <cstddef>
-#include <cstdlib>
 #include <exception>
 #include <filesystem>
 #include <functional>
@@ -31,81 +30,19 @@
 #include "cli/output.hpp"
 #include "cli/plots.hpp"
 #include "cli/request_fields.hpp"
+#include "cli/shard.hpp"
 #include "cli/sweep_file.hpp"
 #include "cli/terminal.hpp"
 #include "program/process.hpp"
-#include "program/whole_number.hpp"
 
 namespace vines::cli {
 
 namespace {
 
-/// Part of a sweep that one process computes.
-struct Shard {
-    std::size_t index = 0;  ///< from 0
-    std::size_t count = 1;
-};
-
-// Largest number of shards, and largest id of a Slurm array's first task.
-constexpr std::size_t max_shards = max_points;
-
-/// Value of an environment variable; empty if unset.
-std::string variable(const char* name) {
-    const char* value = std::getenv(name);
-    return value ? value : "";
-}
-
-/// The same as a number. Throws Problem 422 unless it is a whole number from `least` to `most`.
-std::size_t number_in_variable(const char* name, std::size_t least, std::size_t most) {
-    const std::string text = variable(name);
-    if (const auto value = whole_number(text, least, most)) return *value;
-    throw api::Problem(
-        422,
-        fmt::format(
-            "{} is {}, not a whole number from {} to {}", name, api::shortened(text), least, most));
-}
-
-/// `shards`: N if above 0, in place of SLURM_ARRAY_TASK_COUNT. Throws Problem 422 for a missing or
-/// invalid variable.
-Shard shard_of_environment(std::size_t shards) {
-    if (!variable("SLURM_ARRAY_TASK_ID").empty()) {
-        if (shards == 0 && variable("SLURM_ARRAY_TASK_COUNT").empty())
-            throw api::Problem(
-                422, "--shard auto in a Slurm array needs SLURM_ARRAY_TASK_COUNT or --shards");
-        if (shards == 0) shards = number_in_variable("SLURM_ARRAY_TASK_COUNT", 1, max_shards);
-        const std::size_t first = variable("SLURM_ARRAY_TASK_MIN").empty()
-                                      ? 0
-                                      : number_in_variable("SLURM_ARRAY_TASK_MIN", 0, max_shards);
-        return {
-            number_in_variable("SLURM_ARRAY_TASK_ID", first, first + shards - 1) - first, shards};
-    }
-    if (variable("JOB_COMPLETION_INDEX").empty())
-        throw api::Problem(
-            422,
-            "--shard auto needs SLURM_ARRAY_TASK_ID and SLURM_ARRAY_TASK_COUNT, or "
-            "JOB_COMPLETION_INDEX and --shards, in the environment");
-    if (shards == 0)
-        throw api::Problem(422, "--shard auto with JOB_COMPLETION_INDEX needs --shards");
-    return {number_in_variable("JOB_COMPLETION_INDEX", 0, shards - 1), shards};
-}
-
-/// Reads "i/N", "" (the whole sweep), or "auto": then i and N are taken from the environment of a
-/// Slurm array or a Kubernetes Indexed Job. Throws Problem 422 for other texts.
-Shard read_shard(const std::string& text, std::size_t shards) {
-    if (text.empty()) return {};
-    if (text == "auto") return shard_of_environment(shards);
-    const std::size_t slash = std::min(text.find('/'), text.size() - 1);
-    const auto count = whole_number(text.substr(slash + 1), 1, max_shards);
-    const auto index = whole_number(text.substr(0, slash), 0, count.value_or(1) - 1);
-    if (!index || !count)
-        throw api::Problem(
-            422, fmt::format("a shard is i/N with 0 <= i < N, not {}", api::shortened(text)));
-    return {*index, *count};
-}
-
 struct SweepOptions {
     Files files;
     RequestFields fields;
+    bool basins = false;  ///< a request of /v1/basins
     bool plot = false;    ///< draw instead of writing the points
     bool resume = false;  ///< complete the output file instead of refusing to overwrite it
     std::string shard;    ///< syntax of read_shard()
@@ -115,7 +52,8 @@ struct SweepOptions {
 
 /// The request, limited to the shard's lines of output.
 api::SweepRequest read_request(const SweepOptions& o, const api::Json& given) {
-    api::SweepRequest request = api::read_sweep_request(given, max_points);
+    api::SweepRequest request = o.basins ? api::read_basins_request(given, max_points)
+                                         : api::read_sweep_request(given, max_points);
     const Shard shard = read_shard(o.shard, static_cast<std::size_t>(o.shards));
     request.plan.lines = api::shard_of(request, shard.index, shard.count);
     return request;
@@ -347,7 +285,8 @@ int sweep_to_stream(SweepRun run, Destination to) {
     const std::string warning = compute(
         run, [&lines](std::size_t index, const std::string& line) { lines.take(index, line); });
     lines.write_rest();
-    if (lines.written() == run.total) out.write(api::done_line(run.total));
+    if (lines.written() == run.total) out.write(api::done_line(run.total, &run.request));
+    out.end();
     return conclude(warning, lines.written(), run.total);
 }
 
@@ -385,7 +324,8 @@ int sweep_drawn(const SweepRun& run, const SweepOptions& o) {
 }
 
 int sweep(const SweepOptions& o) {
-    const api::Json given = read_over_base(o.files, o.fields, api::sweep_fields());
+    const api::Json given =
+        read_over_base(o.files, o.fields, o.basins ? api::basins_fields() : api::sweep_fields());
     api::SweepRequest request = read_request(o, given);
     const api::Format format = api::sweep_format(given).value_or(api::Format::json);
     check(o, format, request);
@@ -394,8 +334,23 @@ int sweep(const SweepOptions& o) {
     if (o.plot) return sweep_drawn(run, o);
     if (format != api::Format::json) return sweep_to_table(std::move(run), format, o.files.output);
     Destination to = destination_of(o.files.output);
-    return to.is_stream() ? sweep_to_stream(std::move(run), std::move(to))
-                          : sweep_to_file(std::move(run), to, o.resume);
+    return to.is_stream() || o.basins ? sweep_to_stream(std::move(run), std::move(to))
+                                      : sweep_to_file(std::move(run), to, o.resume);
+}
+
+/// Options about the part that is computed, and its threads.
+void add_part(CLI::App& command, SweepOptions& options) {
+    command.add_option(
+        "--shard", options.shard,
+        "compute only a part: i/N with i from 0, or auto: from SLURM_ARRAY_TASK_ID and _COUNT, or "
+        "JOB_COMPLETION_INDEX and --shards");
+    command.add_option("--shards", options.shards, "N for --shard auto")
+        ->envname("VINES_SHARDS")
+        ->check(number_between(1, 1000000));
+    command.add_option("--threads", options.threads, "number of threads; 0: one per core")
+        ->envname("VINES_COMPUTE_THREADS")
+        ->check(number_between(0, 1024))
+        ->capture_default_str();
 }
 
 }  // namespace
@@ -414,17 +369,7 @@ Command add_sweep(CLI::App& app) {
     command->add_flag(
         "--resume", options->resume,
         "complete the output file of a run that was stopped or killed");
-    command->add_option(
-        "--shard", options->shard,
-        "compute only a part: i/N with i from 0, or auto: from SLURM_ARRAY_TASK_ID and _COUNT, or "
-        "JOB_COMPLETION_INDEX and --shards");
-    command->add_option("--shards", options->shards, "N for --shard auto")
-        ->envname("VINES_SHARDS")
-        ->check(number_between(1, 1000000));
-    command->add_option("--threads", options->threads, "number of threads; 0: one per core")
-        ->envname("VINES_COMPUTE_THREADS")
-        ->check(number_between(0, 1024))
-        ->capture_default_str();
+    add_part(*command, *options);
     return with_exit_codes(
         command, [options] { return sweep(*options); },
         "vines sweep -a b=0.01:0.03:41 -p cycles=500 --plot\n"
@@ -432,6 +377,26 @@ Command add_sweep(CLI::App& app) {
         "vines sweep -a b=0.01:0.03:41 -o sweep.csv\n"
         "vines sweep request.json --shard 0/4 -o 0.ndjson --resume\n"
         "vines plot sweep.ndjson -o sweep.svg");
+}
+
+Command add_basins(CLI::App& app) {
+    const auto options = std::make_shared<SweepOptions>();
+    options->basins = true;
+    CLI::App* command =
+        app.add_subcommand("basins", "which starts lead to which motion: POST /v1/basins");
+    add_files(*command, options->files);
+    add_request_fields(*command, options->fields);
+    add_axes(*command, options->fields);
+    add_format(
+        *command, options->fields, api::basins_fields(),
+        ", one JSON line per start as it is computed; others: a table of all starts");
+    add_part(*command, *options);
+    return with_exit_codes(
+        command, [options] { return sweep(*options); },
+        "vines basins -p b=0.0065 -p damping=closed_form -p box.x0=-0.003,0.003 -p "
+        "box.y_dot0=-0.02,0.02 -p y0=0\n"
+        "vines basins request.json -a b=0.0055:0.0056:11 -o basins.ndjson\n"
+        "jq -c 'select(.type == \"done\").attractors[]' basins.ndjson");
 }
 
 }  // namespace vines::cli

@@ -280,7 +280,9 @@ Response sweep(const Request& r, const Service& service, Stopwatch& watch) {
     api::SweepRequest request = read_in_time(r, service, permit, [&] {
         const Json body = body_of(r, reading_of(r, options, stop));
         format = api::sweep_format(body);
-        return api::read_sweep_request(body, options.sweep_points);
+        const auto read =
+            r.path == "/v1/basins" ? api::read_basins_request : api::read_sweep_request;
+        return read(body, options.sweep_points);
     });
     if (!format) format = accepted_format(r.accept, api::sweep_format_names);
     watch.lap("parse", permit.waited());

@@ -67,6 +67,9 @@ Route health(std::string path, std::function<Response(const Request&)> answer) {
 
 }  // namespace
 
+// Body of a sweep, bytes: 40,000 starts with all digits.
+constexpr std::size_t largest_sweep = 5 << 20;
+
 std::vector<Route> make_routes(
     const RouteOptions& options, AdmissionControl& admission, Metrics& metrics) {
     std::vector<Route> routes;
@@ -85,6 +88,8 @@ std::vector<Route> make_routes(
         compute(method, "/v1/manifold", answer);
     }
     compute("POST", "/v1/sweep", sweep);
+    routes.back().body_limit = largest_sweep;
+    compute("POST", "/v1/basins", sweep);
     compute("POST", "/v1/continue", continuation);
     compute("POST", "/v1/design", design);
     compute("POST", "/v1/identify", answer);

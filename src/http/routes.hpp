@@ -36,7 +36,7 @@ using Computation = Response(const Request& request, const Service& service, Sto
 /// /v1/simulate, /v1/manifold and /v1/identify, which also takes a CSV file with the fields in the
 /// query.
 Computation answer;
-Computation sweep;         ///< /v1/sweep
+Computation sweep;         ///< /v1/sweep, /v1/basins
 Computation continuation;  ///< /v1/continue
 Computation design;        ///< /v1/design
 

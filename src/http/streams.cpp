@@ -344,7 +344,7 @@ private:
 LineWork work_of(const api::SweepRequest& request, api::SweepTable* table, int threads) {
     const auto warning = std::make_shared<std::string>();
     LineWork work{
-        "/v1/sweep",
+        request.basins ? "/v1/basins" : "/v1/sweep",
         table ? table->begin() : api::start_line(request),
         [&request, table, threads, warning](api::RunControl& control, const LineWork::Push& push) {
             std::size_t lines = 0;
@@ -356,9 +356,10 @@ LineWork work_of(const api::SweepRequest& request, api::SweepTable* table, int t
             return lines == request.plan.lines.size();
         },
         {},
-        [table, warning](std::size_t done) {
+        [&request, table, warning](std::size_t done) {
             if (table) return table->end(*warning);
-            return (warning->empty() ? "" : api::warning_line(*warning)) + api::done_line(done);
+            return (warning->empty() ? "" : api::warning_line(*warning)) +
+                   api::done_line(done, &request);
         },
         table ? nullptr : "request the missing indices again"};
     if (!table)

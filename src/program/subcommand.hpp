@@ -25,6 +25,7 @@ namespace cli {
 AddCommand add_simulate, add_manifold;
 AddCommand add_identify;  ///< input that begins with "{" is JSON; any other is CSV
 AddCommand add_sweep;     ///< computes a sweep or a shard, or completes the file of one
+AddCommand add_basins;    ///< which starts lead to which motion
 AddCommand add_continue;  ///< branches of periodic orbits along a parameter
 AddCommand add_design;    ///< the best absorber over a band, next to its alternatives
 AddCommand add_merge;     ///< combines the files of all shards, byte for byte

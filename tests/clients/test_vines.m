@@ -149,6 +149,15 @@ function a_design_has_the_best_absorber_and_its_alternatives()
   assert(done.tuned_mass_damper.x_max < done.best.x_max);
 end
 
+function basins_have_points_and_a_result()
+  base = struct('b', 0.0065, 'damping', 'closed_form', 'y0', 0);
+  box = struct('x0', [-0.003 0.003], 'y_dot0', [-0.02 0.02]);
+  [points, result] = vines.basins('base', base, 'box', box, 'count', 60, 'pairs', 0);
+  assert(numel(points) == 60 && numel(result.attractors) == 2);
+  same(sort({result.attractors.attractor}), unique({points.attractor}));
+  same(result.attractors(1).mirror, result.attractors(2).attractor);
+end
+
 function an_invalid_sweep_raises()
   refused('vines:problem', @() vines.sweep('axes', line(-3)));
   problem = vines.problem();

@@ -200,6 +200,21 @@ class Continuations(WithBothClients):
             kinds = {line.kind: line.b for line in lines if line.type == "special"}
             self.assertAlmostEqual(kinds["symmetry_breaking"], 7.046736303e-3, delta=1e-12)
 
+    def test_basins_have_points_and_a_result(self):
+        for client in self.each():
+            basins = client.basins(
+                base={"b": 0.0065, "damping": "closed_form", "y0": 0},
+                box={"x0": [-0.003, 0.003], "y_dot0": [-0.02, 0.02]},
+                count=60,
+                pairs=0,
+            )
+            names = [point.attractor for point in basins]
+            self.assertEqual(len(names), 60)
+            one, other = basins.result.attractors
+            self.assertEqual({one.attractor, other.attractor}, set(names))
+            self.assertEqual(one.mirror, other.attractor)
+            self.assertEqual(one.starts + other.starts, 60)
+
     def test_an_invalid_continuation_raises_at_once(self):
         for client in self.each():
             with self.assertRaises(vines.Problem) as caught:

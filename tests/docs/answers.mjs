@@ -65,6 +65,19 @@ export const sweeps = [
   {axes: [{parameter: "y0", values: [0, 0.05, 0]}], cycles: 20},
 ];
 
+const twins = {base: {b: 0.0065, damping: "closed_form", y0: 0}, count: 40, pairs: 10};
+const box = {x0: [-0.003, 0.003], y_dot0: [-0.02, 0.02]};
+export const basins = [
+  {...twins, box},
+  {
+    base: {damping: "closed_form", y0: 0},
+    box,
+    count: 30,
+    pairs: 0,
+    axis: {parameter: "b", values: [0.006, 0.03]},
+  },
+];
+
 export const continuations = [
   {base: {b: 0.0065, damping: "closed_form"}, parameter: "b", from: 0.0045, to: 0.008, switch: 1},
   {base: {damping: "closed_form", b: 0.015}, parameter: "b", from: 0.014, to: 0.018},
@@ -185,6 +198,25 @@ async function noteDesign(keys, url, request) {
     keys.note(`design.${line.type}`, line, ["request"]);
 }
 
+async function noteBasins(keys, url, request) {
+  const response = await fetch(`${url}/v1/basins`, {method: "POST", body: JSON.stringify(request)});
+  const text = await response.text();
+  assert.equal(response.status, 200, text);
+  for (const line of text
+    .trim()
+    .split("\n")
+    .map((one) => JSON.parse(one))) {
+    for (const one of [line, ...(line.attractors ?? []), ...(line.basins ?? [])])
+      delete one[request.axis?.parameter];
+    if (line.type === "point") keys.note("basins.point", line);
+    else if (line.type === "done") {
+      keys.note("basins.end", line, ["attractors", "basins"]);
+      for (const one of line.attractors) keys.note("basins.attractors", one);
+      for (const one of line.basins) keys.note("basins.basins", one);
+    } else noteLine(keys, line, []);
+  }
+}
+
 async function noteContinuation(keys, url, request) {
   const response = await fetch(`${url}/v1/continue`, {
     method: "POST",
@@ -280,6 +312,7 @@ export async function answeredKeys(url) {
   for (const request of [{b: 0.015}, platform])
     noteManifold(keys, await json(url, "/v1/manifold", JSON.stringify(request)));
   for (const request of sweeps) await noteSweep(keys, url, request);
+  for (const request of basins) await noteBasins(keys, url, request);
   for (const request of continuations) await noteContinuation(keys, url, request);
   for (const request of designs) await noteDesign(keys, url, request);
   await noteBrokenSweep(keys);

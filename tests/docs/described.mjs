@@ -11,6 +11,7 @@ const listsOfFields = [
   "manifold_fields",
   "sweep_fields",
   "axis_fields",
+  "basins_fields",
   "continue_fields",
   "design_fields",
   "identify_fields",
@@ -34,7 +35,7 @@ const parts = {
   "simulate.perturbation": {of: ["Perturbation"]},
   manifold: {of: ["RunManifold", "SlowManifold"]},
   "manifold-answer": {of: ["Manifold"], top: true},
-  "sweep.start": {of: ["SweepStart"], opaque: ["parameters", "request"]},
+  "sweep.start": {of: ["SweepStart", "BasinsStart"], opaque: ["parameters", "request"]},
   "sweep.point": {
     of: ["SweepResult", "SweepFault"],
     opaque: ["section", "second_start", "worst", "best", "starts"],
@@ -45,6 +46,10 @@ const parts = {
   "sweep.reduced": {of: ["SweepReduction"], swept: []},
   "sweep.progress": {of: ["SweepProgress"]},
   "sweep.end": {of: ["SweepWarning", "SweepDone", "SweepError"]},
+  "basins.point": {of: ["BasinsPoint"], swept: []},
+  "basins.end": {of: ["BasinsDone"], opaque: ["attractors", "basins"]},
+  "basins.attractors": {of: ["BasinsAttractor"], swept: []},
+  "basins.basins": {of: ["BasinsStatistics"], swept: []},
   "continue.start": {of: ["ContinueStart"], opaque: ["parameters", "request"]},
   "continue.branch": {of: ["ContinueBranch"]},
   "continue.point": {of: ["ContinuePoint", "ContinueSpecial"], swept: []},
@@ -76,7 +81,7 @@ const parts = {
 };
 
 /** Placeholder for the names of a sweep's parameters. */
-const isSwept = (path, fields) => fields.has(path.split(".").at(-1)) && !path.includes("state.");
+const isSwept = (path, fields) => fields.has(path.split(".").at(-1)) && !/sta(te|rt)\./.test(path);
 
 class Walk {
   constructor(openapi) {

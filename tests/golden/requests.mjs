@@ -172,6 +172,17 @@ const sweeps = [
     cycles: 200,
   }),
   {
+    name: "basins of twins",
+    path: "/v1/basins",
+    body: {
+      base: {damping: "closed_form", y0: 0},
+      box: {x0: [-0.003, 0.003], y_dot0: [-0.02, 0.02]},
+      count: 100,
+      pairs: 20,
+      axis: {parameter: "b", values: [0.0065, 0.0066]},
+    },
+  },
+  {
     name: "continue b",
     path: "/v1/continue",
     body: {

@@ -71,7 +71,14 @@ test("with --api-key-file everything except health and the page requires one of 
   assert.match(twice, /^HTTP\/1.1 401/, "two headers are no valid key");
   for (const shown of wrong) assert.equal(await status("/v1/presets", shown), 401, shown);
   const post = {method: "POST", body: "{}"};
-  for (const path of ["/v1/simulate", "/v1/sweep", "/v1/continue", "/v1/identify", "/v1/manifold"])
+  for (const path of [
+    "/v1/simulate",
+    "/v1/sweep",
+    "/v1/basins",
+    "/v1/continue",
+    "/v1/identify",
+    "/v1/manifold",
+  ])
     assert.equal(await status(path, undefined, post), 401, path);
   const refused = await fetch(`${service.url}/v1/presets`);
   assert.equal(refused.headers.get("www-authenticate"), 'Bearer realm="vines"');

@@ -7,6 +7,7 @@ import {memory, until} from "./raw.mjs";
 
 const record = 64 << 20; // --record-limit
 const payload = 1 << 20; // --payload-limit
+const plan = 5 << 20; // body of a sweep
 // A sanitizer keeps freed memory.
 const sanitized = Boolean(process.env.SANITIZED);
 const system = '"m1":1,"c1":1,"k1":1000,"m2":0.1,"b":0.01,"f":5';
@@ -93,10 +94,19 @@ const kinds = {
   "a table in UTF-16": () =>
     table(Buffer.from(filled("\ufefft,x\n", "1,1\n", "", record / 2).toString(), "utf16le")),
   "a table in Latin-1": () => table(Buffer.alloc(record, 0xe9)),
-  "starts of a sweep": () => sweep(filled(`${axes},"starts":[`, '{"x0":0},', "{}]}", payload)),
-  "empty starts": () => sweep(filled(`${axes},"starts":[`, "{},", "{}]}", payload)),
+  "starts of a sweep": () => sweep(filled(`${axes},"starts":[`, '{"x0":0},', "{}]}", plan)),
+  "starts with all digits": () =>
+    sweep(
+      filled(
+        `${axes},"starts":[`,
+        '{"x0":-0.00123456789012345,"y_dot0":-0.0123456},',
+        "{}]}",
+        plan,
+      ),
+    ),
+  "empty starts": () => sweep(filled(`${axes},"starts":[`, "{},", "{}]}", plan)),
   "values of a sweep": () =>
-    sweep(filled('{"axes":[{"parameter":"b","values":[', "1,", "1]}]}", payload)),
+    sweep(filled('{"axes":[{"parameter":"b","values":[', "1,", "1]}]}", plan)),
   windows: () => ({
     ...sweep(filled('{"windows":[', "[0,1],", "[0,1]]}", payload)),
     path: "/v1/simulate",

@@ -173,6 +173,20 @@ test("points arrive while the sweep runs, and it stops when its client leaves", 
   await one.stop();
 });
 
+test("a sweep takes 201 x 201 starts", async () => {
+  const values = Array.from({length: 201}, (_, k) => (k - 100.123456789) * 2.7e-5);
+  const starts = values.flatMap((x0) => values.map((y_dot0) => ({x0, y_dot0, y0: 0})));
+  const axes = [{parameter: "b", values: [0.0065]}];
+  const answer = await postSweep({axes, starts, indices: [0, 40400], cycles: 10});
+  assert.equal(answer.status, 200);
+  const lines = await linesOf(answer);
+  assert.equal(lines[0].points, 40401);
+  assert.deepEqual(
+    lines.filter(({type}) => type === "point").map(({start}) => start),
+    [0, 40400],
+  );
+});
+
 test("a simulation is answered during a sweep's point when one thread computes both", async () => {
   const one = await startService(["--compute-threads", "1"]);
   const leaving = new AbortController();
@@ -254,7 +268,7 @@ test("the OpenAPI document names every route and every field", async () => {
       const answer = await fetch(`${service.url}${path}`, {method: method.toUpperCase(), body});
       await answer.text();
       const {status} = answer;
-      const hasRequired = ["sweep", "continue", "design", "identify"].includes(
+      const hasRequired = ["sweep", "basins", "continue", "design", "identify"].includes(
         path.split("/").at(-1),
       );
       assert.ok(status === 200 || (hasRequired && status === 422), `${method} ${path}: ${status}`);

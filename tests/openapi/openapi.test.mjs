@@ -5,7 +5,14 @@ import {tmpdir} from "node:os";
 import {join} from "node:path";
 import {after, before, test} from "node:test";
 import {fileURLToPath, pathToFileURL} from "node:url";
-import {continuations, everything, simulations, sweeps, withForce} from "../docs/answers.mjs";
+import {
+  basins,
+  continuations,
+  everything,
+  simulations,
+  sweeps,
+  withForce,
+} from "../docs/answers.mjs";
 import {identifications, requests} from "../golden/requests.mjs";
 import {connect, exchange, until} from "../http/raw.mjs";
 import {measured} from "../record.mjs";
@@ -96,6 +103,7 @@ test("every example request gets a response that matches the document and its ex
       }
     }
   assert.deepEqual([...shown].sort(), [
+    "BasinsLine",
     "ContinueLine",
     "DesignLine",
     "Identification",
@@ -132,6 +140,7 @@ test("responses to many requests match the document", async () => {
   }
   for (const body of simulations) await checked("/v1/simulate", {body});
   for (const body of sweeps) await checked("/v1/sweep", {body});
+  for (const body of basins) await checked("/v1/basins", {body});
   for (const body of continuations) await checked("/v1/continue", {body});
 });
 

@@ -19,7 +19,8 @@ The functions send requests to the service at the address in VINES_URL, with the
 set. Without VINES_URL they run the program in VINES_PROGRAM, or `vines` on the PATH. `Service` and
 `Program` have the same functions.
 
-`help(vines.SimulateFields)`, `SweepFields`, `ContinueFields`, `DesignFields` and `IdentifyFields` list the fields
+`help(vines.SimulateFields)`, `SweepFields`, `BasinsFields`, `ContinueFields`, `DesignFields` and
+`IdentifyFields` list the fields
 with unit, range and default; `help(vines.Answer)` describes answers.
 """
 
@@ -33,6 +34,7 @@ from ._client import Client, Columns
 from ._continuation import Continuation
 from ._fields import (
     Axis,
+    BasinsFields,
     ContinueFields,
     DesignFields,
     IdentifyFields,
@@ -56,6 +58,7 @@ __all__ = [
     "Answer",
     "Axis",
     "Client",
+    "BasinsFields",
     "Continuation",
     "ContinueFields",
     "DesignFields",
@@ -75,6 +78,7 @@ __all__ = [
     "SweepBase",
     "SweepFields",
     "client",
+    "basins",
     "continue_",
     "design",
     "identify",
@@ -100,6 +104,11 @@ def simulate(**fields: Unpack[SimulateFields]) -> Answer:
 def sweep(**fields: Unpack[SweepFields]) -> Sweep:
     """`Client.sweep` of the client chosen by the environment."""
     return client().sweep(**fields)
+
+
+def basins(**fields: Unpack[BasinsFields]) -> Sweep:
+    """`Client.basins` of the client chosen by the environment."""
+    return client().basins(**fields)
 
 
 def continue_(**fields: Unpack[ContinueFields]) -> Continuation:

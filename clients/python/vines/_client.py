@@ -1,4 +1,4 @@
-"""The four requests, independent of how they are sent."""
+"""The five requests, independent of how they are sent."""
 
 from __future__ import annotations
 
@@ -13,7 +13,14 @@ from typing import TYPE_CHECKING, Any, Unpack
 
 from ._answer import Answer, answer_of, body_of, plain
 from ._continuation import Continuation
-from ._fields import ContinueFields, DesignFields, IdentifyFields, SimulateFields, SweepFields
+from ._fields import (
+    BasinsFields,
+    ContinueFields,
+    DesignFields,
+    IdentifyFields,
+    SimulateFields,
+    SweepFields,
+)
 from ._problem import Incomplete, PartialAnswer
 from ._sweep import Lines, Sweep
 
@@ -43,11 +50,20 @@ class Client(ABC):
         """Simulates runs over one to three parameters; returns an iterator of points. `SweepFields`
         lists the fields. Raises `Problem` at once for an invalid request, and `Incomplete` after
         the last received point if others are missing."""
+        return self._points("sweep", fields)
+
+    def basins(self, **fields: Unpack[BasinsFields]) -> Sweep:
+        """Finds the motions to which starts in a box lead; returns an iterator of points, one for
+        each start, with its ``attractor``. At its end ``result`` has the motions and their basins.
+        `BasinsFields` lists the fields. Errors as those of a sweep."""
+        return self._points("basins", fields)
+
+    def _points(self, verb: str, fields: Mapping[str, Any]) -> Sweep:
         given = _named(fields)
         indices = given.get("indices")
         if indices is not None:
             given["indices"] = indices = [int(i) for i in indices]
-        return Sweep(self._lines("sweep", body_of(given)), indices)
+        return Sweep(self._lines(verb, body_of(given)), indices)
 
     def continue_(self, **fields: Unpack[ContinueFields]) -> Continuation:
         """Follows periodic orbits along a parameter; returns an iterator of branches, points and

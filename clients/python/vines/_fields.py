@@ -82,6 +82,24 @@ speed_m_s: the same in m/s, for a system in SI (m/s)
 R: restitution coefficient at each speed (dimensionless)
 """
 
+StartBox = TypedDict(
+    "StartBox",
+    {
+        "x0": Iterable[float],
+        "x_dot0": Iterable[float],
+        "y0": Iterable[float],
+        "y_dot0": Iterable[float],
+    },
+    total=False,
+)
+StartBox.__doc__ = """Keys of the object:
+
+x0: range of x0 (m); default: its value in base
+x_dot0: range of x_dot0 (m per unit of tau); default: its value in base
+y0: range of y0 (m); default: its value in base
+y_dot0: range of y_dot0 (m per unit of tau); default: its value in base
+"""
+
 SweepBase = TypedDict(
     "SweepBase",
     {
@@ -429,6 +447,39 @@ class SweepFields(TypedDict, total=False):
     section_points: int
     section_phase: float
     reduce: str
+    indices: Iterable[int]
+
+class BasinsFields(TypedDict, total=False):
+    """Fields of basins.
+
+    base: fields of /v1/simulate: system, reduced or SI, start, preset, max_impacts; default: {}
+    box: ranges of the starts; those outside the cavity are skipped; default: required
+    count: number of starts, at each value of the axis; 2 to 1e+06; default: 2000
+    seed: shifts the sequence of starts; equal seeds give equal starts; 0 to 1e+09; default: 1
+    axis: a parameter of the system and its values: {parameter, from, to, count, scale} or
+        {parameter, values}; default: none
+    pairs: for the uncertainty exponent: starts, for each of ten distances, that are run again
+        from a state at this distance; 0 to 100000; default: 200
+    cycles: number of measured forcing cycles at each point (dimensionless); 1 to 1e+06;
+        default: 1000
+    transient_cycles: number of transient forcing cycles before the measured ones
+        (dimensionless); 0 to 1e+06; default: 200
+    settle_cycles: further cycles, at most, for which a chaotic motion is continued, without
+        exponents, to find out whether a periodic orbit captures it (dimensionless); 0 to 1e+06;
+        default: 0
+    indices: zero-based indices of the points to compute, for example those missing from an
+        interrupted stream; default: all
+    """
+
+    base: SweepBase
+    box: StartBox
+    count: int
+    seed: int
+    axis: Axis
+    pairs: int
+    cycles: int
+    transient_cycles: int
+    settle_cycles: int
     indices: Iterable[int]
 
 class ContinueFields(TypedDict, total=False):

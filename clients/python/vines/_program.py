@@ -19,7 +19,7 @@ from ._sweep import Lines
 _COMPLETE = 0
 _USABLE = 3
 
-# The last line of a stream. It is skipped: the exit code and stderr give the result.
+# The last line of a stream, which is passed on once the exit code and stderr are known.
 _DONE = b'{"type":"done"'
 
 # Time limit in s for the program to end after SIGTERM.
@@ -56,20 +56,23 @@ class Program(Client):
         raise _problem(ended.returncode, ended.stderr)
 
     def _lines(self, verb: str, body: bytes) -> Lines:
-        threads = ["--threads", str(self._threads)] if verb == "sweep" else []
+        threads = [] if verb == "continue" else ["--threads", str(self._threads)]
         command = [self._found(), verb, *threads]
         with tempfile.TemporaryFile() as given, tempfile.TemporaryFile() as said:
             given.write(body)
             given.seek(0)
             running = subprocess.Popen(command, stdin=given, stdout=subprocess.PIPE, stderr=said)
             assert running.stdout is not None
+            done = {"type": "done"}
             try:
                 for line in running.stdout:
-                    # The last line of a design is its result.
-                    is_end = line.startswith(_DONE) and verb != "design"
-                    if line.endswith(b"\n") and not is_end:
+                    if not line.endswith(b"\n"):
+                        continue
+                    if line.startswith(_DONE):
+                        done = json.loads(line)
+                    else:
                         yield json.loads(line)
-                yield from _end(running.wait(), said)
+                yield from _end(running.wait(), said, done)
             finally:
                 running.stdout.close()
                 _stop(running)
@@ -84,14 +87,14 @@ class Program(Client):
         return found
 
 
-def _end(code: int, said: IO[bytes]) -> Iterator[dict[str, Any]]:
+def _end(code: int, said: IO[bytes], done: dict[str, Any]) -> Iterator[dict[str, Any]]:
     """Lines at the end of a service's stream, made from the program's exit code and stderr."""
     said.seek(0)
     text = said.read()
     if code == _COMPLETE:
         for line in text.decode(errors="replace").splitlines():
             yield {"type": "warning", "message": line.removeprefix("vines: ")}
-        yield {"type": "done"}
+        yield done
     elif code == _USABLE:
         yield {"type": "error", "status": 0, "detail": _sentence(text)}
     else:

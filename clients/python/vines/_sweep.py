@@ -16,7 +16,7 @@ Lines = Generator[dict[str, Any], None, None]
 
 
 class Sweep(Iterator[Answer]):
-    """Iterator of a sweep's points in the order of arrival; a service sends them from coarse to
+    """Iterator of the points of a sweep, or of basins, in the order of arrival; a service sends them from coarse to
     fine over the axes. ``point.index`` is the position in the sweep. Raises `Incomplete` at the end
     if points are missing.
 
@@ -32,6 +32,8 @@ class Sweep(Iterator[Answer]):
         """Latest progress report: ``done``, ``of``, ``per_second``, ``seconds_left``."""
         self.warnings: list[str] = []
         """Sentences; complete only at the end."""
+        self.result: Answer | None = None
+        """Last line, at the end; of basins with ``attractors`` and ``basins``."""
         first = next(lines, None)
         if first is None or first.get("type") != "start":
             lines.close()
@@ -62,6 +64,7 @@ class Sweep(Iterator[Answer]):
                 case "error":
                     self._end(int(line.get("status", 0)), str(line.get("detail", "")))
                 case "done":
+                    self.result = Answer(line)
                     self._end()
         # The sweep was closed or has been read to its end.
         raise StopIteration

@@ -130,6 +130,7 @@ std::string SweepTable::end(const std::string& warning) {
     Json answer = sweep_start(request_);
     answer.erase("type");
     answer.erase("points");  // their count
+    if (request_.basins) answer.update(describe_basins(request_));
     if (!warning.empty()) answer["warnings"].push_back(warning);
     Json points = Json::object();
     for (Column& c : columns_) {

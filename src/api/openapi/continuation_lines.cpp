@@ -18,13 +18,9 @@ Keys parameter_keys() {
 }
 
 Keys orbit_keys() {
-    const Json multipliers = object_of(
-        {{"re", numbers(), "real parts"},
-         {"im", numbers(), "imaginary parts"},
-         {"modulus", numbers(), "moduli"}});
     return parameter_keys() + values_of(properties::branch_point) +
            Keys{
-               {"multipliers", multipliers, "Floquet multipliers of a period, descending"},
+               {"multipliers", multipliers_schema(), "Floquet multipliers of a period, descending"},
                {"state", object_of(values_of(properties::start)),
                 "state of the orbit at a whole cycle, as the start of a simulation"}};
 }
@@ -55,6 +51,13 @@ Json special_schema() {
 }
 
 }  // namespace
+
+Json multipliers_schema() {
+    return object_of(
+        {{"re", numbers(), "real parts"},
+         {"im", numbers(), "imaginary parts"},
+         {"modulus", numbers(), "moduli"}});
+}
 
 void add_continuation_lines(Json& schemas) {
     schemas["ContinueLine"] = by_type(

@@ -44,6 +44,11 @@ constexpr Example requests[] = {
                 "F": 0.0004, "R": 0.4, "b": 0.03}, "starts": "default set",
                 "reduce": "max over f", "cycles": 200,
                 "axes": [{"parameter": "f", "from": 13, "to": 15, "count": 9}]}}})"},
+    {"basins", R"({
+        "twins": {
+            "summary": "two motions that are mirror images of each other",
+            "value": {"base": {"damping": "closed_form", "b": 0.0065, "y0": 0}, "count": 100,
+                "box": {"x0": [-0.003, 0.003], "y_dot0": [-0.02, 0.02]}, "pairs": 0}}})"},
     {"continue", R"({
         "clearances": {
             "summary": "the symmetric two-impact orbit of Table 1, both ends of its stability",
@@ -104,6 +109,17 @@ Json point_line() {
     return point;
 }
 
+Json basins_line() {
+    Json request = first_request("basins");
+    request["indices"] = {0};
+    Json point;
+    RunControl control;
+    run_sweep(
+        read_basins_request(request, 100), 1, control,
+        [&](std::size_t, const std::string& line) { point = Json::parse(line); });
+    return point;
+}
+
 /// The first special point of the first continuation.
 Json special_line() {
     Json special;
@@ -137,6 +153,7 @@ Json answer_example(const char* schema) {
         {"Simulation", answer_to("simulate", "/v1/simulate")},
         {"Manifold", answer_to("manifold", "/v1/manifold")},
         {"SweepLine", point_line()},
+        {"BasinsLine", basins_line()},
         {"ContinueLine", special_line()},
         {"DesignLine", design_line()},
         {"Identification", answer_to("identify", "/v1/identify")}};

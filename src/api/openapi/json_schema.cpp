@@ -95,6 +95,7 @@ Json schema_of(ValueType type) {
         case ValueType::wall: return {{"type", "integer"}, {"enum", {1, -1}}};
         case ValueType::flag: return flag();
         case ValueType::word: return text();
+        case ValueType::word_or_null: return or_null(text());
         case ValueType::component: return one_of({"x_dot", "x", "y_dot", "y"});
         case ValueType::moduli: return list_of(number(), 4);
         case ValueType::exponents: return list_of(or_null(number()), 4);

@@ -115,6 +115,20 @@ Json sweep_path() {
     return {{"post", post(o, "SweepRequest")}};
 }
 
+Json basins_path() {
+    Operation o = {
+        "basins",
+        "sweep",
+        "Which starts lead to which motion, as a stream",
+        "A stream of JSON lines: start, then a point for each start in any order, progress every "
+        "200 ms, and finally done with the motions, their fractions of the starts and the "
+        "roughness of the boundaries, or error. As CSV, CBOR or npz: a table of all starts.",
+        "BasinsLine",
+        "application/x-ndjson"};
+    o.computes = true;
+    return {{"post", post(o, "BasinsRequest")}};
+}
+
 Json continue_path() {
     Operation o = {
         "continue",
@@ -207,6 +221,7 @@ Json paths() {
               "Manifold"},
              "ManifoldRequest", manifold_fields())},
         {"/v1/sweep", sweep_path()},
+        {"/v1/basins", basins_path()},
         {"/v1/continue", continue_path()},
         {"/v1/design", design_path()},
         {"/v1/identify", identify_path()},

@@ -25,6 +25,7 @@ void add_service(Json& schemas);             // service.cpp: tables, presets, ve
 Keys answer_keys(const std::string& parameters);
 /// The same with provenance.
 Keys sealed_keys(const std::string& parameters);
+Json multipliers_schema();  // continuation_lines.cpp
 /// One of these schemas, selected by the key `type`: {value of type, name of the schema}.
 Json by_type(const std::vector<std::pair<std::string, std::string>>& schemas);
 /// Columns of a Poincare section at impact, without tau.

@@ -21,7 +21,8 @@ Json value_schema(const Field& f) {
         case FieldType::integers: return list_of(whole());
         case FieldType::numbers: return numbers();
         case FieldType::object:
-            return f.fields.empty() ? reference("SweepBase") : request_of(f.fields);
+            return !f.fields.empty() ? request_of(f.fields)
+                                     : reference(f.name == "axis" ? "Axis" : "SweepBase");
         case FieldType::objects:
             // All lists of objects are of these two kinds.
             Json objects = list_of(reference(f.name == "axes" ? "Axis" : "Start"));
@@ -41,8 +42,9 @@ std::string description_of(const Field& f) {
 Json schema_of(const Field& f) {
     Json schema = value_schema(f);
     if (f.range) {
-        schema["minimum"] = f.range->minimum;
-        schema["maximum"] = f.range->maximum;
+        Json& limited = f.type == FieldType::interval ? schema["items"] : schema;
+        limited["minimum"] = f.range->minimum;
+        limited["maximum"] = f.range->maximum;
     }
     if (!f.fallback.is_null()) schema["default"] = f.fallback;
     return schema;
@@ -146,6 +148,7 @@ void add_requests(Json& schemas) {
     schemas["ManifoldRequest"] = request_of(manifold_fields() + form_fields());
     schemas["IdentifyRequest"] = identify_request();
     schemas["SweepRequest"] = sweep_request();
+    schemas["BasinsRequest"] = request_of(basins_fields(), {"box"});
     schemas["ContinueRequest"] = continue_request();
     schemas["DesignRequest"] = design_request();
     schemas["SweepBase"] = request_of(sweep_base_fields());

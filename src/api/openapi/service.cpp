@@ -35,6 +35,7 @@ Json parameters() {
          {"manifold_fields", fields, "fields of /v1/manifold"},
          {"sweep_fields", fields, "fields of /v1/sweep"},
          {"axis_fields", fields, "fields of an axis of a sweep"},
+         {"basins_fields", fields, "fields of /v1/basins"},
          {"continue_fields", fields, "fields of /v1/continue"},
          {"design_fields", fields, "fields of /v1/design"},
          {"identify_fields", fields, "fields of /v1/identify"},

@@ -145,7 +145,7 @@ Json point_line_schema() {
     return line;
 }
 
-Json start_line_schema() {
+Json start_line_schema(const char* request) {
     const Json axis = object_of(
         {{"parameter", text(), "name of the parameter"},
          {"values", numbers(), "its values, in order"}});
@@ -158,7 +158,7 @@ Json start_line_schema() {
             {"of", whole(), "number of lines requested by indices; only from the service"},
             {"cycles", number(), "forcing cycles of all runs together, including transients"},
             {"axes", list_of(axis), "axes with their values"},
-            {"request", reference("SweepRequest"), "the request, without indices and format"}});
+            {"request", reference(request), "the request, without indices and format"}});
 }
 
 Json progress_line_schema() {
@@ -184,6 +184,40 @@ Json error_line_schema() {
          {"points", whole(), "lines sent"}});
 }
 
+Json start_schema() { return object_of(values_of(properties::start)); }
+
+Json basins_point() {
+    return object_of(
+        Keys{
+            {"type", constant("point"), ""},
+            {"index", whole(), "number of the line: the values of the axis vary fastest"},
+            {"start", start_schema(), "the start"}} +
+        swept_keys(number(), "value of the axis") + values_of(properties::motion_name));
+}
+
+Json basins_attractor() {
+    return object_of(
+        swept_keys(number(), "value of the axis") + values_of(properties::basin) +
+        Keys{{"multipliers", or_null(multipliers_schema()), "Floquet multipliers of an orbit"}});
+}
+
+Json basins_statistics() {
+    const Json estimate = or_null(object_of(
+        {{"value", number(), "estimate"},
+         {"standard_error", or_null(number()), "its standard error"}}));
+    return object_of(
+        swept_keys(number(), "value of the axis") + values_of(properties::basins) +
+        Keys{
+            {"entropy", estimate,
+             "basin entropy: mean over cells of -sum p ln p, p the fractions of the motions"},
+            {"boundary_entropy", estimate, "the same over cells with several motions"},
+            {"uncertainty_exponent", estimate,
+             "exponent of uncertain as a power of distances; null if fewer than three distances "
+             "have such pairs"},
+            {"distances", numbers(), "distances of pairs, as fractions of the box"},
+            {"uncertain", numbers(), "fraction of pairs that lead to different motions"}});
+}
+
 }  // namespace
 
 Json by_type(const std::vector<std::pair<std::string, std::string>>& schemas) {
@@ -205,7 +239,7 @@ void add_sweep_lines(Json& schemas) {
          {"warning", "SweepWarning"},
          {"done", "SweepDone"},
          {"error", "SweepError"}});
-    schemas["SweepStart"] = start_line_schema();
+    schemas["SweepStart"] = start_line_schema("SweepRequest");
     schemas["SweepPoint"] = point_line_schema();
     schemas["SweepResult"] = measured_point();
     schemas["SweepFault"] = faulty_point();
@@ -219,6 +253,23 @@ void add_sweep_lines(Json& schemas) {
     schemas["SweepDone"] =
         object_of({{"type", constant("done"), ""}, {"points", whole(), "lines sent"}});
     schemas["SweepError"] = error_line_schema();
+    schemas["BasinsLine"] = by_type(
+        {{"start", "BasinsStart"},
+         {"point", "BasinsPoint"},
+         {"progress", "SweepProgress"},
+         {"done", "BasinsDone"},
+         {"error", "SweepError"}});
+    schemas["BasinsStart"] = start_line_schema("BasinsRequest");
+    schemas["BasinsPoint"] = basins_point();
+    schemas["BasinsAttractor"] = basins_attractor();
+    schemas["BasinsStatistics"] = basins_statistics();
+    schemas["BasinsDone"] = object_of(
+        {{"type", constant("done"), ""},
+         {"points", whole(), "lines sent"},
+         {"attractors", list_of(reference("BasinsAttractor")),
+          "the motions that the starts of these lines lead to, the largest basin first"},
+         {"basins", list_of(reference("BasinsStatistics")),
+          "all starts of these lines, for each value of the axis"}});
 }
 
 }  // namespace vines::api::document

@@ -77,8 +77,15 @@ void check_choice(const Checked& c, const Json& value) {
 void check_interval(const Checked& c, const std::string& where, const Json& v) {
     if (!v.is_array() || v.size() != 2 || !v[0].is_number() || !v[1].is_number())
         return c.fail(where, v, "must be two numbers, [from, to]");
-    if (!(v[0].get<double>() >= 0)) c.fail(where + "/0", v[0], "must not begin before 0");
-    if (!(v[0].get<double>() < v[1].get<double>())) c.fail(where, v, "must begin before it ends");
+    const double from = v[0], to = v[1];
+    if (const auto& range = c.field.range;
+        range && !(from >= range->minimum && to <= range->maximum))
+        c.fail(
+            where, v,
+            "must lie in [" + Json(range->minimum).dump() + ", " + Json(range->maximum).dump() +
+                "]");
+    if (!c.field.range && !(from >= 0)) c.fail(where + "/0", v[0], "must not begin before 0");
+    if (!(from < to)) c.fail(where, v, "must begin before it ends");
 }
 
 void check_intervals(const Checked& c, const Json& value) {

@@ -68,6 +68,7 @@ Json describe_fields() {
         {"manifold_fields", describe(manifold_fields())},
         {"sweep_fields", describe(sweep_fields())},
         {"axis_fields", describe(axis_fields())},
+        {"basins_fields", describe(basins_fields())},
         {"continue_fields", describe(continue_fields())},
         {"design_fields", describe(design_fields())},
         {"identify_fields", describe(identify_fields())},

@@ -1,6 +1,6 @@
 // The fields of each route. A new field is a new row in simulate_fields.cpp (which also holds the
-// tables of /v1/manifold and of the response's format), sweep_fields.cpp, continue_fields.cpp or
-// identify_fields.cpp.
+// tables of /v1/manifold and of the response's format), sweep_fields.cpp, basins_fields.cpp,
+// continue_fields.cpp or identify_fields.cpp.
 #pragma once
 
 #include "api/schema/field.hpp"
@@ -25,6 +25,9 @@ const FieldTable& sweep_fields();
 const FieldTable& sweep_base_fields();
 const FieldTable& axis_fields();
 const FieldTable& start_fields();
+
+/// Fields of /v1/basins; those of its `base` are sweep_base_fields(), of its `axis` axis_fields().
+const FieldTable& basins_fields();
 
 /// Fields of /v1/continue; those of its `base` are sweep_base_fields().
 const FieldTable& continue_fields();

@@ -52,8 +52,10 @@ CurveEquations with_test(const OrbitEquations& equations, const SpecialTest& tes
             more(c) += test_step;
             less(c) -= test_step;
             const auto above = test(more), below = test(less);
-            if (!above || !below) return false;
-            (*jacobian)(m, c) = (*above - *below) / (2 * test_step);
+            if (!above && !below) return false;
+            // One-sided at the end of a parameter's range.
+            (*jacobian)(m, c) = (above.value_or(*at) - below.value_or(*at)) /
+                                ((above && below ? 2 : 1) * test_step);
         }
         return true;
     };
@@ -64,6 +66,27 @@ OrbitCheck check_special(const SpecialTest& test, const Unknowns& z) {
     auto approach = test.equations.values(z)->approach;
     if (test.kind == SpecialKind::grazing) approach[test.impact] = 1e-300;
     return check_orbit(test.equations, z, approach);
+}
+
+/// The point where a step first leaves the range of a parameter; empty if it does not. Without
+/// convergence the last point before.
+std::optional<CurvePoint> at_limit(
+    const CurvePlan& plan, const CurveEquations& curve, const CurvePoint& a, const CurvePoint& b) {
+    double part = 1, limit = 0;
+    std::optional<Eigen::Index> crossed;
+    for (int i = 0; i < 2; ++i) {
+        const Eigen::Index at = a.z.size() - 2 + i;
+        const double unit = plan.family.unit[i], low = std::min(plan.from[i], plan.to[i]) / unit,
+                     high = std::max(plan.from[i], plan.to[i]) / unit, next = b.z(at);
+        if (next >= low && next <= high) continue;
+        const double end = next > high ? high : low, share = (end - a.z(at)) / (next - a.z(at));
+        if (share > part) continue;
+        part = share, limit = end, crossed = at;
+    }
+    if (!crossed) return std::nullopt;
+    const Eigen::VectorXd normal = Eigen::VectorXd::Unit(a.z.size(), *crossed);
+    const auto exact = point_in_plane(curve, a.z + part * (b.z - a.z), normal, limit);
+    return exact ? exact : a;
 }
 
 }  // namespace
@@ -106,14 +129,10 @@ bool follow_curve(
             }
             if (!b) end = end.value_or(BranchEnd::not_decided);
             if (end) break;
-            const auto at = equations.parameters(b->z);
-            for (int i = 0; i < 2; ++i)
-                if (at[i] > std::max(plan.from[i], plan.to[i]) ||
-                    at[i] < std::min(plan.from[i], plan.to[i]))
-                    end = BranchEnd::range;
+            if (auto limit = at_limit(plan, curve, a, *b)) b = *limit, end = BranchEnd::range;
             check = check_special(test, b->z);
             if (check.fault) end = BranchEnd::grazing;
-            if (!end) a = *b;
+            else a = *b;
             h *= curve_growth;
         }
         sink.special(number++, {SpecialKind::end, orbit_at(a.z, check_special(test, a.z)), *end});

@@ -341,18 +341,11 @@ void settle_later(
     }
 }
 
-/// End of a run without contacts. The oscillator's deviation from its steady motion cannot grow:
-/// its energy x^2 + x'^2 falls, since all forces but the spring's are dissipative.
+/// End of a run without contacts.
 Regime::Untouched untouched_end(
     const Parameters& p, const State& at_whole_cycle, double tau,
     const std::function<bool()>& stop) {
-    Regime::Untouched end{false, at_whole_cycle.y_dot, std::nullopt};
-    if (const auto steady = free_steady_state(p);
-        steady && p.has_straight_flights() && at_whole_cycle.y_dot == 0) {
-        const double deviation =
-            elementary::hypot(at_whole_cycle.x - steady->x, at_whole_cycle.x_dot - steady->x_dot);
-        end.for_ever = *free_amplitude(p) + deviation + std::abs(at_whole_cycle.y) < p.b;
-    }
+    Regime::Untouched end{is_never_touched(p, at_whole_cycle), at_whole_cycle.y_dot, std::nullopt};
     if (end.for_ever) return end;
     const Limits limits{.tau_end = longest_flight * p.cycle(), .max_impacts = 1, .stop = stop};
     const Outcome outcome = simulate(p, at_whole_cycle, limits, {});
@@ -374,6 +367,15 @@ RegimeType type_of(const Regime& r) {
 }
 
 }  // namespace
+
+// The oscillator's deviation from its steady motion cannot grow: its energy x^2 + x'^2 falls, since
+// all forces but the spring's are dissipative.
+bool is_never_touched(const Parameters& p, const State& s) {
+    const auto steady = free_steady_state(p);
+    if (!steady || !p.has_straight_flights() || s.y_dot != 0) return false;
+    const double deviation = elementary::hypot(s.x - steady->x, s.x_dot - steady->x_dot);
+    return *free_amplitude(p) + deviation + std::abs(s.y) < p.b;
+}
 
 const char* name_of(RegimeType type) {
     constexpr const char* names[] = {"none", "I", "II", "III", "IV", "V", "VI"};

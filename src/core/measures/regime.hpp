@@ -97,6 +97,9 @@ Regime regime_of(
     const Parameters& parameters, const State& start, const RegimeEvidence& evidence,
     bool exponents_before = true);
 
+/// True if the ball rests at this state at a whole cycle and the oscillator can never reach it.
+bool is_never_touched(const Parameters& parameters, const State& at_whole_cycle);
+
 /// Reason for a verdict.
 enum class VerdictReason {
     growth,    ///< chaotic: by the window's own exponents

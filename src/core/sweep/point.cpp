@@ -6,6 +6,7 @@
 
 #include "core/measures/energy.hpp"
 #include "core/motion/elementary.hpp"
+#include "core/sweep/basins.hpp"
 
 namespace vines {
 
@@ -14,6 +15,8 @@ namespace {
 // Largest relative difference of x_rms of two runs on the same orbit (same period and contacts).
 // x_rms of irregular motions is a mean over a finite run and varies more by chance.
 constexpr double same_orbit = 0.01, same_irregular = 0.25;
+// Cycles between two comparisons of a transient with known motions.
+constexpr double cycles_between_looks = 4;
 
 /// Run from a state at a whole cycle: the forcing phase is that of tau = 0.
 Outcome cycles_from(
@@ -117,10 +120,14 @@ PointResult measure(
     const std::function<bool()>& stop) {
     PointResult r;
     State begin = start;
-    if (const double transient = std::round(options.transient_cycles); transient > 0) {
-        r.outcome = cycles_from(p, start, 0, transient, stop);
+    for (double left = std::round(options.transient_cycles); left > 0;) {
+        const double now = options.known ? std::min(left, cycles_between_looks) : left;
+        r.outcome = cycles_from(p, begin, 0, now, stop);
         if (r.outcome.reason != End::tau_end) return r;
         begin = r.outcome.state;
+        left -= now;
+        const PointResult* known = options.known ? options.known->reached_from(begin) : nullptr;
+        if (known) return *known;
     }
     Analysis a = analyse(wanted_of(p, begin, options), {.run = stop});
     const EnergyBalance& energy = a.energy->balance;
@@ -139,6 +146,9 @@ PointResult measure(
     r.extremes = a.extremes;
     if (a.sections) r.sections = std::move(*a.sections);
     if (options.carry) r.at_end = last_state(p, r.outcome, stop);
+    if (options.amplitudes_alone) return r;
+    r.name = name_of(p, r.regime, r.verdict, r.x_rms, stop);
+    if (options.known) options.known->name_as_known(r);
     return r;
 }
 

@@ -6,12 +6,14 @@
 #pragma once
 
 #include <functional>
+#include <memory>
 #include <optional>
 #include <span>
 #include <string>
 #include <vector>
 
 #include "core/analysis/analysis.hpp"
+#include "core/measures/attractor.hpp"
 #include "core/motion/parameters.hpp"
 #include "core/sweep/parallel.hpp"
 
@@ -37,6 +39,8 @@ inline constexpr std::size_t most_starts = 6;
 /// same relative position in its cavity.
 State carried(const State& state, const Parameters& from, const Parameters& to);
 
+class KnownMotions;
+
 /// Section that a sweep keeps for a bifurcation diagram.
 enum class SectionKind { none, impact, stroboscopic };
 
@@ -52,6 +56,8 @@ struct PointOptions {
     /// A neighbour continues from the last state: computes PointResult::at_end.
     bool carry = false;
     bool amplitudes_alone = false;  ///< without exponents, verdict and regime
+    /// Ends the transient as soon as it reaches one of these motions, which then is the result.
+    const KnownMotions* known = nullptr;
 };
 
 struct PointResult {
@@ -70,6 +76,7 @@ struct PointResult {
     /// until its capture, or as long as it was followed. Empty if no chaos is shown.
     std::optional<double> chaotic_cycles;
     Regime regime;  ///< without its lists
+    AttractorName name;
     /// m; m; x_rms over that of the steady motion (free decay: same start) without absorber.
     double x_max, x_rms, x_rms_ratio;
     Extremes extremes;
@@ -99,6 +106,7 @@ struct PointSystem {
     Parameters parameters;
     State start;
     long max_impacts;
+    std::shared_ptr<const KnownMotions> known = nullptr;
 };
 
 /// A motion and its start, named in the default set of starts, else unnamed.

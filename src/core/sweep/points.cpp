@@ -41,6 +41,7 @@ namespace {
 
 PointOptions options_of(const PointSystem& system, PointOptions options) {
     options.max_impacts = system.max_impacts;
+    options.known = system.known.get();
     return options;
 }
 

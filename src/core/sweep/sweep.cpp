@@ -112,7 +112,7 @@ struct Sweep {
     }
 
     bool first_axis_changes_flow() const {
-        if (plan.grid.steps[0] < 2) return false;
+        if (plan.grid.steps.empty() || plan.grid.steps[0] < 2) return false;
         Place place = plan.grid.place_of(0);
         const auto one = plan.system_at(place);
         place.at[0] = 1;

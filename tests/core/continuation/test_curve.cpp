@@ -74,7 +74,10 @@ TEST_CASE("a curve of special points passes through those of other branches") {
         Collected curve;
         CHECK(follow_curve(plan, *begin, 0.6, 0.003, 0, curve));
         CHECK(curve.specials.size() == 2);
-        for (const SpecialPoint& end : curve.specials) CHECK(end.end == BranchEnd::range);
+        for (const SpecialPoint& end : curve.specials) {
+            CHECK(end.end == BranchEnd::range);
+            CHECK(std::abs(std::abs(end.orbit.parameters[1] - 0.6) - 0.01) < 1e-15);
+        }
         // A point in the middle of one direction.
         const OrbitPoint& point = curve.points[curve.points.size() / 4];
         const double R = point.parameters[1];

@@ -1,0 +1,28 @@
+function [points, result] = basins(varargin)
+  % [POINTS, RESULT] = vines.basins(NAME, VALUE, ...)
+  %
+  % Finds the motions to which starts in a box lead. For the fields, in pairs or in a struct, see
+  % docs/api.md:
+  %
+  %   base = struct('b', 0.0065, 'damping', 'closed_form', 'y0', 0);
+  %   box = struct('x0', [-0.003 0.003], 'y_dot0', [-0.02 0.02]);
+  %   [points, result] = vines.basins('base', base, 'box', box, 'count', 1000);
+  %   {result.attractors.attractor}, [result.attractors.fraction]
+  %
+  % POINTS is an array of structs, one for each start in the order of its index; RESULT has the
+  % arrays ATTRACTORS, the motions with their basins, and BASINS, the statistics of the boundaries.
+  %
+  % Errors: those of vines.simulate, and vines:incomplete if the computation ended early.
+  given = vines.internal.fields(varargin);
+  request = struct('route', 'basins', 'body', vines.internal.json(given));
+  [lines, outcome] = vines.internal.received_lines(request);
+  points = vines.internal.of_type(lines, 'point');
+  if ~strcmp(lines{end}.type, 'done')
+    if strcmp(lines{end}.type, 'error')
+      outcome.message = lines{end}.detail;
+    end
+    detail = sprintf('%s; received %d points', outcome.message, numel(points));
+    vines.internal.raise('incomplete', outcome, detail, struct('points', points, 'missing', []));
+  end
+  result = lines{end};
+end

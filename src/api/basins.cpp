@@ -1,0 +1,111 @@
+// /v1/basins: its request as a sweep over starts, and its result.
+#include "api/describe.hpp"
+#include "api/properties.hpp"
+#include "api/schema/tables.hpp"
+#include "api/sweep.hpp"
+#include "core/motion/impact.hpp"
+
+namespace vines::api {
+
+namespace {
+
+/// Ranges of the starts; a component without one has its value in the base.
+StartBox box_of(const Json& box, const State& start) {
+    const Eigen::Vector4d at = vector_of(start);
+    StartBox ranges;
+    constexpr const char* names[] = {"x_dot0", "x0", "y_dot0", "y0"};
+    for (int i = 0; i < 4; ++i)
+        ranges[i] = box.contains(names[i])
+                        ? Interval{box[names[i]][0].get<double>(), box[names[i]][1].get<double>()}
+                        : Interval{at(i), at(i)};
+    return ranges;
+}
+
+BasinPlan basin_plan(const SweepRequest& r, const Json& given) {
+    const auto number = [&](const char* name) {
+        return given.contains(name) ? given[name].get<double>()
+                                    : find(basins_fields(), name)->fallback.get<double>();
+    };
+    const auto& systems = r.systems;
+    std::vector<double> values = r.axes.empty() ? std::vector<double>{0} : r.axes[0].values;
+    BasinPlan plan{
+        .box = box_of(given["box"], {}),
+        .count = r.plan.grid.starts,
+        .seed = static_cast<std::uint64_t>(number("seed")),
+        .pairs = static_cast<std::size_t>(number("pairs")),
+        .values = std::move(values),
+        .system_at = [systems](double value) { return systems->at_value(value); }};
+    for (const double value : plan.values) {
+        const auto system = plan.system_at(value);
+        if (!system)
+            refuse({{"/axis", value, nullptr, "the base forms no valid system with this value"}});
+        plan.box = box_of(given["box"], system->start);
+        const std::size_t found =
+            starts_in(plan.box, system->parameters, plan.count, plan.seed).size();
+        if (found < plan.count)
+            refuse(
+                {{"/box", given["box"], nullptr,
+                  "the box hardly meets the cavity: |x0 - y0| <= b holds at only " +
+                      std::to_string(found) + " starts in it"}});
+    }
+    return plan;
+}
+
+Json describe(const std::optional<Estimate>& estimate) {
+    if (!estimate) return nullptr;
+    return {{"value", estimate->value}, {"standard_error", finite_or_null(estimate->error)}};
+}
+
+}  // namespace
+
+SweepRequest read_basins_request(const Json& given, std::size_t most_points) {
+    std::vector<FieldError> errors = check(basins_fields(), given);
+    if (!given.contains("box") || given["box"].empty())
+        errors.push_back(
+            {"/box", nullptr, nullptr,
+             "basins need a box: {x0: [from, to], ...} of one to four of x0, x_dot0, y0, y_dot0"});
+    if (!errors.empty()) refuse(std::move(errors));
+    Json grid = given;
+    grid["axes"] = Json::array();
+    if (given.contains("axis")) grid["axes"].push_back(given["axis"]);
+    const Json& count =
+        given.contains("count") ? given["count"] : find(basins_fields(), "count")->fallback;
+    try {
+        SweepRequest r = read_grid(grid, count.get<std::size_t>(), most_points);
+        r.given.erase("axes");
+        r.basins = std::make_shared<Basins>(basin_plan(r, given));
+        r.plan.system_at = [basins = r.basins](const Place& place) {
+            return basins->system_of(place);
+        };
+        return r;
+    } catch (Problem& problem) {
+        for (FieldError& e : problem.errors)
+            if (e.pointer.starts_with("/axes/0")) e.pointer.replace(0, 7, "/axis");
+        throw;
+    }
+}
+
+Json describe_basins(const SweepRequest& r) {
+    Json attractors = Json::array(), basins = Json::array();
+    for (const BasinsAt& at : r.basins->result()) {
+        Json place = Json::object();
+        if (!r.axes.empty()) place[r.axes[0].parameter] = at.value;
+        for (const Basin& basin : at.basins) {
+            Json entry = place;
+            const auto& orbit = basin.motion.regime.orbit;
+            entry.update(describe(properties::basin, basin));
+            entry["multipliers"] = orbit ? describe_multipliers(orbit->multipliers) : Json(nullptr);
+            attractors.push_back(std::move(entry));
+        }
+        place.update(describe(properties::basins, at));
+        place["entropy"] = describe(at.entropy);
+        place["boundary_entropy"] = describe(at.boundary_entropy);
+        place["uncertainty_exponent"] = describe(at.uncertainty_exponent);
+        place["distances"] = column(at.distances);
+        place["uncertain"] = column(at.uncertain);
+        basins.push_back(std::move(place));
+    }
+    return {{"attractors", std::move(attractors)}, {"basins", std::move(basins)}};
+}
+
+}  // namespace vines::api

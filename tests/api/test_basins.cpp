@@ -1,0 +1,121 @@
+// Requests and lines of /v1/basins.
+#include <doctest/doctest.h>
+
+#include <map>
+#include <set>
+
+#include "api/format/sweep_table.hpp"
+#include "api/parse.hpp"
+#include "api/problem.hpp"
+#include "api/sweep.hpp"
+
+using namespace vines;
+using namespace vines::api;
+
+namespace {
+
+const std::string twin_system = R"("base":{"b":0.0065,"damping":"closed_form","y0":0},)"
+                                R"("box":{"x0":[-0.003,0.003],"y_dot0":[-0.02,0.02]})";
+
+SweepRequest basins_request(const std::string& fields) {
+    return read_basins_request(parse_object("{" + fields + "}"), 100000);
+}
+
+std::map<std::size_t, std::string> basins_lines(const SweepRequest& request, int threads = 1) {
+    std::map<std::size_t, std::string> lines;
+    RunControl control;
+    CHECK(run_sweep(request, threads, control, [&](std::size_t index, const std::string& line) {
+              lines[index] = line;
+          }).empty());
+    return lines;
+}
+
+Json basins_result(const SweepRequest& request) {
+    return Json::parse(done_line(request.plan.lines.size(), &request));
+}
+
+/// Pointers of the fields at fault.
+std::set<std::string> basins_faults(const std::string& fields) {
+    try {
+        basins_request(fields);
+    } catch (const Problem& problem) {
+        std::set<std::string> pointers;
+        for (const FieldError& e : problem.errors) pointers.insert(e.pointer);
+        return pointers;
+    }
+    return {};
+}
+
+}  // namespace
+
+TEST_CASE("each start has the line of a sweep that begins there") {
+    const SweepRequest request = basins_request(twin_system + R"(,"count":20,"pairs":0)");
+    const auto lines = basins_lines(request);
+    REQUIRE(lines.size() == 20);
+    for (const auto& [index, text] : lines) {
+        const Json line = Json::parse(text);
+        Json base = request.base;
+        base.update(line["start"]);
+        base.erase("x0");
+        const SweepRequest sweep = read_sweep_request(
+            {{"base", base},
+             {"axes", Json::array({{{"parameter", "x0"}, {"values", {line["start"]["x0"]}}}})}},
+            1);
+        const Json point = Json::parse(basins_lines(sweep).at(0));
+        CHECK(line["index"] == index);
+        CHECK(line["attractor"] == point["attractor"]);
+        CHECK(line["mirror"] == point["mirror"]);
+        CHECK(line.size() == 5);
+    }
+    const Json done = basins_result(request);
+    REQUIRE(done["attractors"].size() == 2);
+    CHECK(done["attractors"][0]["mirror"] == done["attractors"][1]["attractor"]);
+    CHECK(done["attractors"][0]["multipliers"]["modulus"][0] < 1);
+    CHECK(done["basins"][0]["starts"] == 20);
+    CHECK(done["basins"][0]["uncertainty_exponent"].is_null());
+}
+
+TEST_CASE("lines of basins are equal on any shard and any number of threads") {
+    const std::string fields =
+        twin_system + R"(,"count":30,"pairs":0,"axis":{"parameter":"Omega","values":[1,1.01]})";
+    const auto whole = basins_lines(basins_request(fields));
+    REQUIRE(whole.size() == 60);
+    SweepRequest part = basins_request(fields + R"(,"indices":[3,17,44,59])");
+    CHECK(part.given == basins_request(fields).given);
+    for (const auto& [index, line] : basins_lines(part, 2)) CHECK(line == whole.at(index));
+    const Json done = basins_result(part);
+    CHECK(done["basins"].size() == 2);
+    for (const Json& at : done["basins"]) {
+        CHECK(at["starts"].get<int>() + 0 > 0);
+        CHECK(at.contains("Omega"));
+    }
+    int starts = 0;
+    for (const Json& entry : done["attractors"]) starts += entry["starts"].get<int>();
+    CHECK(starts == 4);
+}
+
+TEST_CASE("a table of basins has a row for each start") {
+    const SweepRequest request = basins_request(twin_system + R"(,"count":3,"pairs":0)");
+    SweepTable table(request, Format::csv);
+    CHECK(table.begin() == "index,start.x0,start.x_dot0,start.y0,start.y_dot0,attractor,mirror\n");
+    std::string rows;
+    for (const auto& [index, line] : basins_lines(request)) rows += table.add(index, line);
+    CHECK(std::ranges::count(rows, '\n') == 3);
+}
+
+TEST_CASE("errors of basins are reported at their field") {
+    CHECK(basins_faults(twin_system).empty());
+    CHECK(basins_faults(R"("base":{"b":0.01})") == std::set<std::string>{"/box"});
+    CHECK(basins_faults(R"("box":{"x0":[1,0]})") == std::set<std::string>{"/box/x0"});
+    CHECK(basins_faults(R"("box":{"x0":[0,1e9]})") == std::set<std::string>{"/box/x0"});
+    CHECK(basins_faults(R"("box":{"x1":[0,1]})") == std::set<std::string>{"/box/x1"});
+    CHECK(basins_faults(R"("base":{"y0":0},"box":{"x0":[1,2]})") == std::set<std::string>{"/box"});
+    CHECK(
+        basins_faults(twin_system + R"(,"axis":{"parameter":"R","from":0.5,"to":2,"count":3})") ==
+        std::set<std::string>{"/axis"});
+    CHECK(
+        basins_faults(twin_system + R"(,"axis":{"parameter":"q","values":[1]})") ==
+        std::set<std::string>{"/axis/parameter"});
+    CHECK(basins_faults(twin_system + R"(,"count":200000)") == std::set<std::string>{"/count"});
+    CHECK(basins_faults(twin_system + R"(,"indices":[2000])") == std::set<std::string>{"/indices"});
+}
