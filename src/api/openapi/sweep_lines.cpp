@@ -196,8 +196,12 @@ Json basins_point() {
 }
 
 Json basins_attractor() {
+    Keys keys = values_of(properties::basin);
+    for (Key& key : keys)
+        if (key.name == "branch" || key.name == "period_cycles")
+            key.schema = or_null(std::move(key.schema));
     return object_of(
-        swept_keys(number(), "value of the axis") + values_of(properties::basin) +
+        swept_keys(number(), "value of the axis") + keys +
         Keys{{"multipliers", or_null(multipliers_schema()), "Floquet multipliers of an orbit"}});
 }
 

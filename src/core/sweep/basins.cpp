@@ -200,16 +200,13 @@ void Basins::explore(int threads, const PointOptions& options, RunControl& contr
     });
 }
 
-std::size_t Basins::label_of(std::size_t value, const PointResult& result) {
-    const auto [at, is_new] =
-        index_of_.try_emplace({value, result.name.motion}, motions_.size() + 1);
-    if (is_new) motions_.push_back(result);
-    return at->second;
-}
-
 void Basins::add(std::size_t line, const PointResult& result) {
     const std::lock_guard lock(mutex_);
-    labels_[line] = label_of(line % values(), result);
+    const auto [at, is_new] =
+        index_of_.try_emplace({line % values(), result.name.motion}, motions_.size() + 1);
+    labels_[line] = at->second;
+    if (is_new) motions_.push_back({line, result});
+    else if (line < motions_[at->second - 1].line) motions_[at->second - 1] = {line, result};
 }
 
 void Basins::run_pairs(int threads, const PointOptions& options, RunControl& control) {
@@ -242,7 +239,8 @@ void Basins::run_pairs(int threads, const PointOptions& options, RunControl& con
         return std::optional(PointTask{
             system, {{"", n.start}}, [this, n](std::vector<Motion> m) {
                 const std::lock_guard lock(mutex_);
-                const PointResult &there = m[0].result, &here = motions_[labels_[n.line] - 1];
+                const PointResult &there = m[0].result,
+                                  &here = motions_[labels_[n.line] - 1].motion;
                 if (there.name.motion == "not_decided" || here.name.motion == "not_decided") return;
                 pairs_.push_back({n.line, n.distance, there.name.motion != here.name.motion});
             }});
@@ -331,10 +329,12 @@ void Basins::add_entropy(std::size_t value, BasinsAt& at) const {
         1.0,
         std::floor(elementary::pow(
             static_cast<double>(at.starts) / starts_per_cell, 1 / static_cast<double>(varied)))));
-    std::map<std::array<int, 4>, std::map<std::size_t, std::size_t>> cells;
+    std::map<std::array<int, 4>, std::map<std::string, std::size_t>> cells;
     for (std::size_t i = 0; i < starts_[value].size(); ++i) {
         const std::size_t label = labels_[i * values() + value];
-        if (label == 0 || motions_[label - 1].name.motion == "not_decided") continue;
+        if (label == 0) continue;
+        const std::string& name = motions_[label - 1].motion.name.motion;
+        if (name == "not_decided") continue;
         const Eigen::Vector4d v = vector_of(starts_[value][i]);
         std::array<int, 4> cell{};
         for (int k = 0; k < 4; ++k) {
@@ -343,14 +343,14 @@ void Basins::add_entropy(std::size_t value, BasinsAt& at) const {
                 cell[k] = std::min(
                     per_side - 1, static_cast<int>((v(k) - from) / (to - from) * per_side));
         }
-        ++cells[cell][label];
+        ++cells[cell][name];
     }
     std::vector<double> entropies, at_boundary;
     for (const auto& [cell, counts] : cells) {
         double all = 0, sum = 0;
-        for (const auto& [label, n] : counts) all += static_cast<double>(n);
+        for (const auto& [name, n] : counts) all += static_cast<double>(n);
         if (all < fewest_per_cell) continue;
-        for (const auto& [label, n] : counts)
+        for (const auto& [name, n] : counts)
             sum -= static_cast<double>(n) / all * elementary::log(static_cast<double>(n) / all);
         entropies.push_back(sum);
         if (counts.size() > 1) at_boundary.push_back(sum);
@@ -390,7 +390,7 @@ BasinsAt Basins::basins_at(std::size_t value) const {
         if (labels_[line] > 0) ++at.starts, ++counts[labels_[line]];
     const auto all = static_cast<double>(at.starts);
     for (const auto& [label, n] : counts) {
-        const PointResult& motion = motions_[label - 1];
+        const PointResult& motion = motions_[label - 1].motion;
         if (motion.name.motion == "not_decided") {
             at.not_decided = n;
             continue;

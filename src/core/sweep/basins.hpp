@@ -106,13 +106,17 @@ public:
     std::vector<BasinsAt> result() const;
 
 private:
+    /// A motion, from the first line that leads to it, whatever the order of the runs.
+    struct Found {
+        std::size_t line;
+        PointResult motion;
+    };
     struct Pair {
         std::size_t line;
         int distance;
         bool differs;
     };
     std::size_t values() const { return plan_.values.size(); }
-    std::size_t label_of(std::size_t value, const PointResult& result);
     BasinsAt basins_at(std::size_t value) const;
     void add_entropy(std::size_t value, BasinsAt& at) const;
     void add_exponent(std::size_t value, BasinsAt& at) const;
@@ -121,7 +125,7 @@ private:
     std::vector<PointSystem> systems_;        ///< for each value
     std::vector<std::vector<State>> starts_;  ///< for each value
     std::vector<std::size_t> labels_;         ///< by line: index of the motion + 1; 0: missing
-    std::vector<PointResult> motions_;        ///< of all values
+    std::vector<Found> motions_;              ///< of all values
     std::map<std::pair<std::size_t, std::string>, std::size_t> index_of_;  ///< value and name
     std::vector<Pair> pairs_;
     std::mutex mutex_;
