@@ -181,10 +181,8 @@ test("a sweep takes 201 x 201 starts", async () => {
   assert.equal(answer.status, 200);
   const lines = await linesOf(answer);
   assert.equal(lines[0].points, 40401);
-  assert.deepEqual(
-    lines.filter(({type}) => type === "point").map(({start}) => start),
-    [0, 40400],
-  );
+  const computed = lines.filter(({type}) => type === "point").map(({start}) => start);
+  assert.deepEqual(new Set(computed), new Set([0, 40400]));
 });
 
 test("a simulation is answered during a sweep's point when one thread computes both", async () => {
