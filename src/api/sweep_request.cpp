@@ -17,6 +17,10 @@ SweepSystems::SweepSystems(
         columns_.push_back({system_number(axis.parameter), std::move(axis.values)});
 }
 
+bool SweepSystems::has_load() const {
+    return std::ranges::any_of(bases_, [](const SystemFields& s) { return s.forcing != nullptr; });
+}
+
 SystemFields SweepSystems::fields_at(const Place& place) const {
     SystemFields fields = bases_[place.start];
     for (std::size_t a = 0; a < columns_.size(); ++a)
@@ -26,13 +30,17 @@ SystemFields SweepSystems::fields_at(const Place& place) const {
 
 std::optional<PointSystem> SweepSystems::at(const Place& place) const {
     const SystemFields fields = fields_at(place);
-    // f can be omitted only if F = 0.
-    if (fields.is_in_si() && !fields.is_reduced() && !fields.f && fields.F != 0.0)
+    // f can be omitted only without forcing.
+    if (fields.is_in_si() && !fields.is_reduced() && !fields.f && fields.is_forced())
         return std::nullopt;
-    const ResolvedSystem system = resolve(fields);
-    const State start = start_of(fields, system);
-    if (!validate(system.parameters, start).empty()) return std::nullopt;
-    return PointSystem{system.parameters, start, max_impacts_};
+    try {
+        const ResolvedSystem system = resolve(fields);
+        const State start = start_of(fields, system);
+        if (!validate(system.parameters, start).empty()) return std::nullopt;
+        return PointSystem{system.parameters, start, max_impacts_};
+    } catch (const Problem&) {  // no valid load
+        return std::nullopt;
+    }
 }
 
 std::optional<SiParameters> SweepSystems::si_at(const Place& place) const {
@@ -299,6 +307,23 @@ void read_indices(SweepRequest& r, const Json& given, std::vector<FieldError>& e
              "the sweep has " + std::to_string(all) + " points, numbered from 0"});
 }
 
+/// What needs the period of a forcing, or a steady state, is refused with a load.
+void check_loaded(const SweepRequest& r, const Json& given, std::vector<FieldError>& errors) {
+    if (!r.systems->has_load()) return;
+    const SweepPlan& plan = r.plan;
+    const std::string reason = " needs a harmonic forcing: each point begins its load at tau = 0";
+    if (plan.default_set)
+        errors.push_back(
+            {"/starts", given["starts"], nullptr, "the default set of starts" + reason});
+    if (plan.carry != Carry::none)
+        errors.push_back(
+            {"/carry_state", given["carry_state"], Json::array({"none"}), "carry_state" + reason});
+    if (plan.options.section == SectionKind::stroboscopic)
+        errors.push_back(
+            {"/section", given["section"], Json::array({"none", "impact"}),
+             "a stroboscopic section" + reason});
+}
+
 void refuse_any(std::vector<FieldError>& errors) {
     if (!errors.empty()) refuse(std::move(errors));
 }
@@ -360,6 +385,7 @@ SweepRequest read_sweep_request(const Json& given, std::size_t most_points) {
     read_indices(r, given, errors);
     refuse_any(errors);
     r.systems = systems_of(r);
+    check_loaded(r, given, errors);
     check_systems(r, errors);
     refuse_any(errors);
     r.plan.system_at = [systems = r.systems](const Place& place) { return systems->at(place); };

@@ -24,6 +24,7 @@ public:
 
     /// nullopt if the point's values form no valid system.
     std::optional<PointSystem> at(const Place& place) const;
+    bool has_load() const;
     /// The system in SI if its fields are.
     std::optional<SiParameters> si_at(const Place& place) const;
 
