@@ -39,7 +39,7 @@ OBJECTS = ["SweepBase", "Axis", "Start"]
 # Fields that are objects, and their types.
 NESTED = {
     "perturbation": "Perturbation",
-    "forcing": "RecordedForcing",
+    "forcing": "Forcing",
     "restitution": "RestitutionTable",
     "restitution_plus": "RestitutionTable",
     "restitution_minus": "RestitutionTable",

@@ -91,6 +91,11 @@ inline constexpr Property<Series> series_columns[] = {
     {quantity.x_ddot, of_result<&Series::x_ddot>},
 };
 
+/// Where a load moves the base.
+inline constexpr Property<Series> relative_columns[] = {
+    {quantity.x_relative, of_result<&Series::x_relative>},
+};
+
 inline constexpr Property<std::vector<StickingPhase>> sticking_columns[] = {
     {quantity.side.with("side of the wall"),
      [](const auto& sticks) { return column(sticks, [](auto& s) { return s.start.side; }); }},

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
 #include "api/describe.hpp"
 #include "api/json_text.hpp"
@@ -42,6 +43,8 @@ std::optional<double> value_in(const SystemFields& fields, const std::string& pa
     for (const auto& property : properties::reduced)
         if (property.quantity.name == parameter) return property.value(system.parameters);
     if (!system.si) return std::nullopt;
+    const double omega = 2 * std::numbers::pi * system.si->f;
+    if (parameter == "acceleration") return system.si->F * omega * omega;
     for (const auto& property : properties::si)
         if (property.quantity.name == parameter) return property.value(*system.si);
     for (const auto& property : properties::derived_si)
@@ -261,7 +264,8 @@ SystemFields read_family(ContinueRequest& r, const Json& given) {
     if (!r.base.system.parameters.has_straight_flights())
         errors.push_back(
             {"/base", nullptr, nullptr,
-             "orbits are continued for a ball without gravity and friction"});
+             "orbits are continued for a harmonic forcing and a ball without gravity and "
+             "friction"});
     const double from = given["from"], to = given["to"];
     if (from == to || r.at < std::min(from, to) || r.at > std::max(from, to))
         errors.push_back(

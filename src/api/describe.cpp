@@ -17,7 +17,10 @@ Json describe_system(const System& system, const Json& of_run) {
         if (table) j[name] = {{"speed", column(table->speed)}, {"R", column(table->R)}};
     };
     if (const auto& load = system.parameters.load)
-        j["forcing"] = {{"samples", load->samples()}, {"length", load->length()}};
+        j["forcing"] = {
+            {"kind", system.load_kind},
+            {"length", finite_or_null(load->length())},
+            {"sampling_error", load->sampling_error()}};
     add_table("restitution_plus", system.parameters.table_plus);
     add_table("restitution_minus", system.parameters.table_minus);
     j["origin"] = system.origin;
@@ -82,7 +85,7 @@ std::string impacts_of(int count) {
 }
 
 std::string describe_type(const Regime& r) {
-    if (!r.has_period) return "a recorded load has no period, and the response no regime";
+    if (!r.has_period) return "the load has no period, and the response no regime";
     if (r.quasi_periodic) return fmt::format("quasi-periodic, {:.4g} impacts per cycle", r.z);
     if (!r.orbit && r.forced && r.contacts > 0 && r.in_every_cycle)
         return fmt::format("not periodic, with {} in every cycle", impacts_of(*r.in_every_cycle));
@@ -120,7 +123,8 @@ Json describe_capture(const Capture& c) {
 std::string reason_of_no_impacts(const std::optional<Regime::Untouched>& untouched) {
     if (!untouched) return "there are no impacts in this window";
     return "there are no impacts in this window, but " +
-           (untouched->y_dot == 0
+           (untouched->held ? "friction may not hold the ball for ever"
+            : untouched->y_dot == 0
                 ? std::string("the oscillator has not reached its steady motion")
                 : fmt::format("the ball flies with y' = {:.3g} m", untouched->y_dot)) +
            (untouched->next_contact

@@ -54,7 +54,8 @@ void read_host(DesignRequest& r, const Json& given, std::vector<FieldError>& err
     const Json& base = given["base"];
     for (const char* name :
          {"f", "F", "acceleration", "b", "R", "R_plus", "R_minus", "gravity", "inclination",
-          "friction", "mu", "restitution", "restitution_plus", "restitution_minus", "preset"})
+          "friction", "mu", "restitution", "restitution_plus", "restitution_minus", "forcing",
+          "preset"})
         if (base.contains(name))
             errors.push_back(
                 {std::string("/base/") + name, base[name], nullptr,

@@ -14,7 +14,8 @@ namespace vines::api {
 
 const std::vector<std::string> reduced_names = {"epsilon", "lambda", "G", "Omega"};
 const std::vector<std::vector<std::string>> si_groups = {
-    {"m1"}, {"c1", "damping_ratio"}, {"k1", "f0"}, {"m2", "mass_ratio"}, {"F"}, {"f"}};
+    {"m1"}, {"c1", "damping_ratio"}, {"k1", "f0"}, {"m2", "mass_ratio"}, {"F", "acceleration"},
+    {"f"}};
 const std::vector<std::string> si_names = [] {
     std::vector<std::string> names;
     for (const auto& group : si_groups) names.insert(names.end(), group.begin(), group.end());
@@ -43,7 +44,7 @@ const std::vector<Alternative>& alternatives() {
     static const std::vector<Alternative> list = {
         {reduced_names, si_names,
          "reduced (epsilon, lambda, G, Omega) and SI (m1, c1, k1, m2, F, f; damping_ratio, f0, "
-         "mass_ratio) fields cannot be mixed"},
+         "mass_ratio, acceleration) fields cannot be mixed"},
         {{"R"},
          {"R_plus", "R_minus"},
          "R stands for both walls and cannot be mixed with R_plus or R_minus"},
@@ -54,7 +55,12 @@ const std::vector<Alternative>& alternatives() {
         {{"R", "R_minus"},
          {"restitution_minus"},
          "R_minus and restitution_minus are of the same wall"},
-        {{"F", "f", "G", "Omega"}, {"forcing"}, "forcing replaces F and f; give one of them"},
+        {{"F", "acceleration", "f", "G", "Omega"},
+         {"forcing"},
+         "forcing replaces F and f; give one of them"},
+        {{"F"},
+         {"acceleration"},
+         "acceleration stands for F = acceleration/(2 pi f)^2; give one of them"},
         {{"gravity"},
          {"inclination"},
          "inclination stands for gravity = g sin(inclination)/omega0^2; give one of them"},
@@ -101,13 +107,16 @@ const Preset& preset_named(const std::string& name) {
 void restate_system(Json& preset, const Json& given) {
     if (!present(given, si_names).empty()) {
         preset.update(describe(properties::si, si_of(system_fields(preset))));
-        const SiParameters si = si_of(system_fields(preset));
-        const Json others = {{"c1", si.damping_ratio()}, {"k1", si.f0()}, {"m2", si.epsilon()}};
+        if (preset.contains("forcing"))
+            for (const char* name : {"F", "f"}) preset.erase(name);
+        // A value that the request does not give stays as the preset states it.
         for (const auto& group : si_groups)
-            if (group.size() > 1 && given.contains(group[1])) {
-                preset[group[1]] = others[group[0]];
-                preset.erase(group[0]);
-            }
+            if (group.size() > 1)
+                preset.erase(
+                    given.contains(group[0]) ||
+                            (!given.contains(group[1]) && !preset.contains(group[1]))
+                        ? group[1]
+                        : group[0]);
     } else if (!present(given, reduced_names).empty()) {
         const SiParameters si = si_of(system_fields(preset));
         const bool in_si = !present(preset, si_names).empty();
@@ -141,7 +150,8 @@ void restate_walls(Json& preset, const Json& given) {
     drop({"R_plus", "restitution_plus"}, {"R", "restitution", "R_plus", "restitution_plus"});
     drop({"R_minus", "restitution_minus"}, {"R", "restitution", "R_minus", "restitution_minus"});
     drop({"R", "restitution"}, {"R", "restitution"});
-    drop({"F", "f", "G", "Omega"}, {"forcing"});
+    drop({"F", "acceleration", "f", "G", "Omega"}, {"forcing"});
+    drop({"forcing"}, {"F", "acceleration", "f", "G", "Omega"});
     drop({"gravity", "inclination"}, {"gravity", "inclination"});
     drop({"friction", "mu"}, {"friction", "mu"});
 }
@@ -160,8 +170,8 @@ Json drop_inapplicable_fields(Json& preset, const FieldTable& table, const Json&
     const bool another_system =
         std::any_of(oscillator_fields.begin(), oscillator_fields.end(), replaced);
     const bool another_run = std::any_of(table.begin(), table.end(), [&](const Field& f) {
-        const bool of_the_motion = is_of_system(f) || f.group == "laws" || f.group == "start" ||
-                                   f.name == "tau_end" || f.name == "cycles";
+        const bool of_the_motion = is_of_system(f) || f.group == "laws" || f.group == "load" ||
+                                   f.group == "start" || f.name == "tau_end" || f.name == "cycles";
         return of_the_motion && f.name != "preset" && replaced(f.name);
     });
     if (another_system) drop("damping");

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <iterator>
+#include <numbers>
 
 #include "api/request.hpp"
 #include "core/measurement/synthetic_record.hpp"
@@ -13,6 +14,7 @@ namespace vines::api {
 namespace {
 
 const char* const doi = "10.1007/s11071-017-4015-y";
+const char* const of_a_machine = "machine";  // in place of a figure or table
 const char* const citation =
     "T. Li, C.-H. Lamarque, S. Seguy, A. Berlioz: Chaotic characteristic of a linear oscillator "
     "coupled with vibro-impact nonlinear energy sink. Nonlinear Dynamics 91 (2018) 2319-2330";
@@ -148,11 +150,64 @@ void add_experiments(std::vector<Preset>& list) {
          experiment(0.015, 170)});
 }
 
+/// Machines under the laws and loads beyond the paper.
+void add_machines(std::vector<Preset>& list) {
+    const auto machine = [](Json parameters, Json more) {
+        parameters.update(more);
+        return parameters;
+    };
+    const Json base = {{"m1", 12}, {"f0", 14}, {"damping_ratio", 0.01}, {"mass_ratio", 0.03}};
+    const Json harmonic = machine(base, {{"F", 0.0002}, {"f", 14}});
+    list.push_back(
+        {"shock", of_a_machine, "a hammer blow on a machine: the ball takes up its energy",
+         "A half sine of 3000 N over 5 ms. The motion after it is a free decay.",
+         machine(
+             base,
+             {{"b", 0.004},
+              {"R", 0.6},
+              {"y0", 0},
+              {"tau_end", 300},
+              {"forcing", {{"kind", "half_sine"}, {"force_N", 3000}, {"duration_s", 0.005}}}})});
+    list.push_back(
+        {"chirp", of_a_machine, "a platform whose base sweeps through its resonance",
+         "A chirp from 10 to 18 Hz in a minute; series.x_relative is relative to the base.",
+         machine(
+             base, {{"b", 0.006},
+                    {"R", 0.6},
+                    {"y0", 0},
+                    {"forcing",
+                     {{"kind", "chirp"},
+                      {"displacement_m", 0.0002},
+                      {"f_from", 10},
+                      {"f_to", 18},
+                      {"duration_s", 60}}}})});
+    list.push_back(
+        {"vertical", of_a_machine,
+         "a vertical absorber: gravity returns the ball to the lower wall",
+         "The ball falls along +x to the wall at x - y = -b, and is thrown from it.",
+         machine(
+             harmonic,
+             {{"b", 0.006}, {"R", 0.6}, {"inclination", std::numbers::pi / 2}, {"cycles", 300}})});
+    list.push_back(
+        {"friction", of_a_machine, "friction from which the ball never moves",
+         "Twice its resonance frequency moves the machine too little: mu g exceeds the largest "
+         "acceleration, and the ball adds its mass only.",
+         machine(
+             base, {{"F", 0.0002},
+                    {"f", 28},
+                    {"b", 0.006},
+                    {"R", 0.6},
+                    {"mu", 0.3},
+                    {"y0", 0},
+                    {"cycles", 300}})});
+}
+
 std::vector<Preset> make_presets() {
     std::vector<Preset> list = figures();
     add_table_2(list);
     add_table_3(list);
     add_experiments(list);
+    add_machines(list);
     return list;
 }
 
@@ -172,7 +227,7 @@ Json describe_presets() {
         list.push_back(
             {{"name", p.name},
              {"source", p.source},
-             {"doi", doi},
+             {"doi", p.source == of_a_machine ? Json(nullptr) : Json(doi)},
              {"title", p.title},
              {"note", p.note},
              {"parameters", p.parameters}});

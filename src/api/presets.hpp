@@ -1,4 +1,5 @@
-// Presets: one for each figure and table of the paper, with its parameters.
+// Presets: one for each figure and table of the paper, with its parameters, and one machine for
+// each law and kind of load beyond it.
 #pragma once
 
 #include "api/problem.hpp"

@@ -86,6 +86,7 @@ struct Quantities {
     Quantity y_dot{"y_dot", "velocity of the ball", number, "y_velocity", 1};
     Quantity x_ddot{
         "x_ddot", "acceleration of the oscillator between impacts", number, "x_acceleration", 2};
+    Quantity x_relative{"x_relative", "displacement of the oscillator relative to the base, m"};
     Quantity x_dot_before{
         "x_dot_before", "velocity of the oscillator", number, "x_velocity_before", 1};
     Quantity x_dot_after{

@@ -1,6 +1,7 @@
 #include "api/request.hpp"
 
 #include <algorithm>
+#include <cmath>
 
 #include "core/motion/load.hpp"
 
@@ -18,9 +19,30 @@ void check_window(
              "the window begins after the run's end, tau_end = " + Json(tau_end).dump()});
 }
 
+bool is_as_long_as_load(const MergedFields& l, const Parameters& p) {
+    return p.load && p.load->sets_length() && !l.has("cycles") && !l.has("tau_end");
+}
+
+/// A base that ends this many times b away has probably an offset in its acceleration.
+constexpr double far_away = 1000;
+
+/// Warnings about the length of a load, and about a base that moves far away.
+void add_notes_on_load(System& system, double tau_end) {
+    const Load& load = *system.parameters.load;
+    if (load.sets_length() && tau_end > load.length() * (1 + 1e-12))
+        system.notes.push_back(
+            "forcing ends at tau = " + Json(load.length()).dump() +
+            "; afterwards the load is zero, and the base moves on with its velocity");
+    const double far = load.largest_base_displacement(tau_end);
+    if (far > far_away * system.parameters.b)
+        system.notes.push_back(
+            "the base moves as far as " + Json(far).dump() +
+            " m, more than 1000 b: has its acceleration an offset or a mean?");
+}
+
 /// The length of the run from tau_end or cycles; an error if it is too long.
 double read_tau_end(const MergedFields& l, const Parameters& p, std::vector<FieldError>& errors) {
-    const bool by_cycles = l.has("cycles"), by_load = p.load && !by_cycles && !l.has("tau_end");
+    const bool by_cycles = l.has("cycles"), by_load = is_as_long_as_load(l, p);
     const double cycle = p.cycle(),
                  tau_end = by_cycles ? l.number("cycles") * cycle
                            : by_load ? p.load->length()
@@ -189,14 +211,8 @@ SimulateRequest read_simulate_request(const Json& given) {
     w.most_listed = static_cast<std::size_t>(w.max_impacts);
     w.estimators = read_estimators(l);
     add_origins(r.system.origin, l);
-    if (const auto& load = w.parameters.load) {
-        if (!l.has("cycles") && !l.has("tau_end"))
-            r.system.origin["tau_end"] = "the length of forcing";
-        if (w.tau_end > load->length() * (1 + 1e-12))
-            r.system.notes.push_back(
-                "the record of forcing ends at tau = " + Json(load->length()).dump() +
-                "; afterwards the load is zero, and the base moves on with its velocity");
-    }
+    if (is_as_long_as_load(l, w.parameters)) r.system.origin["tau_end"] = "the length of forcing";
+    if (w.parameters.load) add_notes_on_load(r.system, w.tau_end);
     return r;
 }
 

@@ -31,7 +31,7 @@ AnswerSize size_of(const SimulateRequest& r) {
     const auto value = [si](const Quantity& q) { return value_bytes(q, si); };
     AnswerSize size;
     size.fixed += window_bytes * static_cast<double>(r.wanted.windows.size());
-    if (r.includes("series")) size.point += row(series_columns);
+    if (r.includes("series")) size.point += row(series_columns) + row(relative_columns);
     if (r.includes("exponents")) {
         const double history = row(history_columns);
         if (r.wanted.estimators.qr) size.point += history;
@@ -161,7 +161,12 @@ std::vector<std::string> add_parts(
         if (r.includes(name)) add_in_time(name, describe_part);
     };
     const ExponentOptions& shown = r.wanted.estimators;
-    part("series", [&] { return describe(series_columns, *taken(a.series)); });
+    part("series", [&] {
+        const Series series = *taken(a.series);
+        Json columns = describe(series_columns, series);
+        if (!series.x_relative.empty()) columns.update(describe(relative_columns, series));
+        return columns;
+    });
     part("impacts", [&] {
         if (a.unkept_impacts) return streamed_impacts(r.system.si);
         return describe_impacts(taken(a.impacts), scales_of(r, a));

@@ -99,8 +99,9 @@ std::string scale_warning(const SweepRequest& r) {
     const std::string amplitude = has_axis("G") ? "G" : "F";
     if (!has_axis("b") || !has_axis(amplitude)) return "";
     // Lengths and velocities that do not scale with them.
-    const FieldTable others = simulate_fields_where(
-        [](const Field& f) { return f.group == "start" || f.group == "laws"; });
+    const FieldTable others = simulate_fields_where([](const Field& f) {
+        return f.group == "start" || f.group == "laws" || f.group == "load";
+    });
     for (const Field& f : others)
         for (std::size_t s = 0; s < r.starts.size(); ++s) {
             const Json fields = fields_of(r, {s, std::vector<std::size_t>(r.axes.size(), 0)});
@@ -219,7 +220,9 @@ Json sweep_start(const SweepRequest& r) {
     const PointOptions& options = r.plan.options;
     std::vector<std::string> warnings = system.notes;
     for (const std::string& warning :
-         {transient_warning(system.parameters, options.transient_cycles), scale_warning(r)})
+         {system.parameters.load ? std::string()
+                                 : transient_warning(system.parameters, options.transient_cycles),
+          scale_warning(r)})
         if (!warning.empty()) warnings.push_back(warning);
     return {
         {"type", "start"},

@@ -20,6 +20,10 @@ SweepSystems::SweepSystems(
         columns_.push_back({system_number(axis.parameter), std::move(axis.values)});
 }
 
+bool SweepSystems::has_load() const {
+    return std::ranges::any_of(bases_, [](const SystemFields& s) { return s.forcing != nullptr; });
+}
+
 SystemFields SweepSystems::fields_at(const Place& place) const {
     const Start& start = starts_[place.start];
     SystemFields fields = bases_[start.base];
@@ -40,13 +44,17 @@ std::optional<PointSystem> SweepSystems::at_value(double value) const {
 }
 
 std::optional<PointSystem> SweepSystems::system_of(const SystemFields& fields) const {
-    // f can be omitted only if F = 0.
-    if (fields.is_in_si() && !fields.is_reduced() && !fields.f && fields.F != 0.0)
+    // f can be omitted only without forcing.
+    if (fields.is_in_si() && !fields.is_reduced() && !fields.f && fields.is_forced())
         return std::nullopt;
-    const ResolvedSystem system = resolve(fields);
-    const State start = start_of(fields, system);
-    if (!validate(system.parameters, start).empty()) return std::nullopt;
-    return PointSystem{system.parameters, start, max_impacts_};
+    try {
+        const ResolvedSystem system = resolve(fields);
+        const State start = start_of(fields, system);
+        if (!validate(system.parameters, start).empty()) return std::nullopt;
+        return PointSystem{system.parameters, start, max_impacts_};
+    } catch (const Problem&) {  // no valid load
+        return std::nullopt;
+    }
 }
 
 std::optional<SiParameters> SweepSystems::si_at(const Place& place) const {
@@ -327,6 +335,23 @@ void read_indices(SweepRequest& r, const Json& given, std::vector<FieldError>& e
              "the sweep has " + std::to_string(all) + " points, numbered from 0"});
 }
 
+/// What needs the period of a forcing, or a steady state, is refused with a load.
+void check_loaded(const SweepRequest& r, const Json& given, std::vector<FieldError>& errors) {
+    if (!r.systems->has_load()) return;
+    const SweepPlan& plan = r.plan;
+    const std::string reason = " needs a harmonic forcing: each point begins its load at tau = 0";
+    if (plan.default_set)
+        errors.push_back(
+            {"/starts", given["starts"], nullptr, "the default set of starts" + reason});
+    if (plan.carry != Carry::none)
+        errors.push_back(
+            {"/carry_state", given["carry_state"], Json::array({"none"}), "carry_state" + reason});
+    if (plan.options.section == SectionKind::stroboscopic)
+        errors.push_back(
+            {"/section", given["section"], Json::array({"none", "impact"}),
+             "a stroboscopic section" + reason});
+}
+
 void refuse_any(std::vector<FieldError>& errors) {
     if (!errors.empty()) refuse(std::move(errors));
 }
@@ -391,6 +416,7 @@ SweepRequest read_grid(const Json& given, std::size_t starts, std::size_t most_p
     read_indices(r, given, errors);
     refuse_any(errors);
     r.systems = systems_of(r);
+    check_loaded(r, given, errors);
     check_systems(r, errors);
     refuse_any(errors);
     return r;

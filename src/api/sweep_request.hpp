@@ -33,6 +33,7 @@ public:
     std::optional<PointSystem> at(const Place& place) const;
     /// The system of the first start with another value on the first axis, if there is one.
     std::optional<PointSystem> at_value(double value) const;
+    bool has_load() const;
     /// The system in SI if its fields are.
     std::optional<SiParameters> si_at(const Place& place) const;
 

@@ -4,7 +4,6 @@
 
 #include "api/properties.hpp"
 #include "api/schema/field.hpp"
-#include "core/motion/load.hpp"
 
 namespace vines::api {
 
@@ -39,7 +38,8 @@ std::vector<std::string> sources_of(const std::string& name, const Json& fields)
 void check_si_is_whole(const MergedFields& l, bool forcing_fitted) {
     std::vector<FieldError> errors;
     const bool loaded = l.fields.contains("forcing"),
-               unforced = loaded || (l.fields.contains("F") && l.fields["F"] == 0);
+               unforced = loaded || l.fields.value("F", 1.0) == 0 ||
+                          l.fields.value("acceleration", 1.0) == 0;
     for (const auto& group : si_groups) {
         if (!present(l.fields, group).empty() || (group[0] == "f" && unforced) ||
             (group[0] == "F" && (forcing_fitted || loaded)))
@@ -48,16 +48,9 @@ void check_si_is_whole(const MergedFields& l, bool forcing_fitted) {
             {"/" + group[0], nullptr, nullptr,
              group[0] + (group.size() > 1 ? " (or " + group[1] + ")" : "") +
                  " is missing: a system in SI needs m1, c1 or damping_ratio, k1 or f0, m2 or "
-                 "mass_ratio, F and f, or a preset for the rest"});
+                 "mass_ratio, F or acceleration, and f, or a preset for the rest"});
     }
     if (!errors.empty()) refuse(std::move(errors));
-}
-
-/// Index of the first number of a list that is not above its predecessor; the length if all are.
-std::size_t first_not_ascending(const Json& list) {
-    std::size_t i = 1;
-    while (i < list.size() && list[i].get<double>() > list[i - 1].get<double>()) ++i;
-    return i;
 }
 
 /// Errors of a table of R.
@@ -153,7 +146,8 @@ std::map<std::string, std::string> origins_of(const MergedFields& l, const Syste
     for (const auto& group : si_groups) {
         const bool other = group.size() > 1 && l.fields.contains(group[1]);
         origin[group[0]] =
-            other
+            other && group[0] == "F" ? "follows from acceleration, f"
+            : other
                 ? "follows from " + group[1] + ", m1" +
                       (group[0] == "c1" ? ", " + std::string(l.fields.contains("f0") ? "f0" : "k1")
                                         : "")
@@ -205,6 +199,12 @@ std::vector<std::string> notes_on(const MergedFields& l, const System& s) {
 
 }  // namespace
 
+std::size_t first_not_ascending(const Json& list) {
+    std::size_t i = 1;
+    while (i < list.size() && list[i].get<double>() > list[i - 1].get<double>()) ++i;
+    return i;
+}
+
 std::vector<FieldError> field_errors(const std::vector<Fault>& faults, const MergedFields& l) {
     std::vector<FieldError> errors;
     for (const Fault& f : faults) {
@@ -224,81 +224,25 @@ std::vector<FieldError> field_errors(const std::vector<Fault>& faults, const Mer
     return errors;
 }
 
-namespace {
+namespace {}  // namespace
 
-constexpr std::size_t most_samples = 200000;
-
-/// The recorded load; problem 422 for one that is invalid.
-std::shared_ptr<const Load> read_load(const MergedFields& l, const SiParameters& si) {
-    const Json& given = l.fields["forcing"];
-    std::vector<FieldError> errors;
-    const auto fail = [&](const std::string& where, const Json& value, const Json& range,
-                          const std::string& detail) {
-        errors.push_back({"/forcing" + where, value, range, "forcing " + detail});
-    };
-    const auto columns = present(given, {"acceleration_m_s2", "displacement_m", "force_N"});
-    if (!given.contains("time_s")) fail("/time_s", nullptr, nullptr, "needs time_s");
-    if (columns.size() != 1)
-        fail("", nullptr, nullptr, "needs one of acceleration_m_s2, displacement_m and force_N");
-    if (!errors.empty()) refuse(std::move(errors));
-    const Json &time = given["time_s"], &samples = given[columns[0]];
-    if (time.size() < 2 || time.size() > most_samples)
-        fail(
-            "/time_s", time.size(), Json::array({2, most_samples}),
-            "needs at least two samples and at most " + std::to_string(most_samples));
-    if (samples.size() != time.size())
-        fail(
-            "/" + columns[0], samples.size(), Json::array({time.size(), time.size()}),
-            "needs one value for each time");
-    auto tau = time.get<std::vector<double>>(), values = samples.get<std::vector<double>>();
-    const double omega0 = si.omega0(), begin = tau.empty() ? 0 : tau[0],
-                 unit = columns[0] == "acceleration_m_s2" ? omega0 * omega0
-                        : columns[0] == "force_N"         ? si.k1
-                                                          : 1;
-    if (!errors.empty()) refuse(std::move(errors));
-    if (const std::size_t wrong = first_not_ascending(time); wrong < time.size())
-        fail("/time_s/" + std::to_string(wrong), time[wrong], nullptr, "needs ascending times");
-    if (!errors.empty()) refuse(std::move(errors));
-    for (double& t : tau) t = (t - begin) * omega0;
-    for (double& value : values) value /= unit;
-    const LoadKind kind = columns[0] == "acceleration_m_s2" ? LoadKind::base_acceleration
-                          : columns[0] == "force_N"         ? LoadKind::force
-                                                            : LoadKind::base_displacement;
-    return std::make_shared<const Load>(kind, tau, values);
-}
-
-/// A base that ends this many times b away has probably an offset in its acceleration.
-constexpr double far_away = 1000;
-
-void apply_load(const MergedFields& l, System& system) {
-    if (!system.si)
+System read_system(const MergedFields& l, bool forcing_fitted) {
+    const bool si = !present(l.fields, si_names).empty();
+    check_laws(l, si);
+    if (l.has("forcing") && !si)
         refuse(
             {{"/forcing", nullptr, nullptr,
               "forcing is in SI and needs a system in SI (m1, k1 or f0, ...)"}});
-    Parameters& p = system.parameters;
-    p.load = read_load(l, *system.si);
-    p.G = system.si->F = 0;
-    p.Omega = 1;
-    system.si->f = system.si->f0();
-    for (const char* name : {"G", "Omega", "F", "f"}) system.origin[name] = "replaced by forcing";
-    const double far = p.load->largest_base_displacement();
-    if (far > far_away * p.b)
-        system.notes.push_back(
-            "the base moves as far as " + Json(far).dump() +
-            " m, more than 1000 b: is there an offset in its acceleration?");
-}
-
-}  // namespace
-
-System read_system(const MergedFields& l, bool forcing_fitted) {
-    check_laws(l, !present(l.fields, si_names).empty());
     const SystemFields fields = system_fields(l.fields);
     if (fields.is_in_si() && !fields.is_reduced()) check_si_is_whole(l, forcing_fitted);
     const ResolvedSystem resolved = resolve(fields);
-    System system{resolved.parameters, resolved.si, {}, {}};
+    System system;
+    system.parameters = resolved.parameters, system.si = resolved.si;
     system.origin = origins_of(l, system);
     system.notes = notes_on(l, system);
-    if (l.fields.contains("forcing")) apply_load(l, system);
+    if (!system.parameters.load) return system;
+    system.load_kind = l.fields["forcing"].value("kind", "record");
+    for (const char* name : {"G", "Omega", "F", "f"}) system.origin[name] = "replaced by forcing";
     return system;
 }
 

@@ -29,6 +29,7 @@ const std::map<std::string, SystemNumber> numbers = {
     {"mass_ratio", &S::mass_ratio},
     {"F", &S::F},
     {"f", &S::f},
+    {"acceleration", &S::acceleration},
     {"gravity", &S::gravity},
     {"inclination", &S::inclination},
     {"friction", &S::friction},
@@ -91,6 +92,7 @@ SystemFields system_fields(const Json& fields) {
     s.restitution = restitution_field(fields, "restitution");
     s.restitution_plus = restitution_field(fields, "restitution_plus");
     s.restitution_minus = restitution_field(fields, "restitution_minus");
+    if (fields.contains("forcing")) s.forcing = std::make_shared<ForcingField>(fields["forcing"]);
     if (fields.contains("damping"))
         s.damping = enum_value<Damping>(fields["damping"].get<std::string>());
     return s;
@@ -103,9 +105,20 @@ SiParameters si_of(const SystemFields& s) {
     si.k1 = s.f0 ? si.m1 * omega0 * omega0 : s.k1.value_or(si.k1);
     si.m2 = s.mass_ratio ? *s.mass_ratio * si.m1 : s.m2.value_or(si.m2);
     si.c1 = s.damping_ratio ? 2 * *s.damping_ratio * si.m1 * si.omega0() : s.c1.value_or(si.c1);
-    si.F = s.F.value_or(Parameters{}.G * si.epsilon());
     si.f = s.f.value_or(si.f0());
+    const double omega = 2 * std::numbers::pi * si.f;
+    si.F = s.acceleration ? *s.acceleration / (omega * omega)
+                          : s.F.value_or(Parameters{}.G * si.epsilon());
     return si;
+}
+
+std::shared_ptr<const Load> ForcingField::load(const SiParameters& si) const {
+    const std::lock_guard lock(mutex_);
+    if (!last_ || omega0_ != si.omega0() || k1_ != si.k1) {
+        last_ = read_load(given_, si);
+        omega0_ = si.omega0(), k1_ = si.k1;
+    }
+    return last_;
 }
 
 ResolvedSystem resolve(const SystemFields& s) {
@@ -131,6 +144,12 @@ ResolvedSystem resolve(const SystemFields& s) {
     p.R_minus = s.R_minus.value_or(R);
     p.damping = s.damping;
     resolve_laws(s, system);
+    if (s.forcing && system.si) {
+        p.load = s.forcing->load(*system.si);
+        p.G = system.si->F = 0;
+        p.Omega = 1;
+        system.si->f = system.si->f0();
+    }
     return system;
 }
 

@@ -13,9 +13,10 @@ Reference read_reference(const std::string& name) {
     std::ifstream file(REFERENCE_DIRECTORY + name + ".txt");
     if (!file) throw std::runtime_error("no reference " + name);
     Reference r;
-    r.parameters = table1(
-        std::stod(name.substr(name.find("_b") + 2)),
-        name[0] == 'c' ? Damping::closed_form : Damping::equation_of_motion);
+    if (const std::size_t b = name.find("_b"); b != std::string::npos)
+        r.parameters = table1(
+            std::stod(name.substr(b + 2)),
+            name[0] == 'c' ? Damping::closed_form : Damping::equation_of_motion);
     for (std::string line; std::getline(file, line);) {
         std::istringstream in(line);
         if (std::isdigit(static_cast<unsigned char>(line[0]))) {

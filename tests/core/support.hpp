@@ -23,7 +23,7 @@ struct ReferenceStick {
 };
 
 /// One file of reference/: a trajectory in 250-digit arithmetic from Table 1's initial state to
-/// tau = 1709.
+/// tau = 1709, or law_*: one of laws.hpp, which has its parameters, in 60 digits.
 struct Reference {
     Parameters parameters;
     std::vector<ReferenceImpact> impacts;

@@ -15,6 +15,7 @@ const machine = {
   b: 0.03,
 };
 const platform = {...machine, f: 14};
+const {F: _, ...unforced} = machine;
 const all = [
   "series",
   "impacts",
@@ -66,6 +67,29 @@ const runs = [
     tau_end: 9000,
   }),
   simulate("in SI", {...platform, tau_end: 1500, include: all, max_points: 400}),
+  ...["shock", "chirp", "vertical", "friction"].map((preset) =>
+    simulate(`preset ${preset}`, {preset, include: all, max_points: 300}),
+  ),
+  simulate("a record, friction and R of the speed", {
+    ...unforced,
+    inclination: 0.05,
+    mu: 0.02,
+    restitution: {speed_m_s: [0, 0.2], R: [0.8, 0.5]},
+    forcing: {time_s: [0, 0.1, 0.2, 0.3, 3], acceleration_m_s2: [0, 60, -60, 0, 0]},
+    include: all,
+    max_points: 300,
+  }),
+  simulate("noise", {
+    ...unforced,
+    forcing: {kind: "noise", rms_m_s2: 2, f_low: 5, f_high: 25, duration_s: 10, seed: 3},
+    include: ["impacts", "energy"],
+  }),
+  simulate("harmonics", {
+    ...unforced,
+    forcing: {kind: "harmonics", f: [13, 14, 29], F: [2e-4, 3e-4, 1e-5], phase: [0, 1, 2]},
+    include: ["impacts", "energy"],
+    tau_end: 200,
+  }),
   simulate("in SI over a preset", {
     preset: "fig20",
     f: 8.2,

@@ -48,22 +48,50 @@ seed: seed of a random direction in (x', x, y', y), the same on every computer; 
 size: Euclidean length of the random difference; default: none; 1e-18 to 1000
 """
 
-RecordedForcing = TypedDict(
-    "RecordedForcing",
+Forcing = TypedDict(
+    "Forcing",
     {
+        "kind": Literal["half_sine", "chirp", "noise", "harmonics"],
         "time_s": Iterable[float],
-        "acceleration_m_s2": Iterable[float],
-        "displacement_m": Iterable[float],
-        "force_N": Iterable[float],
+        "acceleration_m_s2": Iterable[float] | float,
+        "displacement_m": Iterable[float] | float,
+        "force_N": Iterable[float] | float,
+        "duration_s": float,
+        "f_from": float,
+        "f_to": float,
+        "rate": Literal["linear", "logarithmic"],
+        "phase": Iterable[float] | float,
+        "rms_m_s2": float,
+        "f_low": float,
+        "f_high": float,
+        "seed": int,
+        "f": Iterable[float],
+        "F": Iterable[float],
     },
     total=False,
 )
-RecordedForcing.__doc__ = """Keys of the object:
+Forcing.__doc__ = """Keys of the object:
 
+kind: half_sine, of half a period: acceleration_m_s2, displacement_m or force_N as a number,
+    and duration_s; chirp: the same, f_from, f_to, rate, phase; noise of an acceleration,
+    normally distributed: rms_m_s2, f_low, f_high, duration_s, seed; harmonics, the sum of F
+    sin(2 pi f t + phase): f, F, phase; default: none: a record
 time_s: ascending times; the first one is tau = 0 (s); default: none
-acceleration_m_s2: acceleration of the base, which starts at rest (m/s^2); default: none
-displacement_m: displacement of the base (m); default: none
-force_N: force on m1 (N); default: none
+acceleration_m_s2: acceleration of the base, which starts at rest: at each time, or the
+    amplitude (m/s^2); default: none
+displacement_m: displacement of the base: at each time, or the amplitude (m); default: none
+force_N: force on m1: at each time, or the amplitude (N); default: none
+duration_s: duration of half_sine, chirp or noise (s); default: none; 1e-09 to 1e+09
+f_from: frequency at the beginning of a chirp (Hz); default: none; 1e-09 to 1e+09
+f_to: frequency at its end (Hz); default: none; 1e-09 to 1e+09
+rate: growth of the frequency of a chirp; default: "linear"
+phase: phase of a chirp at its beginning, or of each of harmonics (rad); default: none
+rms_m_s2: root mean square of noise (m/s^2); default: none; 0 to 1e+09
+f_low: lowest frequency of noise (Hz); default: none; 1e-09 to 1e+09
+f_high: highest frequency of noise (Hz); default: none; 1e-09 to 1e+09
+seed: seed of noise, the same on every computer; 0 to 9.0072e+15; default: 1
+f: frequencies of harmonics (Hz); default: none
+F: amplitudes of the base at these frequencies (m); default: none
 """
 
 RestitutionTable = TypedDict(
@@ -121,6 +149,7 @@ SweepBase = TypedDict(
         "mass_ratio": float,
         "m2": float,
         "F": float,
+        "acceleration": float,
         "f": float,
         "gravity": float,
         "inclination": float,
@@ -129,6 +158,7 @@ SweepBase = TypedDict(
         "restitution": RestitutionTable,
         "restitution_plus": RestitutionTable,
         "restitution_minus": RestitutionTable,
+        "forcing": Forcing,
         "x0": float,
         "x_dot0": float,
         "x_velocity0": float,
@@ -178,6 +208,8 @@ m2: mass of the ball (kg, m2); default: none: give all SI fields, or a preset fo
     1e-12 to 1e+09
 F: amplitude of the base, which moves by F sin(2 pi f t) (m, F); default: none: give all SI
     fields, or a preset for the rest; 0 to 1000
+acceleration: amplitude of the base's acceleration, instead of F (m/s^2); default: from F; 0
+    to 1e+09
 f: forcing frequency (Hz, f); default: none: give all SI fields, or a preset for the rest;
     1e-09 to 1e+09
 gravity: acceleration of the free ball along its track, g sin(inclination)/omega0^2,
@@ -193,6 +225,9 @@ restitution: R of both walls as a function of the speed: {speed or speed_m_s, R}
     between the points, constant outside; instead of R; default: none: a constant R
 restitution_plus: the same for the wall at x - y = +b; default: none: a constant R
 restitution_minus: the same for the wall at x - y = -b; default: none: a constant R
+forcing: load instead of F and f, for a system in SI: a record, time_s and one of
+    acceleration_m_s2, displacement_m and force_N, linear between the samples; or a formula,
+    kind; default: none: F and f
 x0: displacement of the linear oscillator at tau = 0 (m, x(0)); -1000 to 1000; default: 0
 x_dot0: velocity of the linear oscillator at tau = 0 (m per unit of tau, x'(0)); -1000 to
     1000; default: 0
@@ -297,6 +332,8 @@ class SimulateFields(TypedDict, total=False):
         1e-12 to 1e+09
     F: amplitude of the base, which moves by F sin(2 pi f t) (m, F); default: none: give all SI
         fields, or a preset for the rest; 0 to 1000
+    acceleration: amplitude of the base's acceleration, instead of F (m/s^2); default: from F; 0
+        to 1e+09
     f: forcing frequency (Hz, f); default: none: give all SI fields, or a preset for the rest;
         1e-09 to 1e+09
     gravity: acceleration of the free ball along its track, g sin(inclination)/omega0^2,
@@ -312,8 +349,9 @@ class SimulateFields(TypedDict, total=False):
         between the points, constant outside; instead of R; default: none: a constant R
     restitution_plus: the same for the wall at x - y = +b; default: none: a constant R
     restitution_minus: the same for the wall at x - y = -b; default: none: a constant R
-    forcing: recorded load instead of F and f, for a system in SI: time_s and one of the others,
-        linear between the samples; only in a body; default: none: F and f
+    forcing: load instead of F and f, for a system in SI: a record, time_s and one of
+        acceleration_m_s2, displacement_m and force_N, linear between the samples; or a formula,
+        kind; default: none: F and f
     x0: displacement of the linear oscillator at tau = 0 (m, x(0)); -1000 to 1000; default: 0
     x_dot0: velocity of the linear oscillator at tau = 0 (m per unit of tau, x'(0)); -1000 to
         1000; default: 0
@@ -373,6 +411,7 @@ class SimulateFields(TypedDict, total=False):
     mass_ratio: float
     m2: float
     F: float
+    acceleration: float
     f: float
     gravity: float
     inclination: float
@@ -381,7 +420,7 @@ class SimulateFields(TypedDict, total=False):
     restitution: RestitutionTable
     restitution_plus: RestitutionTable
     restitution_minus: RestitutionTable
-    forcing: RecordedForcing
+    forcing: Forcing
     x0: float
     x_dot0: float
     x_velocity0: float
@@ -609,6 +648,8 @@ class IdentifyFields(TypedDict, total=False):
         1e-12 to 1e+09
     F: amplitude of the base, which moves by F sin(2 pi f t); fitted if there is a record (m,
         F); default: none: give all SI fields, or a preset for the rest; 0 to 1000
+    acceleration: amplitude of the base's acceleration, instead of F (m/s^2); default: from F; 0
+        to 1e+09
     f: forcing frequency (Hz, f); default: none: give all SI fields, or a preset for the rest;
         1e-09 to 1e+09
     exponents: estimators of the Lyapunov exponents: qr (Benettin), eigenvalues (33),
@@ -679,6 +720,7 @@ class IdentifyFields(TypedDict, total=False):
     mass_ratio: float
     m2: float
     F: float
+    acceleration: float
     f: float
     exponents: Iterable[Literal["qr", "eigenvalues", "raw_product"]]
     max_points: int

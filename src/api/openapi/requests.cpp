@@ -19,7 +19,9 @@ Json value_schema(const Field& f) {
         case FieldType::interval: return interval();
         case FieldType::intervals: return list_of(interval());
         case FieldType::integers: return list_of(whole());
-        case FieldType::numbers: return numbers();
+        case FieldType::numbers:
+            if (!f.range) return numbers();
+            return {{"anyOf", {numbers(), number()}}};
         case FieldType::object:
             return !f.fields.empty() ? request_of(f.fields)
                                      : reference(f.name == "axis" ? "Axis" : "SweepBase");
@@ -42,7 +44,9 @@ std::string description_of(const Field& f) {
 Json schema_of(const Field& f) {
     Json schema = value_schema(f);
     if (f.range) {
-        Json& limited = f.type == FieldType::interval ? schema["items"] : schema;
+        Json& limited = schema.contains("anyOf")           ? schema["anyOf"][1]
+                        : f.type == FieldType::interval ? schema["items"]
+                                                        : schema;
         limited["minimum"] = f.range->minimum;
         limited["maximum"] = f.range->maximum;
     }
@@ -77,7 +81,8 @@ void add_query(
         }
         Json parameter = {
             {"name", prefix + f.name}, {"in", "query"}, {"description", std::move(description)}};
-        if (schema["type"] == "array") parameter["explode"] = false;  // separated by commas
+        if (f.type == FieldType::numbers || schema["type"] == "array")
+            parameter["explode"] = false;  // separated by commas
         parameter["schema"] = std::move(schema);
         if (example.contains(prefix + f.name)) parameter["example"] = example[prefix + f.name];
         list.push_back(std::move(parameter));

@@ -46,9 +46,9 @@ Json parameters() {
 Json presets_schema() {
     const Json preset = object_of(
         {{"name", text(), "value for the field preset"},
-         {"source", text(), "figure or table of the paper"},
-         {"doi", text(), "DOI of the paper"},
-         {"title", text(), "what the figure or table shows"},
+         {"source", text(), "figure or table of the paper, or machine"},
+         {"doi", or_null(text()), "DOI of the paper; null for a machine"},
+         {"title", text(), "what the figure, table or machine shows"},
          {"note", text(), "remark on how the preset reproduces it; can be empty"},
          {"parameters", reference("SimulateRequest"), "fields that the preset sets"}});
     return object_of(

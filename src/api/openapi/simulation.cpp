@@ -204,7 +204,8 @@ Keys run_keys() {
 void add_simulation(Json& schemas) {
     schemas["Simulation"] = simulation();
     schemas["RunStatus"] = run_status();
-    schemas["Series"] = with_si(table_of(series_columns));
+    schemas["Series"] =
+        with_si(object_of(columns_of(series_columns) + optional(columns_of(relative_columns))));
     schemas["Impacts"] = with_si(table_of(impact_columns));
     schemas["Sticking"] = with_si(table_of(sticking_columns));
     schemas["Touches"] = with_si(table_of(touch_columns));

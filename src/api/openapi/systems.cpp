@@ -12,9 +12,13 @@ Keys system_keys() {
                optional(
                    {"forcing",
                     object_of(
-                        {{"samples", whole(), "number of samples"},
-                         {"length", number(), "in tau"}}),
-                    "recorded load, if it replaces F and f"}),
+                        {{"kind", one_of({"record", "half_sine", "chirp", "noise", "harmonics"}),
+                          "of the load"},
+                         {"length", or_null(number()), "in tau; null for harmonics"},
+                         {"sampling_error", number(),
+                          "bound of the difference between the motion of the base and its formula, "
+                          "m; 0 if they agree to rounding"}}),
+                    "load, if it replaces F and f"}),
                optional(
                    {"restitution_plus", reference("RestitutionTable"),
                     "R of the wall at x - y = b as a function of the speed, if it is not "

@@ -146,6 +146,7 @@ void check_field(const Checked& c, const Json& value) {
                 c, value, "whole numbers", "whole numbers >= 0",
                 [](const Json& entry) { return entry.is_number_integer() && entry >= 0; });
         case FieldType::numbers:
+            if (c.field.range && value.is_number()) return check_number(c, value);
             return check_list(c, value, "numbers", "numbers", [](const Json& entry) {
                 return entry.is_number();
             });

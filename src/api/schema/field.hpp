@@ -20,7 +20,8 @@ enum class FieldType {
     interval,   ///< [from, to] (in a query: separated by a comma)
     intervals,  ///< an array of intervals (in a query: separated by semicolons)
     integers,   ///< an array of whole numbers
-    numbers,    ///< an array of numbers (in a query: separated by commas)
+    numbers,    ///< an array of numbers (in a query: separated by commas); with a range also one
+                ///< number in its place
     object,     ///< an object with sub-fields (in a query: name.field for each)
     objects     ///< an array of objects
 };

@@ -26,7 +26,8 @@ Range core_range(const std::string& name) {
 // Wider than any real system: these ranges only prevent overflow and division by zero. The core
 // checks the reduced parameters that result.
 constexpr Range any_mass{1e-9, 1e9}, any_absorber_mass{1e-12, 1e9}, any_frequency{1e-9, 1e9},
-    any_stiffness{1e-9, 1e15}, any_damping{0, 1e12}, any_amplitude{0, 1e3}, any_velocity{-1e9, 1e9};
+    any_stiffness{1e-9, 1e15}, any_damping{0, 1e12}, any_amplitude{0, 1e3},
+    any_acceleration{0, 1e9}, any_velocity{-1e9, 1e9};
 
 const char* const whole = "none: give all SI fields, or a preset for the rest";
 const char* const from_si = "from the SI fields if any is given";
@@ -115,6 +116,9 @@ FieldTable si_rows() {
         number(
             "F", "m", "F", "amplitude of the base, which moves by F sin(2 pi f t)", nullptr, whole,
             any_amplitude),
+        number(
+            "acceleration", "m/s^2", "", "amplitude of the base's acceleration, instead of F",
+            nullptr, "from F", any_acceleration),
         number("f", "Hz", "f", "forcing frequency", nullptr, whole, any_frequency),
     };
 }
@@ -162,26 +166,63 @@ FieldTable law_rows() {
     };
 }
 
+// NOLINTNEXTLINE(readability-function-size): a table
 FieldTable load_rows() {
-    const auto list = [](const char* name, const char* unit, const char* description) {
+    // With a range: a number for a formula.
+    const auto list = [](const char* name, const char* unit, const char* description,
+                         std::optional<Range> range = {}) {
         return Field{
             .name = name,
             .type = FieldType::numbers,
             .unit = unit,
             .description = description,
-            .fallback_note = "none"};
+            .fallback_note = "none",
+            .range = range};
+    };
+    const auto frequency = [](const char* name, const char* description) {
+        return number(name, "Hz", "", description, nullptr, "none", any_frequency);
+    };
+    constexpr Range any{-1e9, 1e9};
+    const FieldTable rows = {
+        choice(
+            "kind",
+            "half_sine, of half a period: acceleration_m_s2, displacement_m or force_N as a "
+            "number, and duration_s; chirp: the same, f_from, f_to, rate, phase; noise of an "
+            "acceleration, normally distributed: rms_m_s2, f_low, f_high, duration_s, seed; "
+            "harmonics, the sum of F sin(2 pi f t + phase): f, F, phase",
+            {"half_sine", "chirp", "noise", "harmonics"}, nullptr, "none: a record"),
+        list("time_s", "s", "ascending times; the first one is tau = 0"),
+        list(
+            "acceleration_m_s2", "m/s^2",
+            "acceleration of the base, which starts at rest: at each time, or the amplitude", any),
+        list(
+            "displacement_m", "m", "displacement of the base: at each time, or the amplitude", any),
+        list("force_N", "N", "force on m1: at each time, or the amplitude", any),
+        number(
+            "duration_s", "s", "", "duration of half_sine, chirp or noise", nullptr, "none",
+            Range{1e-9, 1e9}),
+        frequency("f_from", "frequency at the beginning of a chirp"),
+        frequency("f_to", "frequency at its end"),
+        choice("rate", "growth of the frequency of a chirp", {"linear", "logarithmic"}, "linear"),
+        list(
+            "phase", "rad", "phase of a chirp at its beginning, or of each of harmonics",
+            Range{-1e3, 1e3}),
+        number(
+            "rms_m_s2", "m/s^2", "", "root mean square of noise", nullptr, "none", Range{0, 1e9}),
+        frequency("f_low", "lowest frequency of noise"),
+        frequency("f_high", "highest frequency of noise"),
+        integer("seed", "seed of noise, the same on every computer", {0, 9007199254740992}, 1),
+        list("f", "Hz", "frequencies of harmonics"),
+        list("F", "m", "amplitudes of the base at these frequencies"),
     };
     return {
         {.name = "forcing",
          .type = FieldType::object,
-         .description = "recorded load instead of F and f, for a system in SI: time_s and one of "
-                        "the others, linear between the samples; only in a body",
+         .description = "load instead of F and f, for a system in SI: a record, time_s and one of "
+                        "acceleration_m_s2, displacement_m and force_N, linear between the "
+                        "samples; or a formula, kind",
          .fallback_note = "none: F and f",
-         .fields = {
-             list("time_s", "s", "ascending times; the first one is tau = 0"),
-             list("acceleration_m_s2", "m/s^2", "acceleration of the base, which starts at rest"),
-             list("displacement_m", "m", "displacement of the base"),
-             list("force_N", "N", "force on m1")}}};
+         .fields = rows}};
 }
 
 FieldTable start_rows() {

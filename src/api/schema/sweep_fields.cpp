@@ -107,7 +107,7 @@ const FieldTable& sweep_fields() {
 
 const FieldTable& sweep_base_fields() {
     static const FieldTable table = simulate_fields_where([](const Field& f) {
-        return is_of_system(f) || f.group == "laws" || f.group == "start" ||
+        return is_of_system(f) || f.group == "laws" || f.group == "load" || f.group == "start" ||
                f.name == "max_impacts";
     });
     return table;

@@ -7,6 +7,7 @@
 #include <cassert>
 #include <cmath>
 
+#include "core/motion/load.hpp"
 #include "core/stability/lyapunov.hpp"
 
 namespace vines {
@@ -79,7 +80,7 @@ ExponentOptions window_estimators(const AnalysisRequest& w) {
 
 struct AnalysisObservers {
     explicit AnalysisObservers(const AnalysisRequest& w)
-        : series(series_step(w)),
+        : series(series_step(w), w.parameters.load && w.parameters.load->moves_base()),
           impacts(w.most_listed, w.most_kept),
           section(w.window.from, w.window.to, w.most_points),
           sticks(w.most_listed),

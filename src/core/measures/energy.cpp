@@ -69,7 +69,7 @@ void Energy::add_curved(const Stretch& stretch, double from, double to) {
         0.3626837833783620, 0.3137066458778873, 0.2223810344533745, 0.1012285362903763};
     const double widest = 2 * stretch.flow.cell();
     const auto& loading = stretch.forces->loading;
-    const Cubic base = loading ? loading->base : Cubic{};
+    const Polynomial base = loading ? loading->base : Polynomial{};
     const auto add = [&](double begin, double end) {
         const double half = 0.5 * (end - begin), middle = begin + half;
         for (int k = 0; k < 8; ++k) {
@@ -104,10 +104,8 @@ void Energy::add_curved(const Stretch& stretch, double from, double to) {
         }
         s = next;
     }
-    const Cubic& p = stretch.forces->shift;
     peak_ = peak_beyond(
-        peak_, stretch.flow, stretch.start,
-        {p.c0 - base.c0, p.c1 - base.c1, p.c2 - base.c2, p.c3 - base.c3}, from, to);
+        peak_, stretch.flow, stretch.start, sum(stretch.forces->shift, base, -1), from, to);
     end_ = stretch.at(to);
     duration_ += to - from;
 }
@@ -132,7 +130,7 @@ void CyclePeaks::on_stretch(const Stretch& stretch) {
            tau = stretch.tau + from;
     if (!(duration > 0)) return;
     const Flow& flow = stretch.flow;
-    const Cubic shift = stretch.forces ? stretch.forces->shift : Cubic{};
+    const Polynomial shift = stretch.forces ? stretch.forces->shift : Polynomial{};
     Oscillation o = from > 0 ? flow.after(stretch.start, from) : stretch.start;
     while (true) {
         const double part = std::min(duration, end_ - tau), s = tau - stretch.tau;

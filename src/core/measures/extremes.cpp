@@ -10,15 +10,13 @@ namespace vines {
 
 namespace {
 
-Cubic scaled(const Cubic& c, double by) { return {by * c.c0, by * c.c1, by * c.c2, by * c.c3}; }
-
 /// The same as peak_beyond(), for `size` times the motion from `start` and the polynomial.
 double scaled_peak(
-    double known, double size, const Flow& flow, const Oscillation& start, const Cubic& shift,
+    double known, double size, const Flow& flow, const Oscillation& start, const Polynomial& shift,
     double from, double to) {
     const double least = known / size;
     if (!shift.is_zero())
-        return size * peak_beyond(least, flow, start, scaled(shift, 1 / size), from, to);
+        return size * peak_beyond(least, flow, start, sum({}, shift, 1 / size), from, to);
     return size * peak_beyond(least, flow, from > 0 ? flow.after(start, from) : start, to - from);
 }
 
@@ -47,23 +45,23 @@ void ExtremesRecord::on_stretch(const Stretch& s) {
     const double from = std::max(0.0, tau_start_ - s.tau),
                  to = std::min(s.duration, tau_end_ - s.tau);
     if (!(from < to)) return;
-    const Cubic shift = s.forces ? s.forces->shift : Cubic{};
+    const Polynomial shift = s.forces ? s.forces->shift : Polynomial{};
     const Oscillation& o = s.start;
     // x''/-Omega^2 follows the same equation as x.
     const double Omega = s.flow.coefficients()[3], size = Omega * Omega;
     extremes.x_acceleration = scaled_peak(
         extremes.x_acceleration, size, s.flow,
         {-s.flow.acceleration(o) / size, -s.flow.jerk(o) / size, o.sin_theta, o.cos_theta},
-        {-2 * shift.c2, -6 * shift.c3, 0, 0}, from, to);
+        sum({}, shift.derivative().derivative(), -1), from, to);
     const Relative r = relative_to_base(s.flow);
     const double base_sin = o.sin_theta * cos_phi_ - o.cos_theta * sin_phi_,
                  base_cos = o.cos_theta * cos_phi_ + o.sin_theta * sin_phi_;
-    const Cubic base = s.forces && s.forces->loading ? s.forces->loading->base : Cubic{};
+    const Polynomial base = s.forces && s.forces->loading ? s.forces->loading->base : Polynomial{};
     extremes.x_relative = scaled_peak(
         extremes.x_relative, r.size, s.flow,
         {(o.x - F_ * base_sin) / r.size, (o.x_dot - F_ * Omega * base_cos) / r.size,
          o.sin_theta * r.cos + o.cos_theta * r.sin, o.cos_theta * r.cos - o.sin_theta * r.sin},
-        {shift.c0 - base.c0, shift.c1 - base.c1, shift.c2 - base.c2, shift.c3 - base.c3}, from, to);
+        sum(shift, base, -1), from, to);
 }
 
 void ExtremesRecord::on_impact(const Impact& i) {

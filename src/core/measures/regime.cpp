@@ -341,11 +341,28 @@ void settle_later(
     }
 }
 
+/// True if friction holds a ball with the oscillator's velocity for ever: |x'' - gravity| of the
+/// joint motion stays below `friction`. The energy of the joint motion's deviation u from its
+/// steady one, (u'^2 + stiffness u^2)/2, falls, and |u''| <= stiffness |u| + damping |u'|.
+bool held_for_ever(const Parameters& p, const State& at_whole_cycle) {
+    const auto [k, d, f, Omega] = Flow::sticking(p).coefficients();
+    const double detuning = k - Omega * Omega, D = elementary::hypot(detuning, d * Omega);
+    if (D == 0) return false;
+    const double X = f / D, theta = p.phi() - elementary::atan2(d * Omega, detuning),
+                 u = at_whole_cycle.x - p.epsilon * p.gravity - X * elementary::sin(theta),
+                 u_dot = at_whole_cycle.x_dot - X * Omega * elementary::cos(theta),
+                 deviation = elementary::hypot(u_dot, std::sqrt(k) * u);
+    return X * Omega * Omega + (std::sqrt(k) + d) * deviation + std::abs(p.gravity) < p.friction;
+}
+
 /// End of a run without contacts.
 Regime::Untouched untouched_end(
     const Parameters& p, const State& at_whole_cycle, double tau,
     const std::function<bool()>& stop) {
-    Regime::Untouched end{is_never_touched(p, at_whole_cycle), at_whole_cycle.y_dot, std::nullopt};
+    const bool held = p.friction > 0 && at_whole_cycle.y_dot == at_whole_cycle.x_dot;
+    Regime::Untouched end{
+        is_never_touched(p, at_whole_cycle) || (held && held_for_ever(p, at_whole_cycle)),
+        at_whole_cycle.y_dot, held, std::nullopt};
     if (end.for_ever) return end;
     const Limits limits{.tau_end = longest_flight * p.cycle(), .max_impacts = 1, .stop = stop};
     const Outcome outcome = simulate(p, at_whole_cycle, limits, {});

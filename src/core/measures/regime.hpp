@@ -62,8 +62,10 @@ struct Regime {
     /// Contacts in each cycle, if all cycles have the same number of them.
     std::optional<int> in_every_cycle;
     struct Untouched {
-        bool for_ever;  ///< proven: the ball rests, and the oscillator cannot reach it
-        double y_dot;   ///< velocity of the ball
+        /// Proven: the ball rests and the oscillator cannot reach it, or friction holds it.
+        bool for_ever;
+        double y_dot;                        ///< velocity of the ball
+        bool held;                           ///< friction holds the ball now
         std::optional<double> next_contact;  ///< tau; empty if it is later than 10,000 cycles
     };
     std::optional<Untouched> untouched;  ///< end of a run without contacts in its window

@@ -134,29 +134,27 @@ struct CellSearch {
     const FlightStart& start;
     double b, limit;
     double h;
-    double eta;  // rounding of g on the grid
-    double M2;   // >= |g''|
+    double eta;           // rounding of g on the grid
+    double M2;            // >= |g''|
+    const Polynomial& y;  // the ball's path
     std::vector<GrazingPoint>& grazing;
-
-    /// Coefficients of the ball's path about the left end of cell k.
-    Cubic ball_from(int k) const { return start.ball().about(k * h); }
 
     /// The most common case of rule 4: g' has no zero in cell k, and g ends beyond the wall
     /// ahead.
     std::optional<Contact> straight(int k, const Oscillation& lo, double next_relative) const {
-        const Cubic y = ball_from(k);
-        const double speed = lo.x_dot - y.c1;
+        const Polynomial y_left = y.about(k * h);
+        const double speed = lo.x_dot - y_left[1];
         if (std::abs(speed) <= M2 * h) return {};
         const int wall = speed > 0 ? 1 : -1;
-        const double f0 = wall * (lo.x - y.c0) - b, fh = wall * next_relative - b;
+        const double f0 = wall * (lo.x - y_left[0]) - b, fh = wall * next_relative - b;
         if (f0 >= 0 || fh < 0) return {};
 
         // f = wall g - b in the cell: the quartic about the left end plus a fifth term so that it
         // matches f(h). One Halley step from the root of the chord leaves an error below 1e-6 h, a
         // second one, on the full series, below an ulp.
         const Flow::TaylorSeries c = flow.series(lo);
-        const double f1 = wall * speed, f2 = wall * (c[2] - y.c2), f3 = wall * (c[3] - y.c3),
-                     f4 = wall * c[4];
+        const double f1 = wall * speed, f2 = wall * (c[2] - y_left[2]),
+                     f3 = wall * (c[3] - y_left[3]), f4 = wall * (c[4] - y_left[4]);
         const double inverse_h = 1 / h;
         const double f5 = ((((fh - f0) * inverse_h - f1) * inverse_h - f2) * inverse_h - f3) *
                               inverse_h * inverse_h -
@@ -176,8 +174,8 @@ struct CellSearch {
             if (i == 8) return {};
             v = value_at(c, d);
             step = halley(
-                wall * (v.x - y.at(d)) - b, wall * (v.x_dot - y.rate(d)),
-                wall * (v.half_x_ddot - 0.5 * y.second(d)));
+                wall * (v.x - y_left.at(d)) - b, wall * (v.x_dot - y_left.rate(d)),
+                wall * (v.half_x_ddot - 0.5 * y_left.second(d)));
             if (std::abs(step) <= last_step_in_cell * h) break;
             d = std::clamp(d + step, 0.0, h);
         }
@@ -186,7 +184,7 @@ struct CellSearch {
         Oscillation at = flow.rotated(lo, d);
         at.x = v.x + step * (v.x_dot + step * v.half_x_ddot);
         at.x_dot = v.x_dot + step * 2 * v.half_x_ddot;
-        return Contact{k * h + d, wall, at, at.x_dot - y.rate(d)};
+        return Contact{k * h + d, wall, at, at.x_dot - y_left.rate(d)};
     }
 
     /// The next contact of a chatter. The flight left its wall with relative speed -w, and a = side
@@ -196,16 +194,14 @@ struct CellSearch {
     /// it is the first if the other wall is out of reach.
     std::optional<Contact> chatter(double M3) const {
         const double w = -start.side * start.relative_speed,
-                     a = start.side * (flow.acceleration(start.lo) - 2 * start.y_2);
+                     a = start.side * (flow.acceleration(start.lo) - 2 * y[2]);
         if (!(start.zeros == 1 && a > 0 && 4 * w <= a * h)) return {};
         const double D = 4 * w / a;
         if (M3 * D >= a || D * (w + M2 * D) >= b) return {};
         const Flow::TaylorSeries x = flow.series(start.lo);
         Flow::TaylorSeries phi;
         phi[0] = -w;
-        for (int n = 1; n < Flow::degree; ++n) phi[n] = start.side * x[n + 1];
-        phi[1] -= start.side * start.y_2;
-        phi[2] -= start.side * start.y_3;
+        for (int n = 1; n < Flow::degree; ++n) phi[n] = start.side * (x[n + 1] - y[n + 1]);
         phi[Flow::degree] = 0;
         double d = 2 * w / a, rate = 0;
         for (int i = 0; i < 50; ++i) {
@@ -223,14 +219,14 @@ struct CellSearch {
     std::optional<Contact> in_cell(int k, const Oscillation& lo) const {
         const bool first = k == 0 && start.side != 0;
         const Flow::TaylorSeries x = flow.series(lo);
-        const Cubic y = ball_from(k);
+        const Polynomial y_left = y.about(k * h);
         Flow::TaylorSeries g = x;  // x - y
-        g[2] -= y.c2, g[3] -= y.c3;
+        for (int n = 2; n < y_left.size; ++n) g[n] -= y_left[n];
         std::optional<Contact> found;
         for (int wall : {1, -1}) {
             Flow::TaylorSeries f = wall * g;  // wall (x - y) - b, negative inside the cavity
-            f[0] = first && wall != start.side ? -2 * b : wall * (lo.x - y.c0) - b;
-            f[1] = first ? wall * start.relative_speed : wall * (lo.x_dot - y.c1);
+            f[0] = first && wall != start.side ? -2 * b : wall * (lo.x - y_left[0]) - b;
+            f[1] = first ? wall * start.relative_speed : wall * (lo.x_dot - y_left[1]);
             const int zeros = first && wall == start.side ? start.zeros : 0;
             std::optional<double> tangent;
             const auto d = first_crossing(
@@ -270,13 +266,12 @@ std::optional<Contact> next_contact(
     assert(limit <= flow.reach() && b > 0);
     assert(start.side == 0 || (start.zeros >= 1 && start.zeros <= 3));
     const auto bounds = flow.bounds(start.lo);
-    const Cubic y = start.ball();
+    const Polynomial y = start.ball();
     const double h = flow.cell(), T = std::min(flow.reach(), limit + Flow::block * h),
-                 curved = T * T * (std::abs(y.c2) + T * std::abs(y.c3)),
-                 eta = position_rounding(bounds, std::abs(start.y) + curved, b),
-                 M2 = bounds.x_ddot + 2 * std::abs(y.c2) + 6 * T * std::abs(y.c3),
-                 M3 = bounds.x_dddot + 6 * std::abs(y.c3);
-    const CellSearch search{flow, start, b, limit, h, eta, M2, grazing};
+                 y_2 = y.bound(2, T),
+                 eta = position_rounding(bounds, std::abs(y[0]) + T * T * y_2, b),
+                 M2 = bounds.x_ddot + y_2, M3 = bounds.x_dddot + y.bound(3, T);
+    const CellSearch search{flow, start, b, limit, h, eta, M2, y, grazing};
     const double inside = b - M2 * h * h / 8 - eta;  // rule 1
 
     double relative = start.side != 0 ? start.side * b : start.lo.x - start.y;
@@ -304,8 +299,8 @@ std::optional<Contact> next_contact(
 }
 
 std::optional<double> next_release(
-    const Flow& flow, const Oscillation& start, int side, int zeros, double limit, double pull,
-    double least, double pull_rate) {
+    const Flow& flow, const Oscillation& start, int side, int zeros, double limit,
+    const Polynomial& pull, double least) {
     assert(side != 0 && (zeros == 0 || zeros == 1) && limit <= flow.reach());
     const double h = flow.cell();
     for (int k = 0; k < Flow::cells && k * h < limit; ++k) {
@@ -313,8 +308,9 @@ std::optional<double> next_release(
         // least - side (x'' - pull), negative while the ball is held.
         std::array<double, Flow::degree - 1> f;
         for (int n = 0; n + 2 <= Flow::degree; ++n) f[n] = -side * (n + 1.0) * (n + 2.0) * x[n + 2];
-        f[0] += least + side * (pull + pull_rate * (k * h));
-        f[1] += side * pull_rate;
+        const Polynomial pulls = pull.about(k * h);
+        f[0] += least;
+        for (int n = 0; n < pull.size; ++n) f[static_cast<std::size_t>(n)] += side * pulls[n];
         std::optional<double> tangent;
         if (auto d = first_crossing(f, k == 0 ? zeros : 0, h, 0, tangent))
             return k * h + *d <= limit ? std::optional(k * h + *d) : std::nullopt;
@@ -325,22 +321,22 @@ std::optional<double> next_release(
 std::optional<double> next_equal_velocity(
     const Flow& flow, const FlightStart& start, int direction, int zeros, double limit) {
     assert(direction != 0 && limit <= flow.reach());
-    const Cubic y = start.ball();
-    const double h = flow.cell(), M2 = flow.bounds(start.lo).x_ddot + 2 * std::abs(y.c2) +
-                                       6 * flow.reach() * std::abs(y.c3);
+    const Polynomial y = start.ball();
+    const double h = flow.cell(),
+                 M2 = flow.bounds(start.lo).x_ddot + y.bound(2, std::min(flow.reach(), limit + h));
     for (int k = 0; k < Flow::cells && k * h < limit; ++k) {
         const double speed = k > 0             ? flow.speed_at(start.lo, k) - y.rate(k * h)
                              : start.side != 0 ? start.relative_speed
-                                               : start.lo.x_dot - y.c1;
+                                               : start.lo.x_dot - y[1];
         const int vanishing = k == 0 ? zeros : 0;
         // It cannot fall to zero within the cell.
         if (vanishing == 0 && direction * speed > M2 * h) continue;
         const Flow::TaylorSeries x = flow.series(k == 0 ? start.lo : flow.at(start.lo, k));
         std::array<double, Flow::degree> f;
         for (int n = 0; n < Flow::degree; ++n) f[n] = -direction * (n + 1.0) * x[n + 1];
-        f[0] += direction * y.rate(k * h);
-        f[1] += direction * y.second(k * h);
-        f[2] += direction * 3 * y.c3;
+        const Polynomial y_left = y.about(k * h);
+        for (int n = 1; n < y.size; ++n)
+            f[static_cast<std::size_t>(n) - 1] += direction * n * y_left[n];
         if (k == 0) f[0] = -direction * speed;
         std::optional<double> tangent;
         if (auto d = first_crossing(f, vanishing, h, 0, tangent))

@@ -39,12 +39,20 @@ struct FlightStart {
     double relative_speed = 0;
     /// Derivatives of side g - b that vanish, counting the 0th: 0 if side is 0, otherwise 1 to 3.
     int zeros = 0;
-    /// Coefficients of s^2 and s^3: y + y_dot s + y_2 s^2 + y_3 s^3 is the ball's position minus
-    /// the polynomial that a force adds to the flow's motion (Stretch::shift).
-    double y_2 = 0, y_3 = 0;
+    /// The ball's position minus the polynomial that forces add to the flow's motion
+    /// (Forces::shift) is y + y_dot s + y_2 s^2, minus the terms of `shift` from s^2 on.
+    double y_2 = 0;
+    const Polynomial* shift = nullptr;
 
-    Cubic ball() const { return {y, y_dot, y_2, y_3}; }
-    bool is_straight() const { return y_2 == 0 && y_3 == 0; }
+    Polynomial ball() const {
+        Polynomial p;
+        if (shift) p = sum(p, *shift, -1);
+        p.c[0] = y, p.c[1] = y_dot;
+        if (p.size < 2) p.size = 2;
+        if (y_2 != 0) p.add(2, y_2);
+        return p;
+    }
+    bool is_straight() const { return y_2 == 0 && !shift; }
 };
 
 struct Contact {
@@ -83,11 +91,11 @@ std::optional<Contact> next_contact(
 /// The first s in (0, limit] at which side (x'' - pull) falls to `least`, where x'' is the
 /// acceleration of the joint motion; limit <= flow.reach(). At a wall, `side` presses the ball
 /// against it until then; inside the cavity friction holds the ball up to side (x'' - pull) =
-/// least < 0. pull grows by pull_rate per unit of time. `zeros` is 1 if they are equal at the
-/// start, otherwise 0.
+/// least < 0. `pull` is a function of the time. `zeros` is 1 if they are equal at the start,
+/// otherwise 0.
 std::optional<double> next_release(
-    const Flow& flow, const Oscillation& start, int side, int zeros, double limit, double pull = 0,
-    double least = 0, double pull_rate = 0);
+    const Flow& flow, const Oscillation& start, int side, int zeros, double limit,
+    const Polynomial& pull = {}, double least = 0);
 
 /// The first s in (0, limit] at which direction (x' - y') falls to zero; limit <= flow.reach().
 /// `zeros`: derivatives of x' - y' that vanish at the start, counting the 0th.

@@ -162,7 +162,7 @@ double peak_beyond(double known, const Flow& flow, Oscillation o, double duratio
 }
 
 double peak_beyond(
-    double known, const Flow& flow, const Oscillation& start, const Cubic& shift, double from,
+    double known, const Flow& flow, const Oscillation& start, const Polynomial& shift, double from,
     double to) {
     const auto motion = [&](double s) {
         const Oscillation o = flow.after(start, s);

@@ -12,6 +12,7 @@
 #include <Eigen/Core>
 #include <array>
 #include <cmath>
+#include <initializer_list>
 #include <memory>
 #include <vector>
 
@@ -25,17 +26,73 @@ struct Oscillation {
     double sin_theta, cos_theta;
 };
 
-/// A cubic polynomial of the time s.
-struct Cubic {
-    double c0 = 0, c1 = 0, c2 = 0, c3 = 0;
+/// A polynomial of the time s.
+struct Polynomial {
+    static constexpr int most = 14;  ///< coefficients
+    std::array<double, most> c{};    ///< zero from `size` on
+    int size = 0;
 
-    double at(double s) const { return c0 + s * (c1 + s * (c2 + s * c3)); }
-    double rate(double s) const { return c1 + s * (2 * c2 + s * (3 * c3)); }
-    double second(double s) const { return 2 * c2 + s * (6 * c3); }
+    Polynomial() = default;
+    Polynomial(std::initializer_list<double> coefficients) {
+        for (const double value : coefficients) c[static_cast<std::size_t>(size++)] = value;
+    }
+    double operator[](int n) const { return c[static_cast<std::size_t>(n)]; }
+    /// Adds value s^n.
+    void add(int n, double value) {
+        c[static_cast<std::size_t>(n)] += value;
+        if (size <= n) size = n + 1;
+    }
+
+    double at(double s) const {
+        double sum = 0;
+        for (int n = size - 1; n >= 0; --n) sum = sum * s + (*this)[n];
+        return sum;
+    }
+    double rate(double s) const {
+        double sum = 0;
+        for (int n = size - 1; n >= 1; --n) sum = sum * s + n * (*this)[n];
+        return sum;
+    }
+    double second(double s) const {
+        double sum = 0;
+        for (int n = size - 1; n >= 2; --n) sum = sum * s + n * (n - 1) * (*this)[n];
+        return sum;
+    }
+    Polynomial derivative() const {
+        Polynomial p;
+        for (int n = 1; n < size; ++n) p.add(n - 1, n * (*this)[n]);
+        return p;
+    }
     /// The same polynomial as a function of the time since s.
-    Cubic about(double s) const { return {at(s), rate(s), c2 + 3 * c3 * s, c3}; }
-    bool is_zero() const { return c0 == 0 && c1 == 0 && c2 == 0 && c3 == 0; }
+    Polynomial about(double s) const {
+        Polynomial moved = *this;
+        for (int k = 0; k + 1 < size; ++k)
+            for (int n = size - 2; n >= k; --n)
+                moved.c[static_cast<std::size_t>(n)] += s * moved[n + 1];
+        return moved;
+    }
+    /// Upper bound of |k-th derivative| over 0 <= s <= time.
+    double bound(int k, double time) const {
+        double sum = 0;
+        for (int n = size - 1; n >= k; --n) {
+            double factor = 1;
+            for (int i = 0; i < k; ++i) factor *= n - i;
+            sum = sum * time + factor * std::abs((*this)[n]);
+        }
+        return sum;
+    }
+    bool is_zero() const {
+        for (int n = 0; n < size; ++n)
+            if ((*this)[n] != 0) return false;
+        return true;
+    }
 };
+
+/// one + factor other
+inline Polynomial sum(Polynomial one, const Polynomial& other, double factor = 1) {
+    for (int n = 0; n < other.size; ++n) one.add(n, factor * other[n]);
+    return one;
+}
 
 /// The 2x2 block [a11 a12; a21 a22] of the transfer matrix J (19), in the order (x', x).
 struct Transfer {
@@ -100,11 +157,13 @@ public:
                from(of_cos_.x) * o.cos_theta - (y0 + from(time_) * y_dot);
     }
     /// The same for a curved path of the ball.
-    Block relative_positions(const Oscillation& o, const Cubic& y, int k) const {
-        Block g = relative_positions(o, y.c0, y.c1, k);
-        if (y.c2 == 0 && y.c3 == 0) return g;
+    Block relative_positions(const Oscillation& o, const Polynomial& y, int k) const {
+        const Block g = relative_positions(o, y[0], y[1], k);
+        if (y.size <= 2) return g;
         const auto time = Eigen::Map<const Block>(time_.data() + k);
-        return g - time * time * (y.c2 + time * y.c3);
+        Block curved = Block::Zero();
+        for (int n = y.size - 1; n >= 2; --n) curved = curved * time + y[n];
+        return g - time * time * curved;
     }
     /// The same at the ends of blocks j, j + 1, ... (from 0): at the grid times block (j + 1) h,
     /// block (j + 2) h, ... j <= cells/block.
@@ -228,7 +287,7 @@ double peak_beyond(double known, const Flow& flow, Oscillation start, double dur
 
 /// The same of the motion of a flow plus a polynomial.
 double peak_beyond(
-    double known, const Flow& flow, const Oscillation& start, const Cubic& shift, double from,
+    double known, const Flow& flow, const Oscillation& start, const Polynomial& shift, double from,
     double to);
 
 /// Total variation of x over 0 <= s <= duration, in m.

@@ -1,62 +1,251 @@
 #include "core/motion/load.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <complex>
+#include <random>
 
 namespace vines {
 
+namespace {
+
+/// Length of a piece of a formula in units of 1/Omega, or of tau if Omega < 1: the Taylor
+/// polynomials of force and response, with their 14 coefficients, are exact to 1e-17 of the
+/// amplitude. The last piece is up to half longer.
+constexpr double formula_step = 0.3;
+
+/// Taylor polynomial of amplitude sin(theta): z = exp(i theta) has z' = i theta' z.
+Polynomial sine(double amplitude, const Polynomial& theta) {
+    std::array<std::complex<double>, Polynomial::most> z;
+    z[0] = {elementary::cos(theta[0]), elementary::sin(theta[0])};
+    Polynomial p;
+    for (int n = 0; n < Polynomial::most; ++n) {
+        if (n > 0) {
+            std::complex<double> of_rate = 0;
+            for (int k = 1; k <= n && k < theta.size; ++k)
+                of_rate += k * theta[k] * z[static_cast<std::size_t>(n - k)];
+            z[static_cast<std::size_t>(n)] = {-of_rate.imag() / n, of_rate.real() / n};
+        }
+        p.add(n, amplitude * z[static_cast<std::size_t>(n)].imag());
+    }
+    return p;
+}
+
+/// Displacement of a base from rest at 0.
+Polynomial integrated_twice(const Polynomial& acceleration) {
+    Polynomial x;
+    for (int n = 0; n < acceleration.size && n + 2 < Polynomial::most; ++n)
+        x.add(n + 2, acceleration[n] / ((n + 1) * (n + 2)));
+    return x;
+}
+
+/// A base that is accelerated piece by piece.
+struct BaseMotion {
+    long double x = 0, v = 0;
+
+    /// Its displacement over the next h.
+    Polynomial advance(const Polynomial& acceleration, double h) {
+        Polynomial p = integrated_twice(acceleration);
+        const double by_x = p.at(h), by_v = p.rate(h);
+        p.add(0, static_cast<double>(x));
+        p.add(1, static_cast<double>(v));
+        x += v * h + by_x;
+        v += by_v;
+        return p;
+    }
+    Polynomial coasting() const { return {static_cast<double>(x), static_cast<double>(v)}; }
+};
+
+using Spectrum = std::vector<std::complex<double>>;
+
+/// Sums of c_k exp(2 pi i k n/N) for n = 0 ... N - 1, by Cooley and Tukey; N is a power of two.
+Spectrum transformed(Spectrum c) {
+    const std::size_t N = c.size();
+    for (std::size_t i = 1, j = 0; i < N; ++i) {
+        std::size_t bit = N >> 1;
+        for (; j & bit; bit >>= 1) j ^= bit;
+        j ^= bit;
+        if (i < j) std::swap(c[i], c[j]);
+    }
+    Spectrum roots(N / 2);
+    for (std::size_t k = 0; k < roots.size(); ++k) {
+        const double angle = 2 * std::numbers::pi * static_cast<double>(k) / static_cast<double>(N);
+        roots[k] = {elementary::cos(angle), elementary::sin(angle)};
+    }
+    for (std::size_t half = 1; half < N; half *= 2)
+        for (std::size_t from = 0; from < N; from += 2 * half)
+            for (std::size_t k = 0; k < half; ++k) {
+                const auto odd = c[from + half + k] * roots[k * (N / (2 * half))];
+                c[from + half + k] = c[from + k] - odd;
+                c[from + k] += odd;
+            }
+    return c;
+}
+
+}  // namespace
+
 Load::Load(LoadKind kind, const std::vector<double>& tau, const std::vector<double>& values)
     : kind_(kind),
-      tau_(tau) {
-    long double x = 0, v = 0;  // of the base
-    for (std::size_t i = 0; i < tau.size(); ++i) {
-        const bool last = i + 1 == tau.size();
-        const long double h = last ? 1 : static_cast<long double>(tau[i + 1]) - tau[i],
-                          slope =
-                              last ? 0 : (static_cast<long double>(values[i + 1]) - values[i]) / h,
-                          value = values[i];
-        if (kind != LoadKind::base_acceleration) {
-            const bool zero = last && kind == LoadKind::force;
-            pieces_.push_back({zero ? 0 : values[i], static_cast<double>(slope)});
-            largest_ = std::max(largest_, std::abs(values[i]));
-            continue;
-        }
-        largest_ = std::max(largest_, std::abs(static_cast<double>(x)));
-        if (last) {
-            pieces_.push_back({static_cast<double>(x), static_cast<double>(v)});
-            continue;
-        }
-        pieces_.push_back(
-            {static_cast<double>(x), static_cast<double>(v), 0.5 * values[i],
-             static_cast<double>(slope / 6)});
-        x += h * (v + h * (value / 2 + h * slope / 6));
-        v += h * (value + h * slope / 2);
+      width_(kind == LoadKind::base_acceleration ? 4 : 2) {
+    BaseMotion motion;
+    for (std::size_t i = 0; i + 1 < tau.size(); ++i) {
+        const double h = tau[i + 1] - tau[i];
+        const Polynomial chord{values[i], (values[i + 1] - values[i]) / h};
+        add_piece(tau[i], kind == LoadKind::base_acceleration ? motion.advance(chord, h) : chord);
     }
-    if (kind == LoadKind::force) largest_ = 0;
+    add_piece(
+        tau.back(), kind == LoadKind::base_acceleration ? motion.coasting()
+                    : kind == LoadKind::force           ? Polynomial{0}
+                                                        : Polynomial{values.back()});
+}
+
+Load::Load(std::vector<LoadHarmonic> harmonics)
+    : kind_(LoadKind::base_displacement),
+      harmonics_(std::move(harmonics)) {
+    double fastest = 1;
+    for (const LoadHarmonic& h : harmonics_) fastest = std::max(fastest, h.Omega);
+    harmonic_step_ = formula_step / fastest;
+}
+
+Load::Load(
+    LoadKind kind, double amplitude, double duration,
+    const std::function<Polynomial(double tau)>& theta)
+    : kind_(kind),
+      width_(Polynomial::most) {
+    BaseMotion motion;
+    Polynomial value;
+    for (double tau = 0; tau < duration;) {
+        const Polynomial angle = theta(tau);
+        double next = tau + formula_step / std::max(1.0, std::abs(angle[1]));
+        if (next + 0.5 * (next - tau) > duration) next = duration;
+        value = sine(amplitude, angle);
+        add_piece(
+            tau, kind == LoadKind::base_acceleration ? motion.advance(value, next - tau) : value);
+        if (next == duration) value = {value.at(next - tau)};
+        tau = next;
+    }
+    add_piece(
+        duration, kind == LoadKind::base_acceleration ? motion.coasting()
+                  : kind == LoadKind::force           ? Polynomial{0}
+                                                      : value);
+}
+
+/// The acceleration is the real part of the sum of C_k exp(i w_k tau), w_k = 2 pi k/duration. The
+/// base moves from rest and back to rest if the sum of B_k/w_k is zero, C_k = A_k - i B_k. Between
+/// equidistant times it follows the cubic through both displacements and velocities.
+Load Load::noise(
+    double rms, double Omega_low, double Omega_high, double duration, std::uint64_t seed) {
+    const double w1 = 2 * std::numbers::pi / duration;
+    const auto first =
+                   std::max<std::size_t>(1, static_cast<std::size_t>(std::ceil(Omega_low / w1))),
+               last = static_cast<std::size_t>(std::floor(Omega_high / w1));
+    std::mt19937_64 engine(seed);
+    Spectrum C(last + 1);
+    double drift = 0, weight = 0, square = 0;
+    const auto w = [w1](std::size_t k) { return w1 * static_cast<double>(k); };
+    for (std::size_t k = first; k <= last; ++k) {
+        const double A = standard_normal(engine);
+        C[k] = {A, -standard_normal(engine)};
+        drift += C[k].imag() / w(k), weight += 1 / (w(k) * w(k));
+    }
+    for (std::size_t k = first; k <= last; ++k) {
+        C[k] -= std::complex<double>(0, drift / (weight * w(k)));
+        square += 0.5 * std::norm(C[k]);
+    }
+    std::size_t N = 32;
+    while (N < 32 * last) N *= 2;
+    // Both real signals by one transform: p + i q.
+    Spectrum motion(N), second(N);
+    double place = 0;
+    for (std::size_t k = first; k <= last; ++k) {
+        C[k] *= rms / std::sqrt(square);
+        const std::complex<double> i(0, 1), p = -C[k] / (w(k) * w(k)), q = -i * C[k] / w(k);
+        motion[k] = 0.5 * (p + i * q);
+        motion[N - k] = 0.5 * (std::conj(p) + i * std::conj(q));
+        second[k] = C[k] * (w(k) * w(k));
+        place -= p.real();
+    }
+    motion = transformed(std::move(motion)), second = transformed(std::move(second));
+    Load load(LoadKind::base_acceleration);
+    load.width_ = 4;
+    const double h = duration / static_cast<double>(N);
+    double largest = 0;
+    for (std::size_t n = 0; n < N; ++n) {
+        const auto from = motion[n], to = motion[(n + 1) % N];
+        const double x = place + from.real(), v = from.imag(), mean = (to.real() - from.real()) / h;
+        load.add_piece(
+            h * static_cast<double>(n),
+            {x, v, (3 * mean - 2 * v - to.imag()) / h, (v + to.imag() - 2 * mean) / (h * h)});
+        largest = std::max(largest, std::abs(second[n].real()));
+    }
+    load.add_piece(duration, {place + motion[0].real()});
+    // Ehlich and Zeller's bound of a trigonometric polynomial by its values at N points, and the
+    // error h^4/384 of a cubic.
+    largest /=
+        elementary::cos(std::numbers::pi * static_cast<double>(last) / static_cast<double>(N));
+    load.sampling_error_ = largest * h * h * h * h / 384;
+    return load;
+}
+
+void Load::add_piece(double tau, const Polynomial& piece) {
+    tau_.push_back(tau);
+    pieces_.insert(
+        pieces_.end(), piece.c.begin(), piece.c.begin() + static_cast<std::ptrdiff_t>(width_));
 }
 
 std::size_t Load::interval_at(double tau) const {
+    if (!harmonics_.empty()) return static_cast<std::size_t>(tau / harmonic_step_);
     const auto after = std::ranges::upper_bound(tau_, tau);
     return after == tau_.begin() ? 0 : static_cast<std::size_t>(after - tau_.begin()) - 1;
 }
 
-Cubic Load::base(std::size_t interval, double from) const {
-    return moves_base() ? pieces_[interval].about(from - tau_[interval]) : Cubic{};
+/// The base or the force by the time since `from`.
+Polynomial Load::piece(std::size_t interval, double from) const {
+    Polynomial p;
+    for (const LoadHarmonic& h : harmonics_) {
+        const long double phase = static_cast<long double>(h.Omega) * from + h.phase,
+                          turn = 2 * std::numbers::pi_v<long double>;
+        p =
+            sum(p, sine(
+                       h.amplitude,
+                       {static_cast<double>(phase - turn * std::floor(phase / turn)), h.Omega}));
+    }
+    if (!harmonics_.empty()) return p;
+    for (std::size_t n = 0; n < width_; ++n)
+        if (const double value = pieces_[interval * width_ + n]; value != 0)
+            p.add(static_cast<int>(n), value);
+    return p.about(from - tau_[interval]);
 }
 
-Cubic Load::force(std::size_t interval, double from, double damping) const {
-    const Cubic c = pieces_[interval].about(from - tau_[interval]);
-    if (!moves_base()) return c;
-    return {c.c0 + damping * c.c1, c.c1 + 2 * damping * c.c2, c.c2 + 3 * damping * c.c3, c.c3};
+Polynomial Load::base(std::size_t interval, double from) const {
+    return moves_base() ? piece(interval, from) : Polynomial{};
 }
 
-Cubic particular_solution(const Flow& flow, const Cubic& force) {
+Polynomial Load::force(std::size_t interval, double from, double damping) const {
+    const Polynomial p = piece(interval, from);
+    return moves_base() ? sum(p, p.derivative(), damping) : p;
+}
+
+double Load::largest_base_displacement(double until) const {
+    double largest = 0;
+    for (const LoadHarmonic& h : harmonics_) largest += std::abs(h.amplitude);
+    if (!harmonics_.empty() || !moves_base()) return largest;
+    for (std::size_t i = 0; i < tau_.size() && tau_[i] <= until; ++i)
+        largest = std::max(largest, std::abs(pieces_[i * width_]));
+    return std::max(largest, std::abs(base(interval_at(until), until)[0]));
+}
+
+Polynomial response(const Flow& flow, const Polynomial& force) {
     const double k = flow.coefficients()[0], d = flow.damping();
-    Cubic p;
-    p.c3 = force.c3 / k;
-    p.c2 = (force.c2 - 3 * d * p.c3) / k;
-    p.c1 = (force.c1 - 2 * d * p.c2 - 6 * p.c3) / k;
-    p.c0 = (force.c0 - d * p.c1 - 2 * p.c2) / k;
+    Polynomial p;
+    if (force.size <= 4) {
+        for (int n = force.size - 1; n >= 0; --n)
+            p.add(n, (force[n] - (n + 1) * (d * p[n + 1] + (n + 2) * p[n + 2])) / k);
+        return p;
+    }
+    for (int n = 0; n + 2 < Polynomial::most; ++n)
+        p.add(n + 2, (force[n] - d * (n + 1) * p[n + 1] - k * p[n]) / ((n + 1) * (n + 2)));
     return p;
 }
 

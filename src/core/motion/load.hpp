@@ -1,7 +1,10 @@
-// A recorded load in place of the harmonic forcing: of the base, or of the oscillator itself.
+// A load in place of the harmonic forcing, of the base or of the oscillator itself: a record, or a
+// formula. Its pieces are polynomials of the time.
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
+#include <functional>
 #include <vector>
 
 #include "core/motion/elementary.hpp"
@@ -15,38 +18,71 @@ enum class LoadKind {
     force               ///< on m1, divided by k1, m
 };
 
-/// Samples at ascending times from 0 on, linear in between. After the last one the acceleration or
-/// force is zero; a displacement stays. The motion of the base is a cubic in each interval.
+/// Amplitude sin(Omega tau + phase).
+struct LoadHarmonic {
+    double amplitude, Omega, phase;
+};
+
+/// After its end an acceleration or force is zero; a displacement stays.
 class Load {
 public:
-    /// `tau`: times of the samples; `values`: one for each time. At least two samples.
+    /// Samples at ascending times from 0 on, at least two, linear in between: the motion of the
+    /// base is a cubic in each interval.
     Load(LoadKind kind, const std::vector<double>& tau, const std::vector<double>& values);
+    /// A sum of harmonics without end: the displacement of the base, m.
+    explicit Load(std::vector<LoadHarmonic> harmonics);
+    /// amplitude sin(theta), where theta(tau) is the Taylor polynomial about tau, and its first
+    /// derivative grows or falls from one end of the duration to the other.
+    Load(
+        LoadKind kind, double amplitude, double duration,
+        const std::function<Polynomial(double tau)>& theta);
+    /// Normally distributed acceleration of the base with the frequencies k 2 pi/duration between
+    /// Omega_low and Omega_high, of which there is at least one. The base begins and ends at rest,
+    /// at the same place. `seed`: the same record on every computer.
+    static Load noise(
+        double rms, double Omega_low, double Omega_high, double duration, std::uint64_t seed);
+    /// The largest Omega_high times duration of noise.
+    static constexpr double most_noise_phase = 2 * std::numbers::pi * 8192;
 
     /// The number of the interval that begins at or before tau >= 0.
     std::size_t interval_at(double tau) const;
-    /// Infinity for the last interval, which follows the record.
+    /// Infinity for the last interval, which follows the load's end.
     double end_of(std::size_t interval) const {
+        if (!harmonics_.empty()) return static_cast<double>(interval + 1) * harmonic_step_;
         return interval + 1 < tau_.size() ? tau_[interval + 1] : infinity;
     }
     /// Displacement of the base as a function of the time since `from`; zero for a force.
-    Cubic base(std::size_t interval, double from) const;
+    Polynomial base(std::size_t interval, double from) const;
     /// Right-hand side of x'' + 2 zeta x' + x: base + damping base' (eq. (1), damping = epsilon
     /// lambda), or the force.
-    Cubic force(std::size_t interval, double from, double damping) const;
+    Polynomial force(std::size_t interval, double from, double damping) const;
 
     bool moves_base() const { return kind_ != LoadKind::force; }
-    std::size_t samples() const { return tau_.size(); }
-    double length() const { return tau_.back(); }
-    double largest_base_displacement() const { return largest_; }  ///< at the samples, m
+    double length() const { return tau_.empty() ? infinity : tau_.back(); }
+    /// True if a run is as long as the load by default: not where it has no end, nor after a shock,
+    /// which is shorter than a natural period.
+    bool sets_length() const { return length() < infinity && length() >= 2 * std::numbers::pi; }
+    /// Largest |displacement of the base| at the ends of the pieces up to this time, m.
+    double largest_base_displacement(double until) const;
+    /// Bound of the difference between the displacement of the base and its formula, m; zero if
+    /// they are equal up to rounding.
+    double sampling_error() const { return sampling_error_; }
 
 private:
-    const LoadKind kind_;
+    explicit Load(LoadKind kind) : kind_(kind) {}
+    Polynomial piece(std::size_t interval, double from) const;
+    void add_piece(double tau, const Polynomial& piece);
+
+    LoadKind kind_;
     std::vector<double> tau_;
-    std::vector<Cubic> pieces_;  // base or force by the time since the interval's beginning
-    double largest_ = 0;
+    std::size_t width_ = 0;       // coefficients of a piece
+    std::vector<double> pieces_;  // base or force by the time since the interval's beginning
+    std::vector<LoadHarmonic> harmonics_;
+    double harmonic_step_ = 0, sampling_error_ = 0;
 };
 
-/// The particular solution p of x'' + damping x' + stiffness x = force that is a polynomial.
-Cubic particular_solution(const Flow& flow, const Cubic& force);
+/// A polynomial solution of x'' + damping x' + stiffness x = force: that without free motion for
+/// cubic forces, otherwise the one from rest, for times up to 0.5.
+Polynomial response(const Flow& flow, const Polynomial& force);
 
 }  // namespace vines

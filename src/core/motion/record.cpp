@@ -74,29 +74,34 @@ void SeriesRecord::expect(double tau_end) {
         column->reserve(moments);
 }
 
-void SeriesRecord::add(double at, const State& state, double acceleration) {
+void SeriesRecord::add(double at, const State& state, double acceleration, double base) {
     series.tau.push_back(at);
     series.x.push_back(state.x);
     series.x_dot.push_back(state.x_dot);
     series.y.push_back(state.y);
     series.y_dot.push_back(state.y_dot);
     series.x_ddot.push_back(acceleration);
+    if (with_base_) series.x_relative.push_back(state.x - base);
 }
 
 void SeriesRecord::on_stretch(const Stretch& stretch) {
     SampledFlow& oscillator = stretch.is_joint() ? sticking_ : free_;
     oscillator.begin(stretch.flow, stretch.start);
+    const auto base_at = [&](double s) {
+        return with_base_ ? stretch.forces->loading->base.at(s) : 0.0;
+    };
     for (double at = next_ * step_; at < stretch.tau + stretch.duration; at = ++next_ * step_) {
         const double s = std::max(0.0, at - stretch.tau);
         const Oscillation o = oscillator.at(s);
-        add(at, stretch.at(s, o), stretch.x_ddot(s, o));
+        add(at, stretch.at(s, o), stretch.x_ddot(s, o), base_at(s));
     }
     x_ddot_at_end_ = stretch.x_ddot(stretch.duration);
+    base_at_end_ = base_at(stretch.duration);
 }
 
 void SeriesRecord::finish(const Outcome& outcome) {
     if (series.tau.empty() || series.tau.back() < outcome.tau)
-        add(outcome.tau, outcome.state, x_ddot_at_end_);
+        add(outcome.tau, outcome.state, x_ddot_at_end_, base_at_end_);
 }
 
 void Stroboscope::on_stretch(const Stretch& stretch) {

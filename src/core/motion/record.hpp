@@ -74,12 +74,18 @@ void trim_to_last(Entries& entries, std::size_t most) {
 /// The sampled motion: columns of equal length. x and y in m, derivatives with respect to tau.
 struct Series {
     std::vector<double> tau, x, x_dot, y, y_dot, x_ddot;
+    std::vector<double> x_relative;  ///< to the base; empty unless a load moves it
 };
 
 /// Samples the motion at tau = 0, step, 2 step, ... and at the end of the run.
 class SeriesRecord : public Observer {
 public:
-    explicit SeriesRecord(double step) : step_(step), free_(step), sticking_(step) {}
+    /// `with_base`: records x_relative.
+    explicit SeriesRecord(double step, bool with_base = false)
+        : step_(step),
+          with_base_(with_base),
+          free_(step),
+          sticking_(step) {}
     /// Reserves memory for a complete run, or for the first million samples.
     void expect(double tau_end);
     void on_stretch(const Stretch&) override;
@@ -88,8 +94,9 @@ public:
     Series series;
 
 private:
-    void add(double tau, const State& state, double x_ddot);
-    double step_, x_ddot_at_end_ = 0;
+    void add(double tau, const State& state, double x_ddot, double base);
+    double step_, x_ddot_at_end_ = 0, base_at_end_ = 0;
+    bool with_base_;
     long next_ = 0;
     SampledFlow free_, sticking_;
 };

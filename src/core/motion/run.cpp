@@ -70,18 +70,16 @@ void Run::begin_sliding(int direction) {
         f.loading = {
             p_.load->force(interval_, tau, p_.epsilon * p_.lambda), p_.load->base(interval_, tau)};
     }
-    Cubic force = f.loading ? f.loading->force : Cubic{};
-    force.c0 -= p_.epsilon * p_.friction * direction_;
-    f.shift = particular_solution(free_, force);
+    Polynomial force = f.loading ? f.loading->force : Polynomial{};
+    force.add(0, -p_.epsilon * p_.friction * direction_);
+    f.shift = response(free_, force);
 }
 
 /// The polynomial that load and gravity add to the flow's joint motion of both masses.
-Cubic Run::joint_shift() const {
-    Cubic force = forces_ && forces_->loading ? forces_->loading->force : Cubic{};
-    force.c0 += p_.epsilon * p_.gravity;
-    const double nu = 1 / (1 + p_.epsilon);
-    return particular_solution(
-        *sticking_, {nu * force.c0, nu * force.c1, nu * force.c2, nu * force.c3});
+Polynomial Run::joint_shift() const {
+    Polynomial force = forces_ && forces_->loading ? forces_->loading->force : Polynomial{};
+    force.add(0, p_.epsilon * p_.gravity);
+    return response(*sticking_, sum({}, force, 1 / (1 + p_.epsilon)));
 }
 
 void Run::begin_joint_motion() {
@@ -201,8 +199,8 @@ void Run::graze(double tau, int side) {
 
 /// x'' - y'' of a joint motion if nothing but friction held the ball.
 double Run::pull_together() const {
-    const Cubic joint = joint_shift();
-    const Oscillation o{lo_.x - joint.c0, lo_.x_dot - joint.c1, lo_.sin_theta, lo_.cos_theta};
+    const Polynomial joint = joint_shift();
+    const Oscillation o{lo_.x - joint[0], lo_.x_dot - joint[1], lo_.sin_theta, lo_.cos_theta};
     return sticking_->acceleration(o) + joint.second(0) - p_.gravity;
 }
 
@@ -250,7 +248,7 @@ void Run::leave_or_stick() {
     if (forces_) begin_sliding(relative_speed_ != 0 ? sign_of(relative_speed_) : -side_);
     const Oscillation o = of_flow();
     const double press = side_ * relative_acceleration(o, 0),
-                 press_rate = side_ * (free_.jerk(o) + (forces_ ? 6 * forces_->shift.c3 : 0));
+                 press_rate = side_ * (free_.jerk(o) + (forces_ ? 6 * forces_->shift[3] : 0));
     bounce_limit_ = press > 0 ? longest_bounce_ : 0;
     if (relative_speed_ != 0) {
         zeros_ = 1;
@@ -320,13 +318,14 @@ void Run::follow_joint_motion(int zeros) {
         y_dot_ = lo_.x_dot;
         const double rest = clock_.until(limits_.tau_end), limit = until_boundary(rest, *sticking_);
         const bool ends_interval = p_.load && limit == until_next_interval();
-        const Cubic bend = forces_ ? forces_->shift : Cubic{};
+        const Polynomial shift = forces_ ? forces_->shift : Polynomial{},
+                         pull = sum({p_.gravity}, shift.derivative().derivative(), -1);
         std::optional<double> release;
         for (const int held_by : {1, -1})
             if (held_by == side_ || side_ == 0) {
                 const auto end = next_release(
-                    *sticking_, of_flow(), held_by, zeros, release.value_or(limit),
-                    p_.gravity - 2 * bend.c2, -p_.friction, -6 * bend.c3);
+                    *sticking_, of_flow(), held_by, zeros, release.value_or(limit), pull,
+                    -p_.friction);
                 if (end) release = end;
             }
         const double s = release ? *release : limit;

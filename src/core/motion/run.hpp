@@ -38,15 +38,9 @@ private:
     bool is_over();
     FlightStart flight() const {
         if (!forces_) return {lo_, y_, y_dot_, side_, relative_speed_, zeros_};
-        const Cubic& p = forces_->shift;
-        return {of_flow(),
-                y_ - p.c0,
-                y_dot_ - p.c1,
-                side_,
-                relative_speed_,
-                zeros_,
-                0.5 * forces_->y_ddot - p.c2,
-                -p.c3};
+        const Polynomial& p = forces_->shift;
+        return {of_flow(),       y_ - p[0], y_dot_ - p[1],         side_,
+                relative_speed_, zeros_,    0.5 * forces_->y_ddot, p.size > 2 ? &p : nullptr};
     }
     double flight_limit() const;
     void fly();
@@ -61,8 +55,8 @@ private:
     // The oscillator without the forces' shift, and with it from a state of the flow at s.
     Oscillation of_flow() const {
         if (!forces_) return lo_;
-        const Cubic& p = forces_->shift;
-        return {lo_.x - p.c0, lo_.x_dot - p.c1, lo_.sin_theta, lo_.cos_theta};
+        const Polynomial& p = forces_->shift;
+        return {lo_.x - p[0], lo_.x_dot - p[1], lo_.sin_theta, lo_.cos_theta};
     }
     Oscillation with_shift(Oscillation o, double s) const {
         if (forces_) o.x += forces_->shift.at(s), o.x_dot += forces_->shift.rate(s);
@@ -76,7 +70,7 @@ private:
     }
     void begin_sliding(int direction);
     void begin_joint_motion();
-    Cubic joint_shift() const;
+    Polynomial joint_shift() const;
     double until_next_interval() const;  ///< of the load
     double until_boundary(double rest, const Flow& flow) const;
     void begin_next_interval();

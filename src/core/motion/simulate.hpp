@@ -15,10 +15,10 @@
 
 namespace vines {
 
-/// A recorded load's force and base displacement, as functions of the time s since the last event.
+/// A load's force and base displacement, as functions of the time s since the last event.
 struct Loading {
-    Cubic force;  ///< right-hand side of x'' + 2 zeta x' + x
-    Cubic base;   ///< displacement of the base; zero for a force on the oscillator
+    Polynomial force;  ///< right-hand side of x'' + 2 zeta x' + x
+    Polynomial base;   ///< displacement of the base; zero for a force on the oscillator
 };
 
 /// Forces beyond the paper's during a stretch.
@@ -26,7 +26,7 @@ struct Forces {
     double y_ddot = 0;          ///< of a free ball, constant
     bool rests_inside = false;  ///< friction holds the ball inside the cavity
     /// Contribution of the forces on the oscillator to its motion: x(s) = flow's x(s) + shift(s).
-    Cubic shift;
+    Polynomial shift;
     std::optional<Loading> loading;
 };
 
@@ -59,9 +59,9 @@ struct Stretch {
 
 private:
     State under_forces(double s, const Oscillation& o) const {
-        const Cubic& shift = forces->shift;
+        const Polynomial& shift = forces->shift;
         const double x = o.x + shift.at(s), x_dot = o.x_dot + shift.rate(s), a = forces->y_ddot;
-        if (is_joint()) return {x_dot, x, x_dot, x + (y - (start.x + shift.c0))};
+        if (is_joint()) return {x_dot, x, x_dot, x + (y - (start.x + shift[0]))};
         return {x_dot, x, y_dot + a * s, y + s * (y_dot + 0.5 * a * s)};
     }
 };

@@ -6,6 +6,7 @@
 
 #include "core/measures/energy.hpp"
 #include "core/motion/elementary.hpp"
+#include "core/motion/load.hpp"
 #include "core/sweep/basins.hpp"
 
 namespace vines {
@@ -30,14 +31,25 @@ Outcome cycles_from(
          .tau_start = tau});
 }
 
+/// A load begins at tau = 0 and is measured as a whole; if it has no end or is a shock, for the
+/// measured cycles. The transient of a harmonic forcing is a run of its own.
+Interval measured_part(const Parameters& p, const PointOptions& o) {
+    const double cycles = std::round(o.cycles) * p.cycle();
+    if (!p.load) return {0, cycles};
+    if (p.load->sets_length()) return {0, p.load->length()};
+    const double from =
+        std::isfinite(p.load->length()) ? 0 : std::round(o.transient_cycles) * p.cycle();
+    return {from, from + cycles};
+}
+
 AnalysisRequest wanted_of(const Parameters& p, const State& start, const PointOptions& o) {
-    const double tau_end = std::round(o.cycles) * p.cycle();
+    const Interval window = measured_part(p, o);
     return {
         .parameters = p,
         .start = start,
-        .tau_end = tau_end,
+        .tau_end = window.to,
         .max_impacts = o.max_impacts,
-        .window = {0, tau_end},
+        .window = window,
         .parts =
             {.section = o.section != SectionKind::none,
              .energy = true,
@@ -85,9 +97,10 @@ std::optional<double> chaotic_cycles_of(const Analysis& a, double settle_cycles,
 
 /// Rms of the steady motion without absorber, or, if none exists, from the same start.
 double reference_rms(
-    const Parameters& p, const State& begin, std::optional<double> amplitude, double duration) {
+    const Parameters& p, const State& begin, std::optional<double> amplitude,
+    const Interval& window) {
     return amplitude && *amplitude > 0 ? *amplitude / std::numbers::sqrt2
-                                       : unattached(p, begin, 0, duration).rms;
+                                       : unattached(p, begin, window.from, window.to).rms;
 }
 
 /// Last state at a whole cycle: a run that ended within a cycle continues to its end.
@@ -120,7 +133,7 @@ PointResult measure(
     const std::function<bool()>& stop) {
     PointResult r;
     State begin = start;
-    for (double left = std::round(options.transient_cycles); left > 0;) {
+    for (double left = p.load ? 0 : std::round(options.transient_cycles); left > 0;) {
         const double now = options.known ? std::min(left, cycles_between_looks) : left;
         r.outcome = cycles_from(p, begin, 0, now, stop);
         if (r.outcome.reason != End::tau_end) return r;
@@ -138,8 +151,8 @@ PointResult measure(
     r.x_rms = energy.rms;
     r.x_rms_error = energy.rms_error;
     r.share_impacts_error = energy.share_impacts_error;
-    r.x_free = free_amplitude(p);
-    r.x_rms_ratio = r.x_rms / reference_rms(p, begin, r.x_free, r.outcome.tau);
+    if (!p.load) r.x_free = free_amplitude(p);
+    r.x_rms_ratio = r.x_rms / reference_rms(p, begin, r.x_free, energy.window);
     r.share_impacts = energy.share_impacts;
     r.impacts = r.outcome.impacts;
     r.sticks = a.stick_count;

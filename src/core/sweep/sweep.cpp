@@ -147,7 +147,7 @@ struct Sweep {
     std::vector<NamedStart> starts_of(const PointSystem& system, std::size_t point) const {
         const State& first = system.start;
         std::vector<NamedStart> starts = {{"", first}};
-        if (!plan.tries_second_start(point)) return starts;
+        if (system.parameters.load || !plan.tries_second_start(point)) return starts;
         const bool from_middle =
             first.x == 0 && first.x_dot == 0 && first.y == 0 && first.y_dot == 0;
         starts.push_back(default_starts(system.parameters)[from_middle ? 1 : 0]);

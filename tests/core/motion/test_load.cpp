@@ -1,9 +1,11 @@
-// Recorded loads, against an integrator that knows nothing but the equations of motion.
+// Loads: records and formulas. Their motion against the equations of motion, closed forms and
+// reference trajectories.
 #include <doctest/doctest.h>
 
 #include <cmath>
 #include <random>
 
+#include "../reference/laws.hpp"
 #include "../support.hpp"
 #include "core/measures/energy.hpp"
 #include "core/motion/load.hpp"
@@ -125,5 +127,135 @@ TEST_CASE("the energy and the deviations of a loaded motion balance") {
         const Matrix4 derivative = derivative_of_run(p, start, until);
         for (int k = 0; k < 4; ++k)
             CHECK((derivative.col(k) - product.m.col(k)).norm() < 1e-6 * (1 + product.m.norm()));
+    }
+}
+
+namespace {
+
+/// Largest difference between the base of a load and a formula, over the load.
+double misfit(const Load& load, double until, const std::function<double(double)>& base) {
+    double largest = 0;
+    for (int i = 0; i < 5000; ++i) {
+        const double tau = until * i / 5000;
+        const std::size_t k = load.interval_at(tau);
+        // At the time itself, and by the polynomial from an earlier one.
+        const double from = std::max(tau - 0.05, k > 0 ? load.end_of(k - 1) : 0);
+        largest = std::max(
+            {largest, std::abs(load.base(k, tau)[0] - base(tau)),
+             std::abs(load.base(k, from).at(tau - from) - base(tau))});
+    }
+    return largest;
+}
+
+}  // namespace
+
+TEST_CASE("formulas move the base as they say, to rounding") {
+    constexpr double a = 0.02, W = 1.7, T = 40;
+    const Load half_sine(LoadKind::base_acceleration, a, T, [](double tau) {
+        return Polynomial{std::numbers::pi / T * tau, std::numbers::pi / T};
+    });
+    const double w = std::numbers::pi / T;
+    CHECK(misfit(half_sine, T, [&](double t) {
+              return a / w * (t - std::sin(w * t) / w);
+          }) < 1e-14 * a * T * T);
+    CHECK(half_sine.base(half_sine.interval_at(T + 1), T + 1)[1] == doctest::Approx(2 * a / w));
+    const Load chirp(LoadKind::base_displacement, a, T, [](double tau) {
+        return Polynomial{0.3 + tau * (0.5 + 0.02 * tau), 0.5 + 0.04 * tau, 0.02};
+    });
+    CHECK(misfit(chirp, T, [&](double t) {
+              return a * std::sin(0.3 + t * (0.5 + 0.02 * t));
+          }) < 2e-14 * a);
+    const Load harmonics({{a, W, 0.4}, {0.5 * a, 3 * W, -1}, {0.1 * a, 0, 1}});
+    CHECK(harmonics.length() == infinity);
+    CHECK(misfit(harmonics, 900, [&](double t) {
+              return a * std::sin(W * t + 0.4) + 0.5 * a * std::sin(3 * W * t - 1) +
+                     0.1 * a * std::sin(1);
+          }) < 2e-12 * a);  // the rounding of t in this formula
+}
+
+TEST_CASE("noise has its rms, its band and its bound, and leaves the base at rest") {
+    constexpr double rms = 0.03, T = 300;
+    const Load noise = Load::noise(rms, 0.5, 3, T, 7), same = Load::noise(rms, 0.5, 3, T, 7);
+    double square = 0, jump = 0;
+    int pieces = 0;
+    for (std::size_t k = 0; noise.end_of(k) < infinity; ++k) {
+        const double from = k > 0 ? noise.end_of(k - 1) : 0, to = noise.end_of(k);
+        const Polynomial base = noise.base(k, from), next = noise.base(k + 1, to);
+        square += std::pow(base.second(0), 2);
+        if (noise.end_of(k + 1) < infinity)
+            jump = std::max(jump, std::abs(base.second(to - from) - next.second(0)));
+        CHECK(base.at(to - from) == doctest::Approx(next[0]).epsilon(1e-9).scale(1e-3));
+        ++pieces;
+    }
+    CHECK(std::sqrt(square / pieces) == doctest::Approx(rms).epsilon(1e-3));
+    CHECK(noise.base(noise.interval_at(T), T).rate(0) == 0);
+    CHECK(noise.base(noise.interval_at(T), T).at(0) == doctest::Approx(0).scale(1e-12));
+    CHECK(noise.sampling_error() > 0);
+    CHECK(noise.sampling_error() < 1e-6 * rms / (3 * 3));
+    // The cubics miss the acceleration by h^2/12 of its second derivative.
+    CHECK(jump < 0.02 * rms);
+    CHECK(noise.base(5, 1.).at(0) == same.base(5, 1.).at(0));
+    CHECK(Load::noise(rms, 0.5, 3, T, 8).base(5, 1.).at(0) != noise.base(5, 1.).at(0));
+}
+
+TEST_CASE("one of harmonics is the harmonic forcing") {
+    Parameters p;
+    p.epsilon = 0.05, p.lambda = 0.4, p.G = 0.4, p.Omega = 0.93, p.b = 0.04;
+    p.gravity = 0.001, p.friction = 0.0005;
+    ImpactRecord one, other;
+    Observer* const first[] = {&one};
+    Observer* const second[] = {&other};
+    simulate(p, {0, 0, 0, 0.01}, {40, 1000, {}}, first);
+    Parameters q = p;
+    q.load = std::make_shared<const Load>(std::vector<LoadHarmonic>{{p.epsilon * p.G, p.Omega, 0}});
+    q.G = 0;
+    simulate(q, {0, 0, 0, 0.01}, {40, 1000, {}}, second);
+    REQUIRE(one.entries.size() > 20);
+    REQUIRE(one.entries.size() == other.entries.size());
+    for (std::size_t i = 0; i < 15; ++i) {
+        CHECK(std::abs(one.entries[i].tau - other.entries[i].tau) < 1e-11);
+        CHECK(std::abs(one.entries[i].y_dot_after - other.entries[i].y_dot_after) < 1e-11);
+    }
+}
+
+TEST_CASE("gravity, friction, R of the speed and a load follow the reference in 60 digits") {
+    for (const LawCase& law : law_cases()) {
+        CAPTURE(law.name);
+        Parameters p;
+        p.epsilon = law.epsilon, p.lambda = law.lambda, p.G = law.G, p.Omega = law.Omega;
+        p.b = law.b, p.R_plus = p.R_minus = law.R;
+        p.gravity = law.gravity, p.friction = law.friction;
+        if (!law.speed.empty())
+            p.table_plus = p.table_minus =
+                std::make_shared<const RestitutionTable>(RestitutionTable{law.speed, law.table});
+        if (!law.load.empty())
+            p.load =
+                std::make_shared<const Load>(LoadKind::base_acceleration, law.load_tau, law.load);
+        struct Compared : WholeRunProduct {
+            using WholeRunProduct::WholeRunProduct;
+            void on_impact(const Impact& i) override {
+                WholeRunProduct::on_impact(i);
+                impacts.push_back(i), growth.push_back(std::max(1.0, m.norm()));
+            }
+            std::vector<Impact> impacts;
+            std::vector<double> growth;
+        } run(p);
+        Observer* const observers[] = {&run};
+        simulate(p, {0, 0, law.y_dot0, law.y0}, {30, law_impacts, {}}, observers);
+        const auto truth = read_reference("law_" + law.name).impacts;
+        REQUIRE(truth.size() == law_impacts);
+        REQUIRE(run.impacts.size() >= 30);
+        double most_grown = 1;
+        for (std::size_t k = 0; k < 30; ++k) {
+            const Impact& own = run.impacts[k];
+            const ReferenceImpact& other = truth[k];
+            most_grown = std::max(most_grown, run.growth[k]);
+            const double tolerance = 1e-11 * most_grown;
+            CHECK(own.side == other.side);
+            CHECK(std::abs(own.tau - other.tau) < tolerance);
+            CHECK(std::abs(own.x - other.x) < tolerance);
+            CHECK(std::abs(own.x_dot_after - other.x_dot_after) < tolerance);
+            CHECK(std::abs(own.y_dot_after - other.y_dot_after) < tolerance);
+        }
     }
 }

@@ -1,5 +1,5 @@
-// Compares the output of the program that makes the reference files with the stored files. The
-// environment variable MAKE_REFERENCE is the program's path.
+// Compares the output of the programs that make the reference files with the stored files. The
+// environment variables MAKE_REFERENCE and MAKE_LAWS are their paths.
 import assert from "node:assert/strict";
 import {execFileSync} from "node:child_process";
 import {readFileSync} from "node:fs";
@@ -33,4 +33,12 @@ test("the exponents of a short run satisfy the sum rule of damping and impacts",
     assert.equal(exponents.length, 4);
     assert.ok(Math.abs(exponents.reduce((a, b) => a + b) - rule) < 1e-13);
   }
+});
+
+test("motions under gravity, friction, R of the speed and a load are the stored ones", () => {
+  for (const law of ["gravity", "friction", "restitution", "load", "all"])
+    assert.deepEqual(
+      lines(execFileSync(process.env.MAKE_LAWS, [law], {encoding: "utf8"})),
+      stored(`law_${law}`),
+    );
 });

@@ -1,0 +1,235 @@
+// The field `forcing`: a record or a formula in SI, as a load of the core.
+#include <algorithm>
+
+#include "api/system.hpp"
+#include "core/motion/elementary.hpp"
+
+namespace vines::api {
+
+namespace {
+
+constexpr std::size_t most_samples = 200000;
+constexpr double most_chirp_periods = 5000;
+constexpr std::size_t most_harmonics = 64;
+
+/// What moves: the column of a record, or the amplitude of a formula.
+const std::vector<std::string> quantities = {"acceleration_m_s2", "displacement_m", "force_N"};
+
+/// The fields of a formula besides its amplitude.
+struct Formula {
+    const char* kind;
+    bool of_quantity;  ///< its amplitude is one of `quantities`
+    std::vector<std::string> required, optional;
+};
+const std::vector<Formula>& formulas() {
+    static const std::vector<Formula> list = {
+        {"half_sine", true, {"duration_s"}, {}},
+        {"chirp", true, {"f_from", "f_to", "duration_s"}, {"rate", "phase"}},
+        {"noise", false, {"rms_m_s2", "f_low", "f_high", "duration_s"}, {"seed"}},
+        {"harmonics", false, {"f", "F"}, {"phase"}},
+    };
+    return list;
+}
+
+struct Reader {
+    const Json& given;
+    const SiParameters& si;
+    const double omega0 = si.omega0();
+    std::vector<FieldError> errors = {};
+
+    void fail(
+        const std::string& where, const Json& value, const Json& range, const std::string& detail) {
+        errors.push_back({"/forcing" + where, value, range, "forcing " + detail});
+    }
+    void refuse_any() {
+        if (!errors.empty()) refuse(std::move(errors));
+    }
+    /// A number, which a query gives as a list of one.
+    double number(const std::string& name, double fallback = 0) const {
+        if (!given.contains(name)) return fallback;
+        const Json& value = given[name];
+        return (value.is_array() ? value[0] : value).get<double>();
+    }
+    double Omega(const std::string& name) const { return number(name) / si.f0(); }
+
+    /// The one quantity that moves.
+    std::string quantity() {
+        const auto there = present(given, quantities);
+        if (there.size() != 1)
+            fail(
+                "", nullptr, nullptr, "needs one of acceleration_m_s2, displacement_m and force_N");
+        refuse_any();
+        return there[0];
+    }
+    LoadKind load_kind(const std::string& quantity) const {
+        return quantity == quantities[0]   ? LoadKind::base_acceleration
+               : quantity == quantities[1] ? LoadKind::base_displacement
+                                           : LoadKind::force;
+    }
+    double unit(LoadKind kind) const {
+        return kind == LoadKind::base_acceleration ? omega0 * omega0
+               : kind == LoadKind::force           ? si.k1
+                                                   : 1;
+    }
+    void need_list(const std::string& name) {
+        if (given.contains(name) && !given[name].is_array())
+            fail("/" + name, given[name], nullptr, "needs a list in " + name);
+    }
+    /// A list of one, as a query gives it, is a number.
+    void need_number(const std::string& name) {
+        if (given.contains(name) && given[name].is_array() && given[name].size() != 1)
+            fail("/" + name, given[name].size(), nullptr, "needs one number in " + name);
+    }
+
+    std::shared_ptr<const Load> record() {
+        for (const auto& [name, value] : given.items())
+            if (name != "time_s" && std::ranges::find(quantities, name) == quantities.end())
+                fail(
+                    "/" + name, beginning_of(value), nullptr,
+                    name + " belongs to a formula: give its kind, and no time_s");
+        if (!given.contains("time_s")) fail("/time_s", nullptr, nullptr, "needs time_s, or a kind");
+        const std::string column = quantity();
+        need_list(column);
+        refuse_any();
+        const Json &time = given["time_s"], &samples = given[column];
+        if (time.size() < 2 || time.size() > most_samples)
+            fail(
+                "/time_s", time.size(), Json::array({2, most_samples}),
+                "needs at least two samples and at most " + std::to_string(most_samples));
+        if (samples.size() != time.size())
+            fail(
+                "/" + column, samples.size(), Json::array({time.size(), time.size()}),
+                "needs one value for each time");
+        refuse_any();
+        if (const std::size_t wrong = first_not_ascending(time); wrong < time.size())
+            fail("/time_s/" + std::to_string(wrong), time[wrong], nullptr, "needs ascending times");
+        refuse_any();
+        auto tau = time.get<std::vector<double>>(), values = samples.get<std::vector<double>>();
+        const LoadKind kind = load_kind(column);
+        for (std::size_t i = tau.size(); i-- > 0;) tau[i] = (tau[i] - tau[0]) * omega0;
+        for (double& value : values) value /= unit(kind);
+        return std::make_shared<const Load>(kind, tau, values);
+    }
+
+    void check_fields(const Formula& formula) {
+        const std::string& kind = formula.kind;
+        for (const auto& [name, value] : given.items()) {
+            const auto among = [&name = name](const auto& list) {
+                return std::ranges::find(list, name) != list.end();
+            };
+            if (name != "kind" && !among(formula.required) && !among(formula.optional) &&
+                !(formula.of_quantity && among(quantities)))
+                fail(
+                    "/" + name, beginning_of(value), nullptr,
+                    name + " does not belong to the kind " + kind);
+        }
+        for (const std::string& name : formula.required)
+            if (!given.contains(name))
+                fail("/" + name, nullptr, nullptr, "of the kind " + kind + " needs " + name);
+        refuse_any();
+    }
+
+    std::shared_ptr<const Load> half_sine(LoadKind kind, double amplitude) const {
+        const double duration = number("duration_s") * omega0, Omega = std::numbers::pi / duration;
+        return std::make_shared<const Load>(kind, amplitude, duration, [Omega](double tau) {
+            return Polynomial{Omega * tau, Omega};
+        });
+    }
+
+    std::shared_ptr<const Load> chirp(LoadKind kind, double amplitude) {
+        const double from = Omega("f_from"), to = Omega("f_to"),
+                     duration = number("duration_s") * omega0, phase = number("phase"),
+                     periods = std::max({from, to, 1.0}) * duration / (2 * std::numbers::pi);
+        if (periods > most_chirp_periods)
+            fail(
+                "/duration_s", given["duration_s"],
+                Json::array({0, number("duration_s") * most_chirp_periods / periods}),
+                "of the kind chirp is limited to 5000 periods of its highest frequency, and of the "
+                "oscillator");
+        refuse_any();
+        const bool logarithmic = given.value("rate", "linear") == "logarithmic" && from != to;
+        const double growth =
+            (logarithmic ? elementary::log(to / from) : 0.5 * (to - from)) / duration;
+        return std::make_shared<const Load>(kind, amplitude, duration, [=](double tau) {
+            if (!logarithmic)
+                return Polynomial{
+                    phase + tau * (from + growth * tau), from + 2 * growth * tau, growth};
+            const double Omega = from * elementary::exp(growth * tau);
+            Polynomial theta{phase + (Omega - from) / growth};
+            double term = Omega;
+            for (int n = 1; n < Polynomial::most; ++n) {
+                theta.add(n, term / n);
+                term *= growth / n;
+            }
+            return theta;
+        });
+    }
+
+    std::shared_ptr<const Load> noise() {
+        const double low = Omega("f_low"), high = Omega("f_high"),
+                     duration = number("duration_s") * omega0,
+                     cycle = 2 * std::numbers::pi / duration;
+        if (!(std::floor(high / cycle) * cycle >= low && high >= cycle))
+            fail(
+                "/f_high", given["f_high"], nullptr,
+                "of the kind noise needs a multiple of 1/duration_s between f_low and f_high");
+        else if (high * duration > Load::most_noise_phase)
+            fail(
+                "/duration_s", given["duration_s"],
+                Json::array({0, number("duration_s") * Load::most_noise_phase / (high * duration)}),
+                "of the kind noise is limited to 8192 periods of f_high");
+        refuse_any();
+        return std::make_shared<const Load>(Load::noise(
+            number("rms_m_s2") / (omega0 * omega0), low, high, duration,
+            static_cast<std::uint64_t>(number("seed", 1))));
+    }
+
+    std::shared_ptr<const Load> harmonics() {
+        const std::size_t count = given["f"].size();
+        if (count < 1 || count > most_harmonics)
+            fail(
+                "/f", count, Json::array({1, most_harmonics}),
+                "of the kind harmonics needs 1 to 64 frequencies");
+        for (const std::string name : {"F", "phase"})
+            if (given.contains(name) && (!given[name].is_array() || given[name].size() != count))
+                fail(
+                    "/" + name, given[name].size(), Json::array({count, count}),
+                    "of the kind harmonics needs one value in " + name + " for each frequency");
+        refuse_any();
+        std::vector<LoadHarmonic> list;
+        for (std::size_t i = 0; i < count; ++i) {
+            const double f = given["f"][i].get<double>(), Omega = f / si.f0();
+            if (!(Omega >= 0 && Omega <= 100))
+                fail(
+                    "/f/" + std::to_string(i), f, Json::array({0, 100 * si.f0()}),
+                    "of the kind harmonics needs frequencies from 0 to 100 f0");
+            list.push_back(
+                {given["F"][i].get<double>(), Omega,
+                 given.contains("phase") ? given["phase"][i].get<double>() : 0});
+        }
+        refuse_any();
+        return std::make_shared<const Load>(std::move(list));
+    }
+
+    std::shared_ptr<const Load> load() {
+        if (!given.contains("kind")) return record();
+        const Formula& formula = *std::ranges::find_if(
+            formulas(), [this](const Formula& f) { return given["kind"] == f.kind; });
+        check_fields(formula);
+        if (!formula.of_quantity) return given["kind"] == "noise" ? noise() : harmonics();
+        const std::string name = quantity();
+        for (const std::string& field : {name, std::string("phase")}) need_number(field);
+        refuse_any();
+        const LoadKind kind = load_kind(name);
+        const double amplitude = number(name) / unit(kind);
+        return given["kind"] == "chirp" ? chirp(kind, amplitude) : half_sine(kind, amplitude);
+    }
+};
+
+}  // namespace
+
+std::shared_ptr<const Load> read_load(const Json& forcing, const SiParameters& si) {
+    return Reader{forcing, si}.load();
+}
+
+}  // namespace vines::api
