@@ -44,7 +44,7 @@ std::string description_of(const Field& f) {
 Json schema_of(const Field& f) {
     Json schema = value_schema(f);
     if (f.range) {
-        Json& limited = schema.contains("anyOf")           ? schema["anyOf"][1]
+        Json& limited = schema.contains("anyOf")        ? schema["anyOf"][1]
                         : f.type == FieldType::interval ? schema["items"]
                                                         : schema;
         limited["minimum"] = f.range->minimum;
