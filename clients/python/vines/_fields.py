@@ -7,17 +7,22 @@ from typing import Literal, TypedDict
 
 NUMBER_LISTS = frozenset({
     "C", "F", "J", "M", "M_condition", "R", "T", "V", "V_velocity", "asked", "asked_s",
-    "contacts", "cycles_with", "distance", "f", "final", "high", "im", "impact_speed",
-    "impacts", "impulse", "impulse_N_s", "lambda", "lambda1", "lambda2", "lambda3",
-    "lambda4", "low", "margin_F", "margin_f", "modulus", "momentum_error", "phase",
-    "pulse_spoils_s", "re", "relative_speed", "relative_speed_ratio", "rounding_floor",
-    "side", "speed", "speed_m_s", "standard_error", "tau", "tau_end", "tau_error",
-    "tau_start", "time_difference", "time_difference_s", "time_end_s", "time_error_s",
-    "time_s", "time_start_s", "values", "window", "window_s", "x", "x_acceleration",
-    "x_acceleration_before", "x_ddot", "x_ddot_before", "x_dot", "x_dot_after",
-    "x_dot_before", "x_relative", "x_velocity", "x_velocity_after", "x_velocity_before",
-    "y", "y_dot", "y_dot_after", "y_dot_before", "y_velocity", "y_velocity_after",
-    "y_velocity_before", "z",
+    "contacts", "cycles_with", "distance", "f", "final", "five_percent", "high", "im",
+    "impact_speed", "impact_speed_max", "impact_speed_max_best_start",
+    "impact_speed_max_worst_start", "impacts", "impacts_per_second", "impulse",
+    "impulse_N_s", "impulse_max", "lambda", "lambda1", "lambda2", "lambda3", "lambda4",
+    "low", "margin_F", "margin_f", "modulus", "momentum_error", "phase", "pulse_spoils_s",
+    "re", "relative_speed", "relative_speed_ratio", "rounding_floor", "side", "speed",
+    "speed_m_s", "standard_error", "tau", "tau_end", "tau_error", "tau_start",
+    "time_difference", "time_difference_s", "time_end_s", "time_error_s", "time_s",
+    "time_start_s", "tuned_mass_damper", "twenty_percent", "values", "window", "window_s",
+    "without", "x", "x_acceleration", "x_acceleration_before",
+    "x_acceleration_max_best_start", "x_acceleration_max_worst_start", "x_ddot",
+    "x_ddot_before", "x_dot", "x_dot_after", "x_dot_before", "x_max_best_start",
+    "x_max_worst_start", "x_relative", "x_relative_max_best_start",
+    "x_relative_max_worst_start", "x_rms_best_start", "x_rms_worst_start", "x_velocity",
+    "x_velocity_after", "x_velocity_before", "y", "y_dot", "y_dot_after", "y_dot_before",
+    "y_velocity", "y_velocity_after", "y_velocity_before", "z",
 })
 
 Perturbation = TypedDict(
