@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <iterator>
+#include <numbers>
 
 #include "api/presets.hpp"
 #include "api/properties.hpp"
@@ -106,17 +107,24 @@ const Preset& preset_named(const std::string& name) {
 /// omitted from it. Reduced fields over SI keep m1 and k1, which set the scale.
 void restate_system(Json& preset, const Json& given) {
     if (!present(given, si_names).empty()) {
-        preset.update(describe(properties::si, si_of(system_fields(preset))));
+        const SiParameters si = si_of(system_fields(preset));
+        const double omega = 2 * std::numbers::pi * si.f;
+        const Json others = {
+            {"c1", si.damping_ratio()},
+            {"k1", si.f0()},
+            {"m2", si.epsilon()},
+            {"F", si.F * omega * omega}};
+        preset.update(describe(properties::si, si));
         if (preset.contains("forcing"))
             for (const char* name : {"F", "f"}) preset.erase(name);
         // A value that the request does not give stays as the preset states it.
-        for (const auto& group : si_groups)
-            if (group.size() > 1)
-                preset.erase(
-                    given.contains(group[0]) ||
-                            (!given.contains(group[1]) && !preset.contains(group[1]))
-                        ? group[1]
-                        : group[0]);
+        for (const auto& group : si_groups) {
+            if (group.size() == 1) continue;
+            const bool by_other = given.contains(group[1]) ||
+                                  (!given.contains(group[0]) && preset.contains(group[1]));
+            if (by_other && !preset.contains(group[1])) preset[group[1]] = others[group[0]];
+            preset.erase(by_other ? group[0] : group[1]);
+        }
     } else if (!present(given, reduced_names).empty()) {
         const SiParameters si = si_of(system_fields(preset));
         const bool in_si = !present(preset, si_names).empty();

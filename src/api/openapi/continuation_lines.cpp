@@ -17,7 +17,7 @@ Keys parameter_keys() {
     return keys;
 }
 
-Keys orbit_keys() {
+Keys branch_orbit_keys() {
     return parameter_keys() + values_of(properties::branch_point) +
            Keys{
                {"multipliers", multipliers_schema(), "Floquet multipliers of a period, descending"},
@@ -33,7 +33,7 @@ Json special_schema() {
             {"kind",
              one_of({"fold", "flip", "symmetry_breaking", "torus", "grazing", "stick", "end"}),
              "kind of the point"}} +
-        optional(orbit_keys()) +
+        optional(branch_orbit_keys()) +
         Keys{
             optional(
                 {"reason",
@@ -84,7 +84,7 @@ void add_continuation_lines(Json& schemas) {
           "kind of point there, or of the curve"},
          {"direction", one_of({"up", "down"}), "first change of the parameter"}});
     schemas["ContinuePoint"] =
-        object_of(Keys{{"type", constant("point"), ""}, branch_key()} + orbit_keys());
+        object_of(Keys{{"type", constant("point"), ""}, branch_key()} + branch_orbit_keys());
     schemas["ContinueSpecial"] = special_schema();
     schemas["ContinueProgress"] = object_of(
         {{"type", constant("progress"), ""},
