@@ -6,7 +6,7 @@ from collections.abc import Iterable
 from typing import Literal, TypedDict
 
 NUMBER_LISTS = frozenset({
-    "C", "J", "M", "M_condition", "R", "T", "V", "V_velocity", "asked", "asked_s",
+    "C", "F", "J", "M", "M_condition", "R", "T", "V", "V_velocity", "asked", "asked_s",
     "contacts", "cycles_with", "distance", "distances", "f", "final", "five_percent",
     "high", "im", "impact_speed", "impact_speed_max", "impact_speed_max_best_start",
     "impact_speed_max_worst_start", "impacts", "impacts_per_second", "impulse",
@@ -19,10 +19,10 @@ NUMBER_LISTS = frozenset({
     "window", "window_s", "without", "x", "x_acceleration", "x_acceleration_before",
     "x_acceleration_max_best_start", "x_acceleration_max_worst_start", "x_ddot",
     "x_ddot_before", "x_dot", "x_dot_after", "x_dot_before", "x_max_best_start",
-    "x_max_worst_start", "x_relative_max_best_start", "x_relative_max_worst_start",
-    "x_rms_best_start", "x_rms_worst_start", "x_velocity", "x_velocity_after",
-    "x_velocity_before", "y", "y_dot", "y_dot_after", "y_dot_before", "y_velocity",
-    "y_velocity_after", "y_velocity_before", "z",
+    "x_max_worst_start", "x_relative", "x_relative_max_best_start",
+    "x_relative_max_worst_start", "x_rms_best_start", "x_rms_worst_start", "x_velocity",
+    "x_velocity_after", "x_velocity_before", "y", "y_dot", "y_dot_after", "y_dot_before",
+    "y_velocity", "y_velocity_after", "y_velocity_before", "z",
 })
 
 Perturbation = TypedDict(

@@ -44,6 +44,53 @@ Json linear(const Keys& more) {
         objective_keys() + Keys{{"f", number(), "frequency of the largest value, Hz"}} + more);
 }
 
+Keys response_keys() {
+    const Json columns = list_of(or_null(number()));
+    Keys response = {{"f", columns, "frequencies, Hz"}};
+    for (const std::string& name : find(design_fields(), "objective")->choices) {
+        response.push_back(
+            optional({name + "_worst_start", columns, "objective with the worst start"}));
+        response.push_back(
+            optional({name + "_best_start", columns, "objective with the best start"}));
+    }
+    response =
+        response + Keys{
+                       {"without", columns, "objective without absorber"},
+                       {"tuned_mass_damper", columns, "objective with the tuned mass damper"},
+                       {"impact_speed_max", columns, "largest |x' - y'| before an impact, m/s"},
+                       {"impulse_max", columns, "largest impulse of an impact, N s"},
+                       {"impacts_per_second", columns, "most impacts per second"}};
+    return response;
+}
+
+/// The keys of the best absorber, with the details that follow the search.
+Keys best_keys() {
+    const Keys details = {
+        optional({"regime", or_null(text()), "type of the motion in the worst case"}),
+        optional({"impact_speed_max", number(), "largest |x' - y'| before an impact, m/s"}),
+        optional({"impulse_max", number(), "largest impulse of an impact, N s"}),
+        optional({"impacts_per_second", number(), "most impacts per second"}),
+        optional(
+            {"margins",
+             object_of(
+                 {{"b", margin(), "of the clearance"},
+                  {"R", margin(), "of the restitution coefficient"},
+                  {"f0", margin(), "of the host's frequency"},
+                  {"damping", margin(), "of the host's damping"}}),
+             "how far values may be off"}),
+        optional(
+            {"works_from", number(),
+             "smallest amplitude with at least half of the reduction at the largest one"}),
+        optional({"works_to", number(), "largest such amplitude, as far as tried"}),
+        optional(
+            {"activation", or_null(number()),
+             "amplitude at which the host reaches the manifold's fold; null for R = 1"})};
+    Keys best = absorber_keys();
+    for (const Key& key : details)
+        if (std::ranges::find(best, key.name, &Key::name) == best.end()) best.push_back(key);
+    return best;
+}
+
 }  // namespace
 
 void add_design_lines(Json& schemas) {
@@ -78,52 +125,14 @@ void add_design_lines(Json& schemas) {
     const Keys ratios = {
         {"frequency_ratio", number(), "its frequency over that of the host"},
         {"damping_ratio", number(), "its damping ratio c2/(2 sqrt(k2 m2))"}};
-    const Json columns = list_of(or_null(number()));
-    Keys response = {{"f", columns, "frequencies, Hz"}};
-    for (const std::string& name : find(design_fields(), "objective")->choices) {
-        response.push_back(
-            optional({name + "_worst_start", columns, "objective with the worst start"}));
-        response.push_back(
-            optional({name + "_best_start", columns, "objective with the best start"}));
-    }
-    response =
-        response + Keys{
-                       {"without", columns, "objective without absorber"},
-                       {"tuned_mass_damper", columns, "objective with the tuned mass damper"},
-                       {"impact_speed_max", columns, "largest |x' - y'| before an impact, m/s"},
-                       {"impulse_max", columns, "largest impulse of an impact, N s"},
-                       {"impacts_per_second", columns, "most impacts per second"}};
-    const Keys details = {
-        optional({"regime", or_null(text()), "type of the motion in the worst case"}),
-        optional({"impact_speed_max", number(), "largest |x' - y'| before an impact, m/s"}),
-        optional({"impulse_max", number(), "largest impulse of an impact, N s"}),
-        optional({"impacts_per_second", number(), "most impacts per second"}),
-        optional(
-            {"margins",
-             object_of(
-                 {{"b", margin(), "of the clearance"},
-                  {"R", margin(), "of the restitution coefficient"},
-                  {"f0", margin(), "of the host's frequency"},
-                  {"damping", margin(), "of the host's damping"}}),
-             "how far values may be off"}),
-        optional(
-            {"works_from", number(),
-             "smallest amplitude with at least half of the reduction at the largest one"}),
-        optional({"works_to", number(), "largest such amplitude, as far as tried"}),
-        optional(
-            {"activation", or_null(number()),
-             "amplitude at which the host reaches the manifold's fold; null for R = 1"})};
-    Keys best = absorber_keys();
-    for (const Key& key : details)
-        if (std::ranges::find(best, key.name, &Key::name) == best.end()) best.push_back(key);
     schemas["DesignDone"] = object_of(
         {{"type", constant("done"), ""},
          {"complete", flag(), "false if stopped: best is the best so far, without its details"},
-         {"best", object_of(best), "the best absorber"},
+         {"best", object_of(best_keys()), "the best absorber"},
          {"without", linear({}), "the host without absorber"},
          {"tuned_mass_damper", linear(ratios), "the best one of the same mass for this band"},
          {"den_hartog", linear(ratios), "the closed-form one of the same mass"},
-         {"response", object_of(response), "over the band, at the largest amplitude"},
+         {"response", object_of(response_keys()), "over the band, at the largest amplitude"},
          {"sentence", text(), "the result in words"}});
 }
 

@@ -3,6 +3,7 @@
 
 namespace vines::api {
 
+// NOLINTNEXTLINE(readability-function-size): a table
 const FieldTable& design_fields() {
     static const FieldTable table = grouped(
         "design",
