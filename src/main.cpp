@@ -21,7 +21,6 @@ namespace {
 
 const char* const examples =
     "vines simulate -p preset=fig3 --plot\n"
-    "vines sweep -a b=0.01:0.03:41 --plot\n"
     "vines identify record.csv -p preset=fig20 | jq .verdict\n"
     "vines serve --port 8080";
 

@@ -158,7 +158,7 @@ public:
     }
     /// The same for a curved path of the ball.
     Block relative_positions(const Oscillation& o, const Polynomial& y, int k) const {
-        const Block g = relative_positions(o, y[0], y[1], k);
+        Block g = relative_positions(o, y[0], y[1], k);
         if (y.size <= 2) return g;
         const auto time = Eigen::Map<const Block>(time_.data() + k);
         Block curved = Block::Zero();
