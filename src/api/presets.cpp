@@ -152,7 +152,7 @@ void add_experiments(std::vector<Preset>& list) {
 
 /// Machines under the laws and loads beyond the paper.
 void add_machines(std::vector<Preset>& list) {
-    const auto machine = [](Json parameters, Json more) {
+    const auto machine = [](Json parameters, const Json& more) {
         parameters.update(more);
         return parameters;
     };
