@@ -53,7 +53,7 @@ AnalysisRequest wanted_of(const Parameters& p, const State& start, const PointOp
         .parts =
             {.section = o.section != SectionKind::none,
              .energy = true,
-             .extremes = true,
+             .extremes = o.amplitudes_alone,
              .regime = !o.amplitudes_alone},
         .estimators = qr_alone,
         .settle_cycles = o.settle_cycles,

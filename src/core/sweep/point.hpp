@@ -79,7 +79,7 @@ struct PointResult {
     AttractorName name;
     /// m; m; x_rms over that of the steady motion (free decay: same start) without absorber.
     double x_max, x_rms, x_rms_ratio;
-    Extremes extremes;
+    Extremes extremes;                        ///< with PointOptions::amplitudes_alone
     double x_rms_error, share_impacts_error;  ///< standard errors (EnergyBalance)
     /// Steady amplitude without absorber, m; empty at undamped resonance.
     std::optional<double> x_free;
