@@ -6,6 +6,7 @@
 
 using namespace vines;
 using namespace vines::api;
+using namespace vines::test;
 
 namespace {
 
