@@ -26,13 +26,8 @@ std::vector<std::string> continued_names() {
     return names;
 }
 
-double value_of(const Json& given, const char* name) {
-    return given.contains(name) ? given[name].get<double>()
-                                : find(continue_fields(), name)->fallback.get<double>();
-}
-
-std::string word_of(const Json& given, const char* name) {
-    return given.value(name, find(continue_fields(), name)->fallback.get<std::string>());
+Json continued(const Json& given, const char* name) {
+    return value_or_default(continue_fields(), given, name);
 }
 
 /// The parameter's value in the base: given, of its preset, or the default.
@@ -297,9 +292,9 @@ ContinueRequest read_continue_request(const Json& object) {
         .family = {systems_along(fields, {r.parameter}), {std::abs(to - from)}},
         .from = from,
         .to = to,
-        .resolution = value_of(given, "resolution"),
-        .most_points = static_cast<long>(value_of(given, "points")),
-        .switches = static_cast<int>(value_of(given, "switch"))};
+        .resolution = continued(given, "resolution").get<double>(),
+        .most_points = static_cast<long>(continued(given, "points").get<double>()),
+        .switches = static_cast<int>(continued(given, "switch").get<double>())};
     for (const double end : {from, to})
         if (!r.plan.family.system_at({end}))
             errors.push_back(
@@ -307,11 +302,11 @@ ContinueRequest read_continue_request(const Json& object) {
                  "the base forms no valid system with this " + r.parameter});
     if (!errors.empty()) refuse(std::move(errors));
     if (given.contains("curve")) read_curve(r, given, fields);
-    r.settles = word_of(given, "orbit") == "settled";
-    r.period_cycles = static_cast<int>(value_of(given, "period_cycles"));
+    r.settles = continued(given, "orbit") == "settled";
+    r.period_cycles = static_cast<int>(continued(given, "period_cycles").get<double>());
     r.settling = {
-        .transient_cycles = value_of(given, "transient_cycles"),
-        .cycles = value_of(given, "cycles"),
+        .transient_cycles = continued(given, "transient_cycles").get<double>(),
+        .cycles = continued(given, "cycles").get<double>(),
         .max_impacts = r.base.max_impacts};
     return r;
 }

@@ -103,12 +103,8 @@ Json with_lists(const Json& object) {
     return given;
 }
 
-double number_of(const Json& given, const char* name) {
-    return given.contains(name) ? given[name].get<double>()
-                                : find(design_fields(), name)->fallback.get<double>();
-}
-std::string choice_of(const Json& given, const char* name) {
-    return given.value(name, find(design_fields(), name)->fallback.get<std::string>());
+Json designed(const Json& given, const char* name) {
+    return value_or_default(design_fields(), given, name);
 }
 
 // --- The answer ---
@@ -230,8 +226,7 @@ DesignRequest read_design_request(const Json& object) {
         interval_of(given[amplitude_name], amplitude_name, amplitude_range, errors);
     r.amplitude = amplitude.to;
     plan.amplitude_ratio = amplitude.from / amplitude.to;
-    plan.R =
-        numbers_within(given.value("R", find(design_fields(), "R")->fallback), "R", {0, 1}, errors);
+    plan.R = numbers_within(designed(given, "R"), "R", {0, 1}, errors);
     if (errors.empty()) read_host(r, given, errors);
     if (!errors.empty()) refuse(std::move(errors));
     plan.m2 = given.contains("m2")
@@ -253,14 +248,14 @@ DesignRequest read_design_request(const Json& object) {
         plan.b = {least_b_of_amplitude * most, most_b_of_amplitude * most};
     }
     if (!errors.empty()) refuse(std::move(errors));
-    r.objective = choice_of(given, "objective");
+    r.objective = designed(given, "objective");
     plan.objective = enum_value<Objective>(r.objective);
-    plan.mean = choice_of(given, "over") == "mean";
-    plan.default_set = choice_of(given, "starts") != "one";
-    plan.b_count = static_cast<int>(number_of(given, "b_count"));
-    plan.f_count = static_cast<int>(number_of(given, "f_count"));
-    plan.transient_cycles = number_of(given, "transient_cycles");
-    plan.cycles = number_of(given, "cycles");
+    plan.mean = designed(given, "over") == "mean";
+    plan.default_set = designed(given, "starts") != "one";
+    plan.b_count = static_cast<int>(designed(given, "b_count").get<double>());
+    plan.f_count = static_cast<int>(designed(given, "f_count").get<double>());
+    plan.transient_cycles = designed(given, "transient_cycles").get<double>();
+    plan.cycles = designed(given, "cycles").get<double>();
     return r;
 }
 

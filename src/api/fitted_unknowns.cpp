@@ -62,7 +62,7 @@ void add_forcing(Json& j, const JointFit& fit, const Parameters& p) {
 // numerical errors.
 constexpr double steadiest_forcing = 1e-4;
 
-/// What an effect outside the model is, with its size.
+/// Describes an effect outside the model, with its size.
 std::string effect_size_text(const FittedEffect& e, const JointFit& fit, double omega0) {
     const double amplitude =
         elementary::hypot(fit.values[Unknown::force_sin], fit.values[Unknown::force_cos]);

@@ -12,7 +12,7 @@ constexpr std::size_t most_samples = 200000;
 constexpr double most_chirp_periods = 5000;
 constexpr std::size_t most_harmonics = 64;
 
-/// What moves: the column of a record, or the amplitude of a formula.
+/// The moved quantity: the column of a record, or the amplitude of a formula.
 const std::vector<std::string> quantities = {"acceleration_m_s2", "displacement_m", "force_N"};
 
 /// The fields of a formula besides its amplitude.

@@ -165,10 +165,8 @@ Axis read_axis(
 
 constexpr std::size_t most_axes = 3;
 
-/// A field of the request, else the table's default.
 Json field(const Json& object, const char* name) {
-    if (object.contains(name)) return object[name];
-    return find(sweep_fields(), name)->fallback;
+    return value_or_default(sweep_fields(), object, name);
 }
 
 /// The same errors, with pointers into the request.
@@ -335,7 +333,7 @@ void read_indices(SweepRequest& r, const Json& given, std::vector<FieldError>& e
              "the sweep has " + std::to_string(all) + " points, numbered from 0"});
 }
 
-/// What needs the period of a forcing, or a steady state, is refused with a load.
+/// Refuses with a load all that needs the period of a forcing or a steady state.
 void check_loaded(const SweepRequest& r, const Json& given, std::vector<FieldError>& errors) {
     if (!r.systems->has_load()) return;
     const SweepPlan& plan = r.plan;

@@ -97,26 +97,15 @@ Json answer_to(const char* operation, const char* route) {
     return Json::parse(encoded(std::move(answer.json), Format::json, answer.provenance));
 }
 
-/// The line of the last point of the first sweep.
-Json point_line() {
-    Json request = first_request("sweep");
-    request["indices"] = {3};
+/// The line of a point of the first sweep or of the first basins.
+Json point_line(const char* operation, decltype(read_sweep_request)& read, std::size_t index) {
+    Json request = first_request(operation);
+    request["indices"] = {index};
     Json point;
     RunControl control;
-    run_sweep(
-        read_sweep_request(request, 4), 1, control,
-        [&](std::size_t, const std::string& line) { point = Json::parse(line); });
-    return point;
-}
-
-Json basins_line() {
-    Json request = first_request("basins");
-    request["indices"] = {0};
-    Json point;
-    RunControl control;
-    run_sweep(
-        read_basins_request(request, 100), 1, control,
-        [&](std::size_t, const std::string& line) { point = Json::parse(line); });
+    run_sweep(read(request, 100), 1, control, [&](std::size_t, const std::string& line) {
+        point = Json::parse(line);
+    });
     return point;
 }
 
@@ -152,8 +141,8 @@ Json answer_example(const char* schema) {
     static const Json computed = {
         {"Simulation", answer_to("simulate", "/v1/simulate")},
         {"Manifold", answer_to("manifold", "/v1/manifold")},
-        {"SweepLine", point_line()},
-        {"BasinsLine", basins_line()},
+        {"SweepLine", point_line("sweep", read_sweep_request, 3)},
+        {"BasinsLine", point_line("basins", read_basins_request, 0)},
         {"ContinueLine", special_line()},
         {"DesignLine", design_line()},
         {"Identification", answer_to("identify", "/v1/identify")}};

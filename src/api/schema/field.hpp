@@ -63,6 +63,9 @@ FieldTable operator+(FieldTable table, const FieldTable& more);
 /// The field of this name; null if the table has none.
 const Field* find(const FieldTable& table, const std::string& name);
 
+/// The value of a field of the table in an object, otherwise the table's default.
+Json value_or_default(const FieldTable& table, const Json& object, const char* name);
+
 /// The name, of those known, that a mistyped name probably stands for; empty if none is similar.
 /// Names and table must not be empty.
 std::string nearest_name(std::span<const std::string> names, const std::string& name);

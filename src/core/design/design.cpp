@@ -50,7 +50,7 @@ double value_of(const PointResult& r, Objective objective, double omega0) {
 struct DesignMap {
     std::vector<double> b, f;
     std::vector<double> worst, best;
-    std::vector<Motion> motion;     ///< the worst one
+    std::vector<State> start;       ///< of the worst motion
     std::vector<Extremes> extreme;  ///< impacts of all motions
     std::vector<double> rate;       ///< most impacts per cycle of all motions
 
@@ -72,7 +72,7 @@ public:
         double worst = -infinity, best = infinity;
         for (const Motion& m : point.motions) {
             const double value = value_of(m.result, objective_, omega0_);
-            if (value > worst) worst = value, map_.motion[line] = m;
+            if (value > worst) worst = value, map_.start[line] = m.from;
             best = std::min(best, value);
             if (!m.result.measured) continue;
             Extremes& e = map_.extreme[line];
@@ -144,7 +144,7 @@ struct DesignSearch {
             for (const double a : amplitudes) m.b.push_back(b / a);
         sort_unique(m.b);
         const std::size_t size = m.b.size() * m.f.size();
-        m.worst.resize(size), m.best.resize(size), m.motion.resize(size);
+        m.worst.resize(size), m.best.resize(size), m.start.resize(size);
         m.extreme.resize(size), m.rate.resize(size);
         SweepPlan sweep;
         sweep.grid.steps = {m.b.size(), m.f.size()};
@@ -159,8 +159,7 @@ struct DesignSearch {
         for (std::size_t line = 0; line < size; ++line) sweep.lines.push_back(line);
         MapSink into(m, plan.objective, si.omega0(), plan.cycles);
         run_sweep(sweep, threads, control, into);
-        const ComputePermit permit(control);
-        if (control.stop_or_yield()) throw Stopped();
+        poll(control);
         return m;
     }
 
@@ -180,11 +179,14 @@ struct DesignSearch {
         return p;
     }
 
+    /// Ratio of neighbours in the row of b.
+    double row_step() const {
+        return elementary::pow(plan.b.to / plan.b.from, 1.0 / (plan.b_count - 1));
+    }
+
     /// Factors of the amplitudes, which a geometric row of b shares.
     std::vector<double> amplitudes() const {
-        const double step = plan.b_count > 1
-                                ? elementary::pow(plan.b.to / plan.b.from, 1.0 / (plan.b_count - 1))
-                                : infinity;
+        const double step = plan.b_count > 1 ? row_step() : infinity;
         std::vector<double> all = {1};
         while (all.back() / step > plan.amplitude_ratio * (1 + same_b))
             all.push_back(all.back() / step);
@@ -234,9 +236,7 @@ struct DesignSearch {
             try_finely(best, {p.b}, p.R, p.m2);
             ++tried;
         }
-        double width = plan.b_count > 1
-                           ? elementary::pow(plan.b.to / plan.b.from, 1.0 / (plan.b_count - 1))
-                           : 1;
+        double width = plan.b_count > 1 ? row_step() : 1;
         for (int round = 0; round < design_rounds; ++round) {
             width = elementary::pow(width, 1.0 / (tries_per_side + 1));
             std::vector<double> tries;
@@ -350,8 +350,8 @@ struct DesignSearch {
         PointOptions whole = options();
         whole.amplitudes_alone = whole.carry = false;
         const Parameters system = this->system(m.b[0], p.R, si, p.f);
-        d.at_worst = run_point(
-            {system, m.motion[0].from, whole.max_impacts}, m.motion[0].from, whole, control);
+        const State& start = m.start[0];
+        d.at_worst = run_point({system, start, whole.max_impacts}, start, whole, control);
         d.omega0 = si.omega0();
     }
 };

@@ -10,7 +10,7 @@
 
 namespace vines {
 
-/// What a design makes small; `worst` is its value in the worst case, otherwise the mean.
+/// The quantity that a design makes small.
 enum class Objective {
     x_max,               ///< of |x|, m
     x_rms,               ///< of x, m

@@ -34,14 +34,15 @@ public:
     Eigen::Index size() const { return size_; }
     const std::vector<EffectColumns>& columns() const { return columns_; }
 
-    /// Of the displacement and of the acceleration at sample time tau, `row` being the motion of
-    /// interval i there.
+    /// Derivatives of the displacement and of the acceleration at sample time tau, `row` being the
+    /// motion of interval i there.
     const Eigen::VectorXd& displacement(std::size_t i, double tau, const MotionRow& row);
     const Eigen::VectorXd& acceleration(std::size_t i, double tau, const MotionRow& row);
-    /// Of x, x' or x'' of the motion of interval i at tau.
+    /// Derivatives of x, x' or x'' of the motion of interval i at tau.
     const Eigen::VectorXd& motion(
         std::size_t i, double tau, const MotionRow& row, double OscillatorMotion::* member);
-    /// Of y' at the start (+1) or the end (-1) of the flight between borders p and p + 1.
+    /// Derivatives of y' at the start (+1) or the end (-1) of the flight between borders p and p
+    /// + 1.
     double flight(std::size_t p, double sign) const;
     double mean_speed = 0;  ///< mean of |x' - y'| before the impacts
 

@@ -10,7 +10,8 @@ struct Extremes {
     double x_acceleration = 0;  ///< of |x''| between impacts, m per unit of tau squared
     double x_relative = 0;      ///< of |x - x_b|, x_b being the displacement of the base, m
     double impact_speed = 0;    ///< of |x' - y'| before an impact, m per unit of tau
-    /// Of |x' - y'| (1 + R), m per unit of tau: the impulse over the reduced mass m1 m2/(m1 + m2).
+    /// Impulse of an impact over the reduced mass m1 m2/(m1 + m2): |x' - y'| (1 + R), m per unit of
+    /// tau.
     double speed_change = 0;
 };
 

@@ -32,6 +32,9 @@ public:
 
 struct Stopped {};  ///< thrown by the computation once stop_or_yield() returned true
 
+/// Throws Stopped after a stop request, which it reads with a permit of its own.
+void poll(RunControl& control);
+
 /// A permit to compute, held while in scope.
 class ComputePermit {
 public:

@@ -37,18 +37,17 @@ void parallel(std::size_t count, int threads, const std::function<void(std::size
     if (failure) std::rethrow_exception(failure);
 }
 
+void poll(RunControl& control) {
+    const ComputePermit permit(control);
+    if (control.stop_or_yield()) throw Stopped();
+}
+
 namespace {
 
 PointOptions options_of(const PointSystem& system, PointOptions options) {
     options.max_impacts = system.max_impacts;
     options.known = system.known.get();
     return options;
-}
-
-/// Throws Stopped on a stop request.
-void poll(RunControl& control) {
-    const ComputePermit permit(control);
-    if (control.stop_or_yield()) throw Stopped();
 }
 
 /// Counts a completed run; throws Stopped if it was interrupted.
