@@ -23,8 +23,7 @@ StartBox box_of(const Json& box, const State& start) {
 
 BasinPlan basin_plan(const SweepRequest& r, const Json& given) {
     const auto number = [&](const char* name) {
-        return given.contains(name) ? given[name].get<double>()
-                                    : find(basins_fields(), name)->fallback.get<double>();
+        return value_or_default(basins_fields(), given, name).get<double>();
     };
     const auto& systems = r.systems;
     std::vector<double> values = r.axes.empty() ? std::vector<double>{0} : r.axes[0].values;
@@ -68,8 +67,7 @@ SweepRequest read_basins_request(const Json& given, std::size_t most_points) {
     Json grid = given;
     grid["axes"] = Json::array();
     if (given.contains("axis")) grid["axes"].push_back(given["axis"]);
-    const Json& count =
-        given.contains("count") ? given["count"] : find(basins_fields(), "count")->fallback;
+    const Json count = value_or_default(basins_fields(), given, "count");
     try {
         SweepRequest r = read_grid(grid, count.get<std::size_t>(), most_points);
         r.given.erase("axes");

@@ -271,28 +271,6 @@ Response answer(const Request& r, const Service& service, Stopwatch& watch) {
     return response;
 }
 
-Response sweep(const Request& r, const Service& service, Stopwatch& watch) {
-    const RouteOptions& options = service.options;
-    const auto body_permit = body_permit_for(r, service.admission, options.deadline);
-    Permit permit = permit_for(r, service.admission, watch);  // for reading the request
-    const api::Stop stop = stop_conditions(options.deadline, r, service.admission, permit);
-    std::optional<api::Format> format;
-    api::SweepRequest request = read_in_time(r, service, permit, [&] {
-        const Json body = body_of(r, reading_of(r, options, stop));
-        format = api::sweep_format(body);
-        const auto read =
-            r.path == "/v1/basins" ? api::read_basins_request : api::read_sweep_request;
-        return read(body, options.sweep_points);
-    });
-    if (!format) format = accepted_format(r.accept, api::sweep_format_names);
-    watch.lap("parse", permit.waited());
-    Response response = stream_sweep(
-        std::move(request), {*format, options.answer_limit}, options.sweep_deadline, r,
-        service.admission, service.metrics);
-    response.headers.push_back(varies);
-    return response;
-}
-
 namespace {
 
 /// Reads a request with `read` and streams its lines with `stream`.
@@ -311,6 +289,24 @@ Response lines_of(
 }
 
 }  // namespace
+
+Response sweep(const Request& r, const Service& service, Stopwatch& watch) {
+    std::optional<api::Format> format;
+    const auto read = [&](const Json& body) {
+        format = api::sweep_format(body);
+        const auto request =
+            r.path == "/v1/basins" ? api::read_basins_request : api::read_sweep_request;
+        return request(body, service.options.sweep_points);
+    };
+    const auto stream = [&](api::SweepRequest request, double deadline, auto&... rest) {
+        if (!format) format = accepted_format(r.accept, api::sweep_format_names);
+        return stream_sweep(
+            std::move(request), {*format, service.options.answer_limit}, deadline, rest...);
+    };
+    Response response = lines_of(r, service, watch, read, stream);
+    response.headers.push_back(varies);
+    return response;
+}
 
 Response continuation(const Request& r, const Service& service, Stopwatch& watch) {
     return lines_of(r, service, watch, api::read_continue_request, stream_continuation);

@@ -31,14 +31,7 @@ Json special_of(const std::vector<Json>& lines, const std::string& kind) {
 
 /// Pointers of the fields at fault.
 std::set<std::string> faults_of(const std::string& text) {
-    try {
-        read_continue_request(parse_object(text));
-    } catch (const Problem& problem) {
-        std::set<std::string> pointers;
-        for (const FieldError& e : problem.errors) pointers.insert(e.pointer);
-        return pointers;
-    }
-    return {};
+    return pointers(problem_of([&] { read_continue_request(parse_object(text)); }));
 }
 
 }  // namespace

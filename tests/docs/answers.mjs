@@ -187,25 +187,24 @@ const designs = ["x_max", "x_rms", "x_relative_max", "x_acceleration_max", "impa
   }),
 );
 
-async function noteDesign(keys, url, request) {
-  const response = await fetch(`${url}/v1/design`, {method: "POST", body: JSON.stringify(request)});
+/** The lines of a stream. */
+async function linesOf(url, request) {
+  const response = await fetch(url, {method: "POST", body: JSON.stringify(request)});
   const text = await response.text();
   assert.equal(response.status, 200, text);
-  for (const line of text
+  return text
     .trim()
     .split("\n")
-    .map((one) => JSON.parse(one)))
+    .map((line) => JSON.parse(line));
+}
+
+async function noteDesign(keys, url, request) {
+  for (const line of await linesOf(`${url}/v1/design`, request))
     keys.note(`design.${line.type}`, line, ["request"]);
 }
 
 async function noteBasins(keys, url, request) {
-  const response = await fetch(`${url}/v1/basins`, {method: "POST", body: JSON.stringify(request)});
-  const text = await response.text();
-  assert.equal(response.status, 200, text);
-  for (const line of text
-    .trim()
-    .split("\n")
-    .map((one) => JSON.parse(one))) {
+  for (const line of await linesOf(`${url}/v1/basins`, request)) {
     for (const one of [line, ...(line.attractors ?? []), ...(line.basins ?? [])])
       delete one[request.axis?.parameter];
     if (line.type === "point") keys.note("basins.point", line);
@@ -218,16 +217,7 @@ async function noteBasins(keys, url, request) {
 }
 
 async function noteContinuation(keys, url, request) {
-  const response = await fetch(`${url}/v1/continue`, {
-    method: "POST",
-    body: JSON.stringify(request),
-  });
-  const text = await response.text();
-  assert.equal(response.status, 200, text);
-  for (const line of text
-    .trim()
-    .split("\n")
-    .map((one) => JSON.parse(one))) {
+  for (const line of await linesOf(`${url}/v1/continue`, request)) {
     delete line[request.parameter];
     delete line[request.second];
     if (line.type === "start") {

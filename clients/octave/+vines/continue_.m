@@ -15,15 +15,8 @@ function [points, specials, branches] = continue_(varargin)
   % Errors: those of vines.simulate, and vines:incomplete if the computation ended early.
   given = vines.internal.fields(varargin);
   request = struct('route', 'continue', 'body', vines.internal.json(given));
-  [lines, outcome] = vines.internal.received_lines(request);
+  lines = vines.internal.completed_lines(request);
   points = vines.internal.of_type(lines, 'point');
   specials = vines.internal.of_type(lines, 'special');
   branches = vines.internal.of_type(lines, 'branch');
-  if ~strcmp(lines{end}.type, 'done')
-    if strcmp(lines{end}.type, 'error')
-      outcome.message = lines{end}.detail;
-    end
-    detail = sprintf('%s; received %d points', outcome.message, numel(points));
-    vines.internal.raise('incomplete', outcome, detail, struct('points', points, 'missing', []));
-  end
 end

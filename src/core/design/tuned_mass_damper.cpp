@@ -6,6 +6,7 @@
 #include <limits>
 #include <vector>
 
+#include "core/measures/golden_section.hpp"
 #include "core/motion/elementary.hpp"
 
 namespace vines {
@@ -14,29 +15,13 @@ namespace {
 
 using Complex = std::complex<double>;
 
-// Points of the band in which local maxima are bracketed, and the steps of a golden section, which
-// narrow a bracket to 1e-5 of itself.
-constexpr int band_points = 200, golden_steps = 24;
+// Points of the band in which local maxima are bracketed, and the tolerance relative to a bracket.
+constexpr int band_points = 200;
+constexpr double bracket_tolerance = 1e-5;
 // The search refines a square of ratios around the best: points per side, the first range as a
 // factor up and down, and the rounds that each narrow it.
 constexpr int side_points = 15, tuning_rounds = 12;
 constexpr double frequency_range = 1.6, damping_range = 12, narrowing = 0.45;
-
-double turning_point(const std::function<double(double)>& function, double low, double high) {
-    const double golden = 0.5 * (std::sqrt(5.0) - 1);
-    double a = high - golden * (high - low), b = low + golden * (high - low);
-    double at_a = function(a), at_b = function(b);
-    for (int step = 0; step < golden_steps; ++step) {
-        if (at_a > at_b) {
-            high = b, b = a, at_b = at_a;
-            at_a = function(a = high - golden * (high - low));
-        } else {
-            low = a, a = b, at_a = at_b;
-            at_b = function(b = low + golden * (high - low));
-        }
-    }
-    return 0.5 * (low + high);
-}
 
 }  // namespace
 
@@ -74,7 +59,9 @@ BandMaximum band_maximum(const std::function<double(double)>& function, const In
         // The refined value of a lower bracket cannot exceed that of the highest by much.
         if (value[k] < value[k - 1] || value[k] < value[k + 1] || value[k] < 0.8 * value[best])
             continue;
-        const double at = turning_point(function, f[k - 1], f[k + 1]), there = function(at);
+        const double width = f[k + 1] - f[k - 1],
+                     at = golden_maximum(function, f[k - 1], f[k + 1], bracket_tolerance * width),
+                     there = function(at);
         if (there > most.value) most = {at, there};
     }
     return most;

@@ -22,8 +22,6 @@ constexpr double half_block_periods = 25, searched = 0.003;
 constexpr double stands_above = 6, above_noise = 2;
 constexpr int neighbourhood = 40, line_width = 3, trials_per_resolution = 8;
 
-Complex turned(double angle) { return {elementary::cos(angle), elementary::sin(angle)}; }
-
 double hann(double place) {
     const double sine = elementary::sin(std::numbers::pi * place);
     return sine * sine;
@@ -40,7 +38,7 @@ public:
         std::vector<double> weights(blocks, 0);
         for (std::size_t k = 0; k < tau.size(); ++k) {
             const double place = (tau[k] - tau.front()) / hop_;
-            const Complex value = v[k] * turned(-Omega * (tau[k] - tau.front()));
+            const Complex value = v[k] * elementary::phasor(-Omega * (tau[k] - tau.front()));
             const auto last = static_cast<std::size_t>(place);
             for (std::size_t j = last > 0 ? last - 1 : 0; j <= last && j < blocks; ++j) {
                 const double weight = hann(0.5 * (place - static_cast<double>(j)));
@@ -60,7 +58,8 @@ public:
     /// Amplitude and phase at Omega + faster, cos and -sin of the time since the start.
     Complex at(double faster) const {
         Complex sum = 0;
-        for (const Average& a : averages_) sum += a.weight * a.value * turned(-faster * a.tau);
+        for (const Average& a : averages_)
+            sum += a.weight * a.value * elementary::phasor(-faster * a.tau);
         return sum / total_;
     }
     bool is_empty() const { return averages_.size() < 3; }
@@ -93,7 +92,7 @@ Hum remove_line(const std::vector<double>& tau, std::vector<double>& v, double O
         return {Omega, 0, false};
     const Complex line = near.at(best);
     for (std::size_t k = 0; k < tau.size(); ++k)
-        v[k] -= (line * turned((Omega + best) * (tau[k] - tau.front()))).real();
+        v[k] -= (line * elementary::phasor((Omega + best) * (tau[k] - tau.front()))).real();
     return {Omega + best, highest, false};
 }
 

@@ -6,7 +6,9 @@
 #include <numbers>
 #include <vector>
 
+#include "core/measures/golden_section.hpp"
 #include "core/motion/elementary.hpp"
+#include "core/motion/fourier.hpp"
 #include "core/stability/linear.hpp"
 #include "core/stability/orbit.hpp"
 
@@ -42,11 +44,8 @@ constexpr double is_return = 1e-8;
 // coincide.
 constexpr double least_median_gap = 0.01;
 
-using Signal = std::vector<std::complex<double>>;
-
 std::complex<double> turned(double turns) {
-    const double angle = 2 * std::numbers::pi * turns;
-    return {elementary::cos(angle), elementary::sin(angle)};
+    return elementary::phasor(2 * std::numbers::pi * turns);
 }
 
 /// (x, x') of the points as complex numbers, without their mean, weighted by the square of a Hann
@@ -72,38 +71,11 @@ double line_at(const Signal& signal, double frequency) {
     return elementary::modulus(sum);
 }
 
-/// Fast Fourier transform of a power of two of values: X_n = sum of x_k exp(-2 pi i n k/N).
-/// `roots` holds exp(-2 pi i k/M) for k < M/2, where M is a multiple of N.
-void transform(std::span<std::complex<double>> x, const Signal& roots) {
-    const std::size_t n = x.size();
-    if (n == 1) return;
-    Signal even, odd;
-    for (std::size_t k = 0; k < n; k += 2) even.push_back(x[k]), odd.push_back(x[k + 1]);
-    transform(even, roots), transform(odd, roots);
-    for (std::size_t k = 0; k < n / 2; ++k) {
-        const auto part = roots[k * (2 * roots.size() / n)] * odd[k];
-        x[k] = even[k] + part;
-        x[k + n / 2] = even[k] - part;
-    }
-}
-
 /// Frequency of the maximum of line_at() within `width` of a frequency, by golden sections.
 double refined(const Signal& signal, double frequency, double width) {
-    constexpr double golden = 0.6180339887498949;
-    const double tolerance = 1e-9 * width;
-    double low = frequency - width, high = frequency + width;
-    double left = high - golden * (high - low), right = low + golden * (high - low),
-           at_left = line_at(signal, left), at_right = line_at(signal, right);
-    while (high - low > tolerance) {
-        if (at_left > at_right) {
-            high = right, right = left, at_right = at_left;
-            left = high - golden * (high - low), at_left = line_at(signal, left);
-        } else {
-            low = left, left = right, at_left = at_right;
-            right = low + golden * (high - low), at_right = line_at(signal, right);
-        }
-    }
-    return 0.5 * (low + high);
+    return golden_maximum(
+        [&signal](double at) { return line_at(signal, at); }, frequency - width, frequency + width,
+        1e-9 * width);
 }
 
 /// Frequencies of the strongest lines, in turns per point, the strongest first.
@@ -112,10 +84,7 @@ std::vector<double> strongest_lines(const Signal& signal) {
     while (n < 2 * signal.size()) n *= 2;
     Signal spectrum = signal;
     spectrum.resize(n);
-    Signal roots;
-    for (std::size_t k = 0; k < n / 2; ++k)
-        roots.push_back(turned(-static_cast<double>(k) / static_cast<double>(n)));
-    transform(spectrum, roots);
+    spectrum = fourier_sums(std::move(spectrum), -1);
     std::vector<std::pair<double, std::size_t>> maxima;
     for (std::size_t k = 0; k < n; ++k) {
         const double here = elementary::modulus(spectrum[k]);

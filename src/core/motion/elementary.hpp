@@ -44,6 +44,8 @@ double atan(double x);
 double hypot(double x, double y);
 
 /// Modulus of a complex number; std::abs calls the C library.
+/// exp(i angle).
+inline std::complex<double> phasor(double angle) { return {cos(angle), sin(angle)}; }
 inline double modulus(const std::complex<double>& z) { return hypot(z.real(), z.imag()); }
 
 }  // namespace vines::elementary

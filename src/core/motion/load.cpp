@@ -6,6 +6,8 @@
 #include <complex>
 #include <random>
 
+#include "core/motion/fourier.hpp"
+
 namespace vines {
 
 namespace {
@@ -56,32 +58,6 @@ struct BaseMotion {
     }
     Polynomial coasting() const { return {static_cast<double>(x), static_cast<double>(v)}; }
 };
-
-using Spectrum = std::vector<std::complex<double>>;
-
-/// Sums of c_k exp(2 pi i k n/N) for n = 0 ... N - 1, by Cooley and Tukey; N is a power of two.
-Spectrum transformed(Spectrum c) {
-    const std::size_t N = c.size();
-    for (std::size_t i = 1, j = 0; i < N; ++i) {
-        std::size_t bit = N >> 1;
-        for (; j & bit; bit >>= 1) j ^= bit;
-        j ^= bit;
-        if (i < j) std::swap(c[i], c[j]);
-    }
-    Spectrum roots(N / 2);
-    for (std::size_t k = 0; k < roots.size(); ++k) {
-        const double angle = 2 * std::numbers::pi * static_cast<double>(k) / static_cast<double>(N);
-        roots[k] = {elementary::cos(angle), elementary::sin(angle)};
-    }
-    for (std::size_t half = 1; half < N; half *= 2)
-        for (std::size_t from = 0; from < N; from += 2 * half)
-            for (std::size_t k = 0; k < half; ++k) {
-                const auto odd = c[from + half + k] * roots[k * (N / (2 * half))];
-                c[from + half + k] = c[from + k] - odd;
-                c[from + k] += odd;
-            }
-    return c;
-}
 
 }  // namespace
 
@@ -141,7 +117,7 @@ Load Load::noise(
                    std::max<std::size_t>(1, static_cast<std::size_t>(std::ceil(Omega_low / w1))),
                last = static_cast<std::size_t>(std::floor(Omega_high / w1));
     std::mt19937_64 engine(seed);
-    Spectrum C(last + 1);
+    Signal C(last + 1);
     double drift = 0, weight = 0, square = 0;
     const auto w = [w1](std::size_t k) { return w1 * static_cast<double>(k); };
     for (std::size_t k = first; k <= last; ++k) {
@@ -156,7 +132,7 @@ Load Load::noise(
     std::size_t N = 32;
     while (N < 32 * last) N *= 2;
     // Both real signals by one transform: p + i q.
-    Spectrum motion(N), second(N);
+    Signal motion(N), second(N);
     double place = 0;
     for (std::size_t k = first; k <= last; ++k) {
         C[k] *= rms / std::sqrt(square);
@@ -166,7 +142,7 @@ Load Load::noise(
         second[k] = C[k] * (w(k) * w(k));
         place -= p.real();
     }
-    motion = transformed(std::move(motion)), second = transformed(std::move(second));
+    motion = fourier_sums(std::move(motion), 1), second = fourier_sums(std::move(second), 1);
     Load load(LoadKind::base_acceleration);
     load.width_ = 4;
     const double h = duration / static_cast<double>(N);
