@@ -224,8 +224,6 @@ std::vector<FieldError> field_errors(const std::vector<Fault>& faults, const Mer
     return errors;
 }
 
-namespace {}  // namespace
-
 System read_system(const MergedFields& l, bool forcing_fitted) {
     const bool si = !present(l.fields, si_names).empty();
     check_laws(l, si);

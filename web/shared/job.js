@@ -4,7 +4,7 @@ import {TemporaryError} from "./api.js";
 import {$, attributes, sayIn} from "./dom.js";
 
 const lateAfter = 120; // ms after which a computation is reported as busy
-export const retryInterval = 2; // s between attempts while the service is unreachable or busy
+const retryInterval = 2; // s between attempts while the service is unreachable or busy
 
 /** Waits some seconds, or until the signal is aborted. */
 const sleep = (seconds, signal) =>
@@ -14,7 +14,7 @@ const sleep = (seconds, signal) =>
   });
 
 /** True for temporary failures: no answer, a broken answer or 503. */
-export const isTemporary = (error) => error instanceof TemporaryError || error.status === 503;
+const isTemporary = (error) => error instanceof TemporaryError || error.status === 503;
 
 /**
  * ask(request, signal) returns the answer as a promise; show(answer, request, ms) can be

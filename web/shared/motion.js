@@ -192,7 +192,7 @@ function mapOf(advance) {
   };
 }
 
-export class Flow {
+class Flow {
   /** Dimensionless stiffness and damping, forcing in m, Omega relative to omega0. */
   constructor(stiffness, damping, forcing, Omega) {
     Object.assign(this, {stiffness, damping, forcing, Omega});
