@@ -268,6 +268,22 @@ test("two axes make a map of a quantity or of regimes; a click on a cell simulat
   await page.close();
 });
 
+test("a map of attractors over two initial values has a colour for each twin, and their fractions", async () => {
+  const plane = "axis1=x0,-0.003,0.003,8&axis2=y_dot0,-0.02,0.02,6";
+  const page = await visit(
+    `?tab=sweep&${plane}&cycles=50&transient_cycles=300&b=0.0065&y0=0&damping=closed_form&map=attractor`,
+  );
+  await swept(page, 1);
+  const twins = await page.$$eval("#sweep-attractors li", (items) =>
+    items.map(({textContent}) => textContent.match(/^(p1-[0-9a-f]{8})(\d+) %$/).slice(1)),
+  );
+  assert.equal(twins.length, 2);
+  assert.notEqual(twins[0][0], twins[1][0]);
+  assert.equal(Number(twins[0][1]) + Number(twins[1][1]), 100);
+  await page.selectOption("#sweep-mapped", "z");
+  assert.equal(await page.locator("#sweep-attractors li").count(), 0);
+});
+
 test("several starts over a logarithmic axis have different symbols", async () => {
   const starts = "axis1=b,0.003,0.04,20,log&starts=x0=0;y_dot0=0.02&cycles=40";
   const page = await visit(`?tab=sweep&${starts}&section=stroboscopic&coordinate=gap`);

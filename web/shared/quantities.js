@@ -26,7 +26,8 @@ const mm = (metres) => (metres == null ? null : metres * 1000);
 
 /**
  * of: the value at a point, by default the field of the same name; levels: horizontal lines; free:
- * the value without the absorber; diverging: the colour scale is centred on 0.
+ * the value without the absorber; diverging: the colour scale is centred on 0; categories: the
+ * values are names.
  */
 export const quantities = {
   lambda1: {
@@ -36,7 +37,14 @@ export const quantities = {
     diverging: true,
   },
   z: {label: "z", title: "impacts per cycle z", levels: [1, 2, 3]},
-  regime: {label: "", title: "regime", categories: Object.keys(regimes)},
+  regime: {label: "", title: "regime", categories: true},
+  attractor: {
+    label: "",
+    title: "attractor",
+    // Chaotic and quasi-periodic motions have statistics in their names, rounded from a finite run.
+    of: (p) => p.attractor?.replace(/^(chaotic|quasi_periodic)-.*/, "$1") ?? null,
+    categories: true,
+  },
   x_rms_ratio: {
     label: "rms of x / without absorber",
     title: "rms of x relative to that without absorber",
@@ -228,6 +236,7 @@ export function describe(p, where) {
   const rows = [
     ["regime", regimeText(p.regime)],
     ["", p.periodic && p.impacts_per_period && period(p)],
+    ["attractor", p.periodic && p.attractor],
     ["z", short(p.z)],
     ["λ₁", p.lambda && exponentText(p)],
     ["", verdictText(p)],

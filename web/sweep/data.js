@@ -222,6 +222,7 @@ export class Layers {
     this.base = base;
     this.all = [base];
     this.ends = {}; // ends of a map's colour scale, by quantity
+    this.coloured = new Map(); // colour of each attractor on a map
   }
 
   add(data) {

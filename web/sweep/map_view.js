@@ -8,6 +8,7 @@ import {pixel} from "../shared/raster.js";
 import {Viewport} from "../shared/viewport.js";
 import * as labels from "./axis_labels.js";
 import {bar, barWidth, endsOf, scaleOf} from "./colour_scale.js";
+import {startColour} from "./diagram.js";
 import {missingPoint, SweepPlot, SweepView} from "./sweep_view.js";
 
 /** Steps of the keys over the cells. */
@@ -100,6 +101,26 @@ class MapPlot extends SweepPlot {
     return p.error ? null : (this.quantity().of(this.motion(p)) ?? null);
   }
 
+  /** The attractors of the visible slice: a map from the name to the number of points. */
+  attractors() {
+    const counts = new Map();
+    for (const {p} of this.view.cells(this.view.data)) {
+      const name = this.valueOf(p);
+      if (name !== null) counts.set(name, (counts.get(name) ?? 0) + 1);
+    }
+    return counts;
+  }
+
+  /** Colour name of a category; that of an attractor does not change while points arrive. */
+  colourOf(name) {
+    if (this.view.choice.map === "regime") return regimeColour(name);
+    if (name === "not_decided") return "nothing";
+    if (name === "chaotic") return "chaotic";
+    const {coloured} = this.view.layers;
+    if (!coloured.has(name)) coloured.set(name, startColour(coloured.size));
+    return coloured.get(name);
+  }
+
   /**
    * The colour scale; null for categories. It is fixed for each quantity once a coarse picture of
    * the whole map exists, and holds for all slices and starts.
@@ -149,7 +170,7 @@ class MapPlot extends SweepPlot {
     const [first, second] = data.axes;
     const n = first.at.length;
     const pixels = new Uint32Array(n * second.at.length);
-    const colourOf = scale ? scale.at : (v) => rgb(regimeColour(v));
+    const colourOf = scale ? scale.at : (v) => rgb(this.colourOf(v));
     for (const {p, k, l} of this.view.cells(data)) {
       const v = this.valueOf(p);
       pixels[l * n + k] = pixel(v === null ? rgb("nothing") : colourOf(v));
@@ -161,7 +182,7 @@ class MapPlot extends SweepPlot {
 
   columns() {
     return {
-      [this.quantity().label || "regime"]: (p) => this.valueOf(p),
+      [this.quantity().label || this.quantity().title]: (p) => this.valueOf(p),
       regime: (p) => this.motion(p).regime ?? "–",
     };
   }

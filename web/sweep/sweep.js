@@ -5,6 +5,7 @@ import * as dom from "../shared/dom.js";
 import {$} from "../shared/dom.js";
 
 import {RequestTab} from "../shared/job.js";
+import {percent} from "../shared/numbers.js";
 import {coordinates, menuOf, otherMotion, symbolOf} from "../shared/quantities.js";
 import {onUnits, unitsSwitch} from "../shared/units.js";
 import * as labels from "./axis_labels.js";
@@ -90,6 +91,21 @@ function showRegimes({points}) {
     number.parentNode.classList.toggle("absent", !n);
     number.parentNode.hidden = regime === "none" && !n;
   }
+}
+
+/** Shows the legend of a map of attractors, the most frequent first; empty for other plots. */
+function showAttractors({choice, plots: [map]}) {
+  const counts = choice.map === "attractor" ? [...map.attractors()] : [];
+  const all = counts.reduce((sum, [, n]) => sum + n, 0);
+  const items = counts
+    .sort(([, n], [, m]) => m - n)
+    .map(([name, n]) => {
+      const key = dom.element("span", {className: "key"}, name.replace("_", " "));
+      key.dataset.mark = "■";
+      key.style.color = `var(--${map.colourOf(name)})`;
+      return dom.element("li", {}, key, dom.element("small", {}, percent(n / all)));
+    });
+  $("sweep-attractors").replaceChildren(...items);
 }
 
 const startMarks = ["●", "■", "▲", "◆", "▼"]; // as the shapes of the points
@@ -321,6 +337,7 @@ export class SweepTab extends RequestTab {
     showPeaks(this.data);
     showParts(this.data);
     showRegimes(this.data);
+    if (this.view) showAttractors(this.view);
     this.cost = performance.now() - began;
   }
 
