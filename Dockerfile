@@ -14,6 +14,7 @@ COPY web web
 RUN cd web && { npm ls --omit=dev >/dev/null 2>&1 || npm ci --omit=dev --no-audit --no-fund; }
 
 COPY CMakeLists.txt ./
+COPY docs docs
 COPY src src
 COPY packaging packaging
 # Here is no git to ask for it.

@@ -9,6 +9,7 @@ import {dirname, join, relative} from "node:path";
 import {fileURLToPath} from "node:url";
 import {gzipSync} from "node:zlib";
 import {buildSync} from "esbuild";
+import {helpPages} from "./docs/help.mjs";
 import {docsPage} from "./docs/page.mjs";
 
 const web = dirname(fileURLToPath(import.meta.url));
@@ -43,12 +44,18 @@ const files = [
 ];
 const hash = createHash("sha256").update(files.flat().join("\0")).digest("hex").slice(0, 12);
 
-/** Adds the folder to the names of files, which the pages write in quotes. */
+/** Adds the folder to the names of files, which the pages write in quotes, maybe after "../". */
 const page = (html) =>
-  files.reduce((text, [name]) => text.replaceAll(`"${name}"`, `"${hash}/${name}"`), html);
+  ["", "../"].reduce(
+    (text, up) =>
+      files.reduce((t, [name]) => t.replaceAll(`"${up}${name}"`, `"${up}${hash}/${name}"`), text),
+    html,
+  );
+const documentOf = (name) => readFileSync(join(web, "../docs", `${name}.md`), "utf8");
 const servedFiles = [
   ["/", page(read("index.html"))],
   ["/docs", page(docsPage(read("docs.html"), document))],
+  ...helpPages(read("help.html"), documentOf).map(([path, html]) => [path, page(html)]),
   ...files.map(([name, text]) => [`/${hash}/${name}`, text]),
 ];
 

@@ -16,6 +16,7 @@ const loaders = {
   simulation: async () => SimulationTab,
   sweep: async () => (await import("./sweep/sweep.js")).SweepTab,
   motions: async () => (await import("./motions/motions.js")).MotionsTab,
+  design: async () => (await import("./design/design.js")).DesignTab,
   measurement: async () => (await import("./measurement/measurement.js")).MeasurementTab,
 };
 const tabs = {};

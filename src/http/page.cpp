@@ -43,7 +43,7 @@ Response file_response(std::string_view path, std::string body, const std::strin
         .headers = {{"Content-Security-Policy", policy}, {"Referrer-Policy", "no-referrer"}}};
 }
 
-bool is_page(std::string_view path) { return path == "/" || path == "/docs"; }
+bool is_page(std::string_view path) { return path.find('.') == path.npos; }
 
 std::vector<Route> embedded_routes(const std::string& policy) {
     std::vector<Route> routes;
@@ -94,7 +94,7 @@ bool is_page_asset(const std::filesystem::path& name) {
 }
 
 /// Lists the files once, at start-up; their contents are read at each request. The build makes
-/// /docs, which is compiled in with its files.
+/// /docs and /help, which are compiled in with their files.
 std::vector<Route> folder_routes(const std::filesystem::path& given, const std::string& policy) {
     std::vector<Route> routes = embedded_routes(policy);
     std::erase_if(routes, [](const Route& route) { return route.path == "/"; });

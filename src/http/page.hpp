@@ -1,4 +1,4 @@
-// The page's files and those of the API documentation, as routes: compiled into the program, or
+// The page's files and those of the documentation, as routes: compiled into the program, or
 // read from a folder during development.
 #pragma once
 
@@ -22,7 +22,7 @@ struct Asset {
 std::span<const Asset> assets();
 
 struct PageOptions {
-    /// Serve the page (all but /docs) from this folder, so that changes need no build;
+    /// Serve the page (all but /docs and /help) from this folder, so that changes need no build;
     /// empty: the compiled-in files.
     std::string web_dir = {};
     /// Origins of pages that may show this one in a frame, such as "https://example.org:8443".

@@ -2,9 +2,12 @@
 import assert from "node:assert/strict";
 import {test} from "node:test";
 import {measured} from "../record.mjs";
-import {drawn, found, identified, swept} from "./browser.mjs";
+import {designed, drawn, found, identified, swept} from "./browser.mjs";
 import {leastDifference} from "./palette.mjs";
 import {browser, findingsInBothSchemes, service} from "./support.mjs";
+
+const design =
+  "m1=2&f0=8&damping_ratio=0.01&m2=0.04&f=7,9&acceleration=5&R=0.2&b_count=4&f_count=5&starts=one&cycles=20";
 
 const tabs = {
   "a simulation with its details": async (page) => {
@@ -33,6 +36,10 @@ const tabs = {
       `${service.url}/?tab=motions&parameter=b&from=0.014&to=0.018&count=5&preset=fig11`,
     );
     await found(page, 1);
+  },
+  "a design": async (page) => {
+    await page.goto(`${service.url}/?tab=design&${design}`);
+    await designed(page, 1);
   },
   "a measurement": async (page) => {
     await page.goto(`${service.url}/?tab=measurement&preset=fig15`);
@@ -69,6 +76,7 @@ for (const [name, [width, height]] of Object.entries(screens))
       ["?preset=fig11&embed=1", drawn],
       ["?tab=sweep&axis1=b,0.003,0.04,24&cycles=60", swept],
       ["?tab=motions&parameter=b&from=0.014&to=0.018&count=5&preset=fig11", found],
+      [`?tab=design&${design}`, designed],
       ["?tab=measurement", identified],
     ]) {
       await page.goto(`${service.url}/${address}`);

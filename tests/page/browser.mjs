@@ -66,6 +66,7 @@ export async function open(context, url, options = {}) {
   if (url.includes("tab=measurement"))
     await page.waitForFunction(() => document.getElementById("measure-preset").value);
   else if (url.includes("tab=motions")) await found(page, 1);
+  else if (url.includes("tab=design")) await designed(page, 1);
   else await (url.includes("tab=sweep") ? swept : drawn)(page, 1);
   return page;
 }
@@ -87,3 +88,4 @@ export const drawn = done("results");
 export const identified = done("measure-results");
 export const swept = done("sweep-results");
 export const found = done("motions-results");
+export const designed = done("design-results");

@@ -331,3 +331,29 @@ test("files are named by content, scripts come from the service, and the console
     assert.match(cached(await fetch(`${service.url}/${path}`)), /immutable/, path);
   assert.deepEqual(browser.complaints, []);
 });
+
+test("the documents are pages below /help, and each link of them and of the explanations leads to a place", async () => {
+  const texts = new Map();
+  const read = async (address) => {
+    const answer = await fetch(address);
+    assert.equal(answer.status, 200, address);
+    return answer.text();
+  };
+  const check = async (from) => {
+    const links = (await read(from)).matchAll(/(?:href|src)="([^"]+)"/g);
+    const own = [...links].map(([, link]) => new URL(link, from));
+    for (const {href, hash, origin, pathname} of own) {
+      if (origin !== service.url) continue;
+      const address = href.split("#")[0];
+      if (!texts.has(address)) texts.set(address, await read(address));
+      const anchor = decodeURIComponent(hash.slice(1));
+      const place = anchor === "" || texts.get(address).includes(`id="${anchor}"`);
+      assert.ok(place || pathname === "/docs", `${from} links to ${href}`);
+    }
+  };
+  await check(`${service.url}/help`);
+  const documents = [...texts.keys()].filter((address) => address.includes("/help/"));
+  assert.ok(documents.length > 8);
+  for (const address of documents) await check(address);
+  await check(`${service.url}/`);
+});

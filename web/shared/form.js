@@ -179,6 +179,7 @@ const types = {
     },
   },
   interval: {read: interval},
+  numbers: {read: interval},
   intervals: {
     wide: true,
     read: (text) => partsOf(text).map(interval),
@@ -257,7 +258,8 @@ export class Form {
     const error = element("p", {className: "error", id: `${this.prefix}error-${name}`});
     input.setAttribute("aria-describedby", error.id);
     input.addEventListener("input", () => this.showOrigin(name));
-    const {unit} = unitShown(field.unit);
+    const {unit: own, factor} = unitShown(field.unit);
+    const unit = factor === factorOf(field) ? own : field.unit;
     const shownUnit = element("span", {className: "unit"}, unit && `, ${unit}`);
     const named = element("span", {}, symbolOf(title).replaceAll("_", " "), shownUnit);
     const ends = [minimum, maximum].map((v) => this.shown(name, v));

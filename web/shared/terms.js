@@ -1,11 +1,11 @@
-// Terms that explain themselves: an element with data-term shows a sentence, the formula and the
-// values that matter, from the element `term-NAME` of the page, on hover, focus and touch.
+// Terms that explain themselves: an element with data-term shows a sentence, the formula and a link
+// into the help, from the element `term-NAME` of the page, on hover, focus and touch.
 import {$, attributes, element, on} from "./dom.js";
 
-const below = 6; // px between a term and its explanation
 const box = element("div", {className: "tip term", id: "term", role: "tooltip", hidden: true});
 
 function show({target}) {
+  if (box.contains(target)) return; // on the way to its link
   const node = target.closest?.("[data-term]");
   box.hidden = !node;
   if (!node) return;
@@ -13,9 +13,9 @@ function show({target}) {
   box.replaceChildren($(`term-${node.dataset.term}`).content.cloneNode(true));
   const {left, top, bottom} = node.getBoundingClientRect();
   const {offsetWidth: width, offsetHeight: height} = box;
-  const fits = bottom + below + height < innerHeight;
-  box.style.left = `${Math.max(Math.min(left, innerWidth - width - below), 0)}px`;
-  box.style.top = `${fits ? bottom + below : top - below - height}px`;
+  const fits = bottom + height < innerHeight;
+  box.style.left = `${Math.max(Math.min(left, innerWidth - width), 0)}px`;
+  box.style.top = `${fits ? bottom : top - height}px`;
 }
 
 export function startTerms() {

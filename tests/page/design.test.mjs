@@ -1,0 +1,67 @@
+// The design tab in Chromium.
+import assert from "node:assert/strict";
+import {test} from "node:test";
+import {drawn} from "./browser.mjs";
+import {asked, beyond, browser, cellsByName, fits, narrow, pixels, visit} from "./support.mjs";
+
+const search = "b_count=6&f_count=9&starts=one&cycles=40&transient_cycles=40";
+const machine = "m1=2&f0=8&damping_ratio=0.01";
+const query = `tab=design&${machine}&m2=0.04&f=7,9&acceleration=5&R=0.2,0.6&${search}`;
+const input = (name) => `#design-fields [aria-describedby='design-error-${name}']`;
+
+test("the best absorber stands beside the machine without one and with a tuned mass damper", async () => {
+  const page = await visit(`?${query}`);
+  const cards = await page.$$eval("#design-cards dd", (nodes) => nodes.map((n) => n.textContent));
+  assert.match(cards[0], /^99 mm largest/);
+  assert.match(cards[1], /^[345]\d\.\d mm [345]\d % of that$/);
+  assert.match(cards[2], /^17\.7 mm 18 % of that$/);
+  assert.match(
+    await page.textContent("#design-sentence"),
+    /^A cavity with b = .* for a ball of 40 g/,
+  );
+  for (const name of ["soft", "c1", "c4"])
+    assert.ok((await pixels(page, "#plot-design-response canvas", name)) > 100, name);
+  assert.ok((await pixels(page, "#plot-design-map", "c2")) > 30);
+  const margins = await cellsByName(page, "#design-margins tbody tr");
+  assert.match(margins.b[1], /^× [\d.]+ to [\d.]+$/);
+  assert.match(await page.textContent("#design-walls"), /impacts per second, of up to .* m\/s/);
+  assert.deepEqual(browser.complaints, []);
+  await page.close();
+});
+
+test("the worst case opens in Simulation, and Back returns to the design without a new search", async () => {
+  const page = await visit(`?${query}`);
+  const requests = asked(page, "/v1/design");
+  await page.click("#design-simulate");
+  await drawn(page, 1);
+  const fields = new URL(page.url()).searchParams;
+  for (const name of ["m1", "f0", "b", "R", "m2", "f", "acceleration"]) assert.ok(fields.get(name));
+  await page.goBack();
+  await page.waitForSelector("#panel-design:not([hidden])");
+  assert.match(await page.textContent("#design-sentence"), /^A cavity/);
+  assert.equal(requests.length, 0);
+  await page.close();
+});
+
+test("without a request in the address the form shows an example and waits", async () => {
+  const page = await browser.context.newPage();
+  const requests = asked(page, "/v1/design");
+  const {service} = await import("./support.mjs");
+  await page.goto(`${service.url}/?tab=design`);
+  await page.waitForSelector(input("f"));
+  assert.equal(await page.inputValue(input("f")), "7, 9");
+  assert.equal(requests.length, 0);
+  await page.fill(input("f"), "-1, 9");
+  await page.click("#design-form .go");
+  await page.waitForSelector("#design-error-f:not(:empty)");
+  assert.deepEqual(requests[0].f, [-1, 9]);
+  browser.complaints.length = 0; // Chromium logs the 422
+  await page.close();
+});
+
+test("the design fits a narrow screen", async () => {
+  const page = await visit(`?${query}`, narrow);
+  assert.ok(await fits(page));
+  assert.deepEqual(await beyond(page, "#panel-design :is(canvas, select, figure, button)"), []);
+  await page.close();
+});

@@ -1,0 +1,261 @@
+// The design tab: the best absorber for a machine over a band of frequencies, beside the machine
+// without an absorber and with a tuned mass damper of the same mass.
+import {linesOf} from "../shared/api.js";
+import {$, cards, countUp, element, setTexts, tableOf} from "../shared/dom.js";
+import {addExportButton} from "../shared/export.js";
+import {Form, queryText, unknownText} from "../shared/form.js";
+import {makeAccessible} from "../shared/gestures.js";
+import {RequestTab} from "../shared/job.js";
+import {dots, line} from "../shared/marks.js";
+import {percent, shortTo} from "../shared/numbers.js";
+import {LinePlot, ScatterPlot} from "../shared/plot.js";
+import {Viewport} from "../shared/viewport.js";
+
+const inMm = {unit: "mm", factor: 1000};
+/** What the design makes small: name and unit. */
+const objectives = {
+  x_max: {title: "largest |x|", ...inMm},
+  x_rms: {title: "rms of x", ...inMm},
+  x_relative_max: {title: "largest distance from the base", ...inMm},
+  x_acceleration_max: {title: "largest |x″|", unit: "m/s²", factor: 1},
+  impact_speed_max: {title: "fastest impact", unit: "m/s", factor: 1},
+};
+const round = (value) => shortTo(3, value);
+const hostFields = ["m1", "k1", "f0", "c1", "damping_ratio", "damping"];
+const cyclesOfWorst = 300; // for the simulation of the worst case
+const colours = ["c1", "c2", "c3", "c4", "minus"]; // of the restitution coefficients
+
+export class DesignTab extends RequestTab {
+  asked = null; // query of the form when it was sent
+  points = []; // lines of the maps
+  done = null; // the last line
+
+  constructor(tables, changed, {simulate}) {
+    super("design-", changed);
+    const own = tables.design_fields.filter(({name}) => name !== "base");
+    const host = tables.fields.filter(({name}) => hostFields.includes(name));
+    const fields = [
+      ...host.map((f) => ({...f, group: "host", part: "base"})),
+      ...own.map((f) => ({...f, narrow: true, group: f.type === "integer" ? "search" : "design"})),
+    ];
+    const grouped = {
+      host: ["Machine", true],
+      design: ["Load and absorber", true],
+      search: ["Search", false],
+    };
+    this.form = new Form($("design-fields"), fields, {prefix: "design-", grouped});
+    $("design-fields").oninput = () => this.markStale();
+    this.response = new LinePlot($("plot-design-response"), new Viewport());
+    this.map = new ScatterPlot($("plot-design-map"), new Viewport());
+    for (const plot of ["response", "map"])
+      addExportButton($(`figure-design-${plot}`), this[plot], () => this.about(plot));
+    $("design-simulate").onclick = () => simulate(this.worstCase());
+  }
+
+  get objective() {
+    return objectives[this.name];
+  }
+
+  get name() {
+    return this.asking?.objective ?? "x_max";
+  }
+
+  /** {base, f, ...} of the form. */
+  request() {
+    const request = {base: {}};
+    for (const [name, value] of Object.entries(this.form.values()))
+      (hostFields.includes(name) ? request.base : request)[name] = value;
+    return request;
+  }
+
+  formQuery() {
+    const {base, ...own} = this.request();
+    const entries = Object.entries({...base, ...own}).map(([name, v]) => [name, queryText(v)]);
+    return String(new URLSearchParams(entries));
+  }
+
+  query() {
+    return this.asked;
+  }
+
+  isStale() {
+    return this.asked !== null && this.formQuery() !== this.asked;
+  }
+
+  /** Shows the form of a query, or an example; only a query is computed at once. */
+  open(given) {
+    const standard = new URLSearchParams($("design-form").dataset.query);
+    const fields = Object.fromEntries(given.size ? given : standard);
+    setTexts({
+      "design-note": unknownText(Object.keys(fields).filter((name) => !this.form.inputs.has(name))),
+    });
+    this.form.set(this.form.parse(fields));
+    if (given.size && this.formQuery() !== this.asked) this.submit();
+  }
+
+  submit() {
+    const edit = this.asked !== null;
+    this.asked = this.formQuery();
+    this.form.showErrors([]);
+    this.changed({edit});
+    this.markStale();
+    this.start(this.request());
+  }
+
+  async ask(request, signal) {
+    Object.assign(this, {points: [], done: null, asking: request});
+    for await (const {value: each} of linesOf("v1/design", request, signal)) {
+      if (signal.aborted) return;
+      if (each.type === "error") throw new Error(each.detail);
+      if (each.type === "point") this.points.push(each);
+      if (each.type === "progress") this.showProgress(each);
+      if (each.type === "done") this.done = each;
+      this.draw();
+    }
+  }
+
+  showProgress({runs, runs_of: all}) {
+    Object.assign($("design-bar"), {max: all || 1, value: runs});
+  }
+
+  show() {
+    this.say("");
+    countUp(this.results);
+  }
+
+  busy(is, cancelled) {
+    super.busy(is, cancelled);
+    $("design-bar").hidden = !is;
+  }
+
+  fail({message, errors = []}) {
+    super.fail({
+      message,
+      errors: errors.map((e) => ({...e, pointer: e.pointer.replace(/^\/base/, "")})),
+    });
+  }
+
+  redraw() {
+    if (this.points.length) this.draw();
+  }
+
+  draw() {
+    this.drawMap();
+    $("design-found").hidden = !this.done;
+    if (!this.done) return;
+    const {sentence} = this.done;
+    setTexts({"design-sentence": sentence});
+    this.showCards();
+    this.drawResponse();
+    this.showTolerances();
+  }
+
+  /** A value of the objective with its unit. */
+  text(value) {
+    const {unit, factor} = this.objective;
+    return `${round(value * factor)} ${unit}`;
+  }
+
+  showCards() {
+    const {best, without, tuned_mass_damper: damper} = this.done;
+    const of = (found) => found?.[this.name];
+    const change = (found) => `${percent(of(found) / of(without))} of that`;
+    const entries = [
+      ["without absorber", this.text(of(without)), this.objective.title],
+      ["vibro-impact absorber", this.text(of(best)), change(best)],
+      ["tuned mass damper", this.text(of(damper)), change(damper)],
+    ];
+    cards($("design-cards"), entries);
+  }
+
+  /** The objective over f for each alternative. */
+  drawResponse() {
+    const {f, without, tuned_mass_damper: damper, ...response} = this.done.response;
+    const {factor, unit, title} = this.objective;
+    const of = (y, colour, label, dash) =>
+      line({x: f, y: y.map((v) => v && v * factor), colour, label, dash, width: 1.6});
+    const label = `${title} (${unit})`;
+    this.response.draw({
+      x: {label: "f (Hz)", factor: 1},
+      y: {label, from0: true},
+      span: [f[0], f.at(-1)],
+      unit,
+      marks: [
+        of(without, "soft", "without", [5, 4]),
+        of(response[`${this.name}_best_start`], "best", "absorber, best start"),
+        of(response[`${this.name}_worst_start`], "c1", "worst start"),
+        of(damper, "c4", "tuned mass damper"),
+      ],
+    });
+    makeAccessible({node: this.response.canvas}, `${label} over the frequency`);
+  }
+
+  /** The worst case over b, with a colour for each R; the best is ringed. */
+  drawMap() {
+    const {factor, unit, title} = this.objective;
+    const all = [...new Set(this.points.map(({R}) => R))].sort();
+    const marks = all.map((R, i) => {
+      const own = this.points.filter((p) => p.R === R && p[this.name] != null);
+      const [x, y] = [own.map(({b}) => 1000 * b), own.map((p) => p[this.name] * factor)];
+      const colour = colours[i % colours.length];
+      return dots({x, y, colour, shape: "dot", size: 3, label: `R = ${R}`});
+    });
+    this.map.draw({
+      marks,
+      x: {label: "b (mm)"},
+      y: {label: `worst ${title} (${unit})`},
+      empty: "no absorber tried yet",
+    });
+    const keys = all.map((R, i) => {
+      const key = element("span", {className: "key"}, `R = ${R}`);
+      key.dataset.mark = "●";
+      key.style.setProperty("--key", `var(--${colours[i % colours.length]})`);
+      return key;
+    });
+    $("design-restitutions").replaceChildren(...keys);
+    const {best} = this.done ?? {};
+    if (best) this.map.light(1000 * best.b, best[this.name] * factor);
+  }
+
+  /** The best absorber and how far each of its values can be off. */
+  showTolerances() {
+    const {best} = this.done;
+    const values = {
+      b: `${round(1000 * best.b)} mm`,
+      R: round(best.R),
+      f0: "frequency of the machine",
+      damping: "damping of the machine",
+    };
+    const range = ([low, high]) => `× ${round(low)} to ${round(high)}`;
+    const rows = Object.entries(best.margins ?? {}).map(([name, margin]) => [
+      name,
+      values[name] ?? "",
+      range(margin.five_percent),
+      range(margin.twenty_percent),
+    ]);
+    const head = ["", "best", "5 % worse", "20 % worse"];
+    $("design-margins").replaceChildren(...tableOf(head, rows));
+    const {impact_speed_max: speed, impulse_max: impulse, impacts_per_second: rate} = best;
+    const works = [best.works_from, best.works_to].map((v) => (v == null ? "?" : round(v)));
+    setTexts({
+      "design-walls": `The walls must stand ${round(rate)} impacts per second, of up to ${round(speed)} m/s and ${round(impulse)} N s. At least half of the reduction remains from ${works[0]} to ${works[1]} ${this.asking.F ? "m" : "m/s²"} at the base.`,
+    });
+  }
+
+  /** The simulation of the best absorber where it is worst. */
+  worstCase() {
+    const {b, R, m2, f, acceleration, F} = this.done.best;
+    const load = acceleration == null ? {F} : {acceleration};
+    return {...this.asking.base, b, R, m2, f, ...load, cycles: cyclesOfWorst};
+  }
+
+  about(plot) {
+    const titles = {response: "Response over the band", map: "Worst case over b"};
+    return {
+      title: titles[plot],
+      summary: this.done?.sentence ?? "",
+      caption: this.asked,
+      name: `design-${plot}`,
+    };
+  }
+}
