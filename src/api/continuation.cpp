@@ -18,11 +18,13 @@ namespace {
 constexpr double stated_reach = 0.5;
 constexpr int depth_of_true = 2;
 
-/// Numbers of the system, without those of the start.
+/// Numbers of the system, without those of the start and of friction.
 std::vector<std::string> continued_names() {
     std::vector<std::string> names;
     for (const Field& f : sweep_base_fields())
-        if (f.type == FieldType::number && is_of_system(f)) names.push_back(f.name);
+        if (f.type == FieldType::number &&
+            (is_of_system(f) || f.name == "gravity" || f.name == "inclination"))
+            names.push_back(f.name);
     return names;
 }
 
@@ -35,6 +37,7 @@ std::optional<double> value_in(const SystemFields& fields, const std::string& pa
     if (const auto given = fields.*system_number(parameter)) return *given;
     const ResolvedSystem system = resolve(fields);
     if (parameter == "R") return system.parameters.R_plus;
+    if (parameter == "inclination" && system.si && system.parameters.gravity == 0) return 0;
     for (const auto& property : properties::reduced)
         if (property.quantity.name == parameter) return property.value(system.parameters);
     if (!system.si) return std::nullopt;
@@ -55,7 +58,8 @@ std::function<std::optional<Parameters>(const std::vector<double>&)> systems_alo
         SystemFields changed = fields;
         for (std::size_t i = 0; i < numbers.size(); ++i) changed.*numbers[i] = values[i];
         const Parameters p = resolve(changed).parameters;
-        return validate(p, default_state(p)).empty() ? std::optional(p) : std::nullopt;
+        const bool valid = p.friction == 0 && validate(p, default_state(p)).empty();
+        return valid ? std::optional(p) : std::nullopt;
     };
 }
 
@@ -256,11 +260,10 @@ SystemFields read_family(ContinueRequest& r, const Json& given) {
     whole[r.parameter] = r.at;
     r.base = read_started_system(whole);
     add_errors("/base", r.base.errors, errors);
-    if (!r.base.system.parameters.has_straight_flights())
+    if (const Parameters& p = r.base.system.parameters; p.friction != 0 || p.load)
         errors.push_back(
             {"/base", nullptr, nullptr,
-             "orbits are continued for a harmonic forcing and a ball without gravity and "
-             "friction"});
+             "orbits are continued for a harmonic forcing and a ball without friction"});
     const double from = given["from"], to = given["to"];
     if (from == to || r.at < std::min(from, to) || r.at > std::max(from, to))
         errors.push_back(

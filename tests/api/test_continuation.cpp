@@ -80,6 +80,17 @@ TEST_CASE("every line has the parameter; a point's state settles on its orbit") 
     CHECK(simulated["regime"]["z"] == point["z"]);
 }
 
+TEST_CASE("an inclination can be the parameter, from zero or from another") {
+    const std::string machine =
+        R"("m1":12,"f0":14,"damping_ratio":0.006,"mass_ratio":0.01,"F":0.0004,"f":14,"R":0.4,"b":0.03)";
+    for (const char* inclined : {"", R"(,"inclination":0.001)"}) {
+        const auto lines = lines_of(
+            R"({"base":{)" + machine + inclined +
+            R"(},"parameter":"inclination","from":-0.002,"to":0.002})");
+        CHECK(special_of(lines, "end")["reason"] == "range");
+    }
+}
+
 TEST_CASE("a branch that cannot begin has one line with the reason") {
     for (
         const auto& [text, reason] : std::map<std::string, std::string>{
@@ -137,6 +148,10 @@ TEST_CASE("invalid continuations are refused by field") {
     CHECK(
         faults_of(R"({"base":{"q":1},"parameter":"b","from":0.01,"to":0.04})") == Names{"/base/q"});
     CHECK(faults_of(R"({"parameter":"b","from":0.01,"to":0.04,"switch":9})") == Names{"/switch"});
+    CHECK(
+        faults_of(R"({"base":{"friction":1e-4},"parameter":"b","from":0.01,"to":0.04})") ==
+        Names{"/base"});
+    CHECK(faults_of(R"({"parameter":"friction","from":0,"to":0.01})") == Names{"/parameter"});
     CHECK(
         faults_of(R"({"parameter":"b","from":0.01,"to":0.04,"curve":"fold"})") == Names{"/second"});
     CHECK(

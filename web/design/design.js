@@ -233,7 +233,7 @@ export class DesignTab extends RequestTab {
       range(margin.five_percent),
       range(margin.twenty_percent),
     ]);
-    const head = ["", "best", "5 % worse", "20 % worse"];
+    const head = ["value", "best", "5 % worse", "20 % worse"];
     $("design-margins").replaceChildren(...tableOf(head, rows));
     const {impact_speed_max: speed, impulse_max: impulse, impacts_per_second: rate} = best;
     const works = [best.works_from, best.works_to].map((v) => (v == null ? "?" : round(v)));

@@ -12,7 +12,7 @@ FieldTable sweep_rows() {
         {.name = "base",
          .type = FieldType::object,
          .description = "fields of /v1/simulate that all points share: system, reduced or SI, "
-                        "start, preset, max_impacts",
+                        "laws, load, start, preset, max_impacts",
          .fallback = Json::object()},
         {.name = "axes",
          .type = FieldType::objects,

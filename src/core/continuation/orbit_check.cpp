@@ -18,29 +18,38 @@ constexpr double same_contact = 1e-6;
 // Approach speeds whose square is below this, in units of b, lead less than 1e-13 b beyond a wall
 // that accelerates by 0.01 b or more.
 constexpr double shallow = 1e-15;
+// Distance of values at which a family is compared with a symmetric one, in units of the parameter.
+constexpr double near_value = 1e-3;
+
+/// The ball's motion at the time s of a flight.
+struct Ball {
+    double y, y_dot;
+};
+Ball ball_at(const Parameters& p, const OrbitFlight& f, double s) {
+    const double y_dot = f.x_dot - f.relative_speed;
+    return {f.x - f.side * p.b + s * (y_dot + 0.5 * p.gravity * s), y_dot + p.gravity * s};
+}
 
 /// The first contact of a flight within `limit`.
 std::optional<Contact> first_contact(
-    const Flow& flow, const OrbitFlight& f, double b, double limit) {
+    const Flow& flow, const Parameters& p, const OrbitFlight& f, double limit) {
     // Without relative speed, up to rounding at a grazing contact, two derivatives vanish.
     const bool leaves = f.side * f.relative_speed < 0;
+    const Ball ball = ball_at(p, f, 0);
     FlightStart start{
-        f.oscillation(),
-        f.x - f.side * b,
-        f.x_dot - f.relative_speed,
-        f.side,
-        leaves ? f.relative_speed : 0,
-        leaves ? 1 : 2};
+        f.oscillation(), ball.y,         ball.y_dot, f.side, leaves ? f.relative_speed : 0,
+        leaves ? 1 : 2,  0.5 * p.gravity};
+    const auto search = start.is_straight() ? fast_contact : next_contact;
     std::vector<GrazingPoint> grazing;
     for (double passed = 0; passed < limit; passed += flow.reach()) {
-        auto contact =
-            fast_contact(flow, start, b, std::min(limit - passed, flow.reach()), grazing);
+        auto contact = search(flow, start, p.b, std::min(limit - passed, flow.reach()), grazing);
         if (contact) {
             contact->s += passed;
             return contact;
         }
         start.lo = flow.at(start.lo, Flow::cells);
-        start.y += start.y_dot * flow.reach();
+        const Ball next = ball_at(p, f, passed + flow.reach());
+        start.y = next.y, start.y_dot = next.y_dot;
         start.side = start.zeros = 0;
     }
     return std::nullopt;
@@ -56,9 +65,9 @@ std::optional<SequenceFault> sequence_fault(
     const double tolerance = same_contact * p.cycle();
     for (std::size_t k = 0; k + 1 < flights.size(); ++k) {
         const OrbitFlight& f = flights[k];
-        if (f.relative_speed == 0 && f.side * flow->acceleration(f.oscillation()) > 0)
+        if (f.relative_speed == 0 && f.side * (flow->acceleration(f.oscillation()) - p.gravity) > 0)
             return SequenceFault{Kind::stick, k};
-        const auto contact = first_contact(*flow, f, p.b, f.s + tolerance);
+        const auto contact = first_contact(*flow, p, f, f.s + tolerance);
         // The search does not see contacts that are shallower than the rounding of positions.
         if (!contact && approach[k] * approach[k] < shallow * p.b * p.b) continue;
         if (!contact) return SequenceFault{Kind::missing, k};
@@ -76,20 +85,22 @@ void replay(
     double tau, Observer& observer) {
     const auto flow = Flow::shared_free(p);
     const ImpactSequence& sequence = equations.sequence();
+    const Forces gravity{.y_ddot = p.gravity};
     for (const int sign : {1, -1}) {
         if (sign < 0 && !sequence.mirrored) return;
         for (std::size_t k = 0; k < sequence.size(); ++k) {
             const OrbitFlight& f = flights[k];
             const Oscillation start = sign > 0 ? f.oscillation() : opposite(f.oscillation());
+            const Ball ball = ball_at(p, f, 0), ball_after = ball_at(p, f, f.s);
             observer.on_stretch(
-                {*flow, tau, f.s, start, sign * (f.x - f.side * p.b),
-                 sign * (f.x_dot - f.relative_speed), 0});
+                {*flow, tau, f.s, start, sign * ball.y, sign * ball.y_dot, 0,
+                 p.gravity != 0 ? &gravity : nullptr});
             tau += f.s;
             const Oscillation end = flow->after(start, f.s);
-            const double approach = end.x_dot - sign * (f.x_dot - f.relative_speed);
+            const double approach = end.x_dot - sign * ball_after.y_dot;
             observer.on_impact(impact_at(
                 p, {f.s, sign * sequence.side_after(k), end, approach}, flow->acceleration(end),
-                tau));
+                tau, p.gravity));
         }
     }
 }
@@ -106,8 +117,20 @@ State state_after(
     for (; k + 2 < flights.size() && s > flights[k].s; ++k) s -= flights[k].s;
     const OrbitFlight& f = flights[k];
     const Oscillation o = flow->after(f.oscillation(), std::max(s, 0.0));
-    const double y_dot = f.x_dot - f.relative_speed;
-    return {sign * o.x_dot, sign * o.x, sign * y_dot, sign * (f.x - f.side * p.b + y_dot * s)};
+    const Ball ball = ball_at(p, f, std::max(s, 0.0));
+    return {sign * o.x_dot, sign * o.x, sign * ball.y_dot, sign * ball.y};
+}
+
+/// True if the systems of the family next to these values have equal walls and no gravity.
+bool is_symmetric(const ParameterFamily& family, const std::vector<double>& values) {
+    for (std::size_t i = 0; i < values.size(); ++i)
+        for (const double side : {1.0, -1.0}) {
+            std::vector<double> beside = values;
+            beside[i] += side * near_value * family.unit[i];
+            const auto p = family.system_at(beside);
+            if (p && !(p->has_equal_walls() && p->gravity == 0)) return false;
+        }
+    return true;
 }
 
 }  // namespace
@@ -141,7 +164,7 @@ std::optional<OrbitStart> orbit_start(
     const auto all = static_cast<std::size_t>(orbit.impacts);
     if (impacts.size() <= all) return std::nullopt;
     OrbitStart start;
-    start.sequence.mirrored = orbit.symmetric && all % 2 == 0;
+    start.sequence.mirrored = orbit.symmetric && all % 2 == 0 && is_symmetric(family, values);
     start.sequence.half_cycles = (start.sequence.mirrored ? 1 : 2) * orbit.cycles;
     const std::size_t n = start.sequence.mirrored ? all / 2 : all;
     start.z.resize(static_cast<Eigen::Index>(n + 4 + values.size()));

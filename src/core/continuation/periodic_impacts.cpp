@@ -19,8 +19,13 @@ constexpr double parameter_step = 1e-5;
 using BetweenImpacts = OrbitEquations::BetweenImpacts;
 
 /// Increase of x - y over a flight divided by its duration, without cancellation.
-double mean_relative_speed(const BetweenImpacts& f, const Arc& arc) {
-    return f.relative_speed + arc.bend;
+double mean_relative_speed(const Parameters& p, const BetweenImpacts& f, const Arc& arc) {
+    return f.relative_speed + arc.bend - 0.5 * p.gravity * f.s;
+}
+
+/// x' - y' at the end of a flight.
+double relative_speed_at_end(const Parameters& p, const BetweenImpacts& f, const Arc& arc) {
+    return f.relative_speed + arc.gain - p.gravity * f.s;
 }
 
 /// x'' at the end of a flight, before the impact.
@@ -57,7 +62,8 @@ Eigen::RowVectorXd carry_derivatives(
     x_end(s_column) += arc.end.x_dot;
     x_dot_end(s_column) += x_ddot_at_end(law, arc);
     gap(s_column) += approach;
-    const Eigen::RowVectorXd approach_rate = r + x_dot_end - x_dot;
+    Eigen::RowVectorXd approach_rate = r + x_dot_end - x_dot;
+    approach_rate(s_column) -= p.gravity;
     const double R_speed = p.restitution_derivative(side, std::abs(approach));
     d.row(0)(s_column) += p.Omega;
     d.row(1) = x_end;
@@ -71,7 +77,8 @@ void carry_transfer(
     const Parameters& p, const Flow::Coefficients& law, const BetweenImpacts& f, const Arc& arc,
     double approach, int side, Frame& transfer) {
     carry(transfer, Leg{arc.transfer, f.s, -law[1] * f.s, 1, false}, p.epsilon);
-    const Impact impact = impact_at(p, {f.s, side, arc.end, approach}, x_ddot_at_end(law, arc), 0);
+    const Impact impact =
+        impact_at(p, {f.s, side, arc.end, approach}, x_ddot_at_end(law, arc), 0, p.gravity);
     transfer = saltation(p, impact).times(transfer);
 }
 
@@ -148,10 +155,10 @@ std::optional<OrbitValues> OrbitEquations::evaluated(
         if (!(f.s > 0)) return std::nullopt;
         const int side = sequence_.side_after(static_cast<std::size_t>(k));
         const Arc arc = arc_over(law, f.oscillation(), f.s);
-        const double approach = f.relative_speed + arc.gain,
+        const double approach = relative_speed_at_end(p, f, arc),
                      R = p.restitution(side, std::abs(approach));
         // For a return to the same wall, the mean speed stands for x - y: it is not zero at s = 0.
-        const double mean = mean_relative_speed(f, arc), of = f.side == side ? f.s : 1,
+        const double mean = mean_relative_speed(p, f, arc), of = f.side == side ? f.s : 1,
                      miss = f.side == side ? mean : (f.side - side) * p.b + mean * f.s;
         out.residual(k) = miss / length_;
         out.approach.push_back(side * approach);
@@ -188,7 +195,7 @@ std::vector<OrbitEquations::BetweenImpacts> OrbitEquations::flights(
         f.s = z(4 + static_cast<Eigen::Index>(i));
         const int side = sequence_.side_after(i);
         const Arc arc = arc_over(law, f.oscillation(), f.s);
-        const double approach = f.relative_speed + arc.gain;
+        const double approach = relative_speed_at_end(p, f, arc);
         all.push_back(
             after_impact(p, f, arc, side, approach, p.restitution(side, std::abs(approach))));
     }

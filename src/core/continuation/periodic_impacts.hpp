@@ -1,4 +1,5 @@
-// Periodic orbits with a given sequence of impacts, as the zeros of smooth equations.
+// Periodic orbits with a given sequence of impacts, as the zeros of smooth equations. The forcing
+// is harmonic; the ball flies freely, under gravity or not, without friction.
 //
 // The unknowns are the forcing phase theta and the state (x, x', x' - y') after the first impact,
 // and the duration s_k of each flight; y = x - side b. The equations: at the end of each flight the

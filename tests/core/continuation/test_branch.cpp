@@ -87,6 +87,34 @@ Recorded table1_by_b(int switches = 0) {
     return continued(table1(0.015, Damping::closed_form), change_b, 0.015, 0.004, 0.03, switches);
 }
 
+/// Each point's state lies on an orbit of the simulated motion with its multipliers and measures.
+void check_points(const Recorded& r, const std::function<Parameters(double)>& system_at) {
+    CHECK(r.points.size() > 20);
+    for (const auto& [branch, orbit] : r.points) {
+        const Parameters p = system_at(orbit.parameters[0]);
+        CAPTURE(orbit.parameters[0]);
+        if (elementary::modulus(orbit.multipliers[0]) > 1e4) continue;
+        const State& s = orbit.measures.at_whole_cycle;
+        const auto found =
+            find_orbit(p, s, orbit.sequence.cycles(), scale_of(p, {&s, 1}), 1e-6, {});
+        REQUIRE(found);
+        CHECK(found->impacts == orbit.sequence.impacts());
+        if (orbit.sequence.mirrored) CHECK(found->symmetric);
+        for (int k = 0; k < 2; ++k)
+            CHECK(
+                elementary::modulus(found->multipliers[k]) ==
+                doctest::Approx(elementary::modulus(orbit.multipliers[k])).epsilon(1e-6));
+        Energy energy(p, 0, orbit.sequence.cycles() * p.cycle());
+        Observer* const observers[] = {&energy};
+        follow(p, s, 0, orbit.sequence.cycles() * p.cycle(), {}, observers);
+        const EnergyBalance balance = energy.balance({0, orbit.sequence.cycles() * p.cycle()});
+        CHECK(orbit.measures.x_max == doctest::Approx(balance.peak).epsilon(1e-7));
+        CHECK(orbit.measures.x_rms == doctest::Approx(balance.rms).epsilon(1e-7));
+        CHECK(
+            *orbit.measures.share_impacts == doctest::Approx(*balance.share_impacts).epsilon(1e-6));
+    }
+}
+
 }  // namespace
 
 TEST_CASE("an arc is the flow's motion, and its derivatives are differences of arcs") {
@@ -130,6 +158,7 @@ TEST_CASE("the Jacobian matrix of an orbit's equations is their difference quoti
     Parameters p = table1(0.0052, Damping::closed_form);
     std::mt19937_64 engine(7);
     p.table_plus = random_table(engine, 0.01);
+    p.gravity = 4e-4;
     const ParameterFamily family{
         [&](const std::vector<double>& values) {
             Parameters changed = p;
@@ -174,29 +203,25 @@ TEST_CASE("the limits of the symmetric motion of Table 1 are those of its closed
 TEST_CASE("points are orbits of the simulated motion, with its multipliers") {
     const Recorded r = table1_by_b(1);
     CHECK(r.points.size() > 100);
-    for (const auto& [branch, orbit] : r.points) {
-        Parameters p = table1(orbit.parameters[0], Damping::closed_form);
-        CAPTURE(p.b);
-        if (elementary::modulus(orbit.multipliers[0]) > 1e4) continue;
-        const State& s = orbit.measures.at_whole_cycle;
-        const auto found =
-            find_orbit(p, s, orbit.sequence.cycles(), scale_of(p, {&s, 1}), 1e-6, {});
-        REQUIRE(found);
-        CHECK(found->impacts == orbit.sequence.impacts());
-        CHECK(found->symmetric == orbit.sequence.mirrored);
-        for (int k = 0; k < 2; ++k)
-            CHECK(
-                elementary::modulus(found->multipliers[k]) ==
-                doctest::Approx(elementary::modulus(orbit.multipliers[k])).epsilon(1e-6));
-        Energy energy(p, 0, orbit.sequence.cycles() * p.cycle());
-        Observer* const observers[] = {&energy};
-        follow(p, s, 0, orbit.sequence.cycles() * p.cycle(), {}, observers);
-        const EnergyBalance balance = energy.balance({0, orbit.sequence.cycles() * p.cycle()});
-        CHECK(orbit.measures.x_max == doctest::Approx(balance.peak).epsilon(1e-7));
-        CHECK(orbit.measures.x_rms == doctest::Approx(balance.rms).epsilon(1e-7));
-        CHECK(
-            *orbit.measures.share_impacts == doctest::Approx(*balance.share_impacts).epsilon(1e-6));
-    }
+    check_points(r, [](double b) { return table1(b, Damping::closed_form); });
+}
+
+TEST_CASE("so are those where gravity or another wall breaks the symmetry") {
+    const Parameters base = table1(0.012, Damping::closed_form);
+    const auto with = [&](const Change& change) {
+        return [&, change](double value) {
+            Parameters p = base;
+            change(p, value);
+            return p;
+        };
+    };
+    const Change gravity = [](Parameters& p, double g) { p.gravity = g; },
+                 R_plus = [](Parameters& p, double R) { p.R_plus = R; };
+    const Recorded falling = continued(base, gravity, 0, -1e-3, 3e-3);
+    check_points(falling, with(gravity));
+    CHECK(falling.points.back().orbit.parameters[0] != 0);
+    for (const auto& [branch, orbit] : falling.points) CHECK(!orbit.sequence.mirrored);
+    check_points(continued(base, R_plus, base.R_plus, 0.5, 0.7), with(R_plus));
 }
 
 TEST_CASE("a branch that begins at a broken symmetry returns to it, and is found from elsewhere") {
