@@ -26,7 +26,6 @@ const cyclesOfWorst = 300; // for the simulation of the worst case
 const colours = ["c1", "c2", "c3", "c4", "minus"]; // of the restitution coefficients
 
 export class DesignTab extends RequestTab {
-  asked = null; // query of the form when it was sent
   points = []; // lines of the maps
   done = null; // the last line
 
@@ -74,14 +73,6 @@ export class DesignTab extends RequestTab {
     return String(new URLSearchParams(entries));
   }
 
-  query() {
-    return this.asked;
-  }
-
-  isStale() {
-    return this.asked !== null && this.formQuery() !== this.asked;
-  }
-
   /** Shows the form of a query, or an example; only a query is computed at once. */
   open(given) {
     const standard = new URLSearchParams($("design-form").dataset.query);
@@ -90,10 +81,10 @@ export class DesignTab extends RequestTab {
       "design-note": unknownText(Object.keys(fields).filter((name) => !this.form.inputs.has(name))),
     });
     this.form.set(this.form.parse(fields));
-    if (given.size && this.formQuery() !== this.asked) this.submit();
+    if (given.size && this.formQuery() !== this.asked) this.send();
   }
 
-  submit() {
+  send() {
     const edit = this.asked !== null;
     this.asked = this.formQuery();
     this.form.showErrors([]);

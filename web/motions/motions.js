@@ -4,16 +4,16 @@
 import {linesOf} from "../shared/api.js";
 import {$, button, countUp, element, setTexts, tableOf} from "../shared/dom.js";
 import {addExportButton} from "../shared/export.js";
-import {defaultSet, Form, groups, queryText, unknownText} from "../shared/form.js";
+import {BaseForm, defaultSet, queryText, unknownText} from "../shared/form.js";
 import {makeAccessible} from "../shared/gestures.js";
 import {RequestTab} from "../shared/job.js";
 import {count, short} from "../shared/numbers.js";
-import {unitShown} from "../shared/units.js";
 import * as labels from "../sweep/axis_labels.js";
 import {Motions} from "./data.js";
 import {MotionsPlot, quantities} from "./motions_plot.js";
 
-const ownFields = ["parameter", "from", "to", "switch"];
+const ends = ["from", "to"];
+const ownFields = ["parameter", ...ends, "switch"];
 const cycles = {cycles: 300, transient_cycles: 200}; // of each start
 const mostBranches = 12; // continuations in addition to that of the base
 const cyclesOfOrbit = 100; // for the simulation of an orbit
@@ -38,7 +38,6 @@ const kinds = {
 };
 
 export class MotionsTab extends RequestTab {
-  asked = null; // query of the form when it was sent
   motions = null;
 
   constructor(tables, changed, {simulate}) {
@@ -60,57 +59,35 @@ export class MotionsTab extends RequestTab {
     };
   }
 
-  makeForm({fields, continue_fields: own, presets}) {
-    this.presets = presets;
-    const {system, reduced, SI, laws, start} = groups;
-    const shared = fields.filter((f) => f.group in {system, reduced, SI, laws, start});
-    const numbers = shared.filter((f) => f.type === "number").map(({name}) => name);
-    const choices = {parameter: numbers, preset: presets.map(({name}) => name)};
-    const first = [...own.filter((f) => ownFields.includes(f.name)), countField];
-    const all = [
-      ...first.map((f) => ({...f, group: "motions", narrow: true})),
-      ...shared.map((f) => ({...f, part: "base"})),
-    ].map((f) => (choices[f.name] ? {...f, choices: choices[f.name]} : f));
-    const standard = all.find(({name}) => name === "parameter");
-    standard.default = "b";
-    const grouped = {motions: ["Parameter", true], system, reduced, SI, laws, start};
-    this.form = new Form($("motions-fields"), all, {prefix: "motions-", grouped});
-    this.units = Object.fromEntries(fields.map(({name, unit}) => [name, unit]));
+  makeForm(tables) {
+    this.presets = tables.presets;
+    const grouped = {motions: ["Parameter", true]};
+    const own = [...tables.continue_fields.filter((f) => ownFields.includes(f.name)), countField];
+    this.form = new BaseForm($("motions-fields"), tables, "motions-", grouped, (choices) =>
+      own.map((f) => ({
+        ...f,
+        ...(f.name === "parameter" && {choices, default: "b"}),
+        ...{group: "motions", part: "own", narrow: true},
+      })),
+    );
     const menu = this.form.inputs.get("parameter");
     menu.onchange = () => {
-      this.scale(menu.value);
-      for (const end of ["from", "to"]) this.form.replace(end, "");
+      this.form.scale(ends, menu.value);
+      for (const end of ends) this.form.replace(end, "");
     };
     $("motions-fields").oninput = () => this.markStale();
   }
 
-  /** The ends of the range are typed in the unit of the parameter. */
-  scale(parameter) {
-    const {factor} = unitShown(this.units[parameter]);
-    for (const end of ["from", "to"]) this.form.factors.set(end, factor);
-  }
-
   /** {base, parameter, from, to, ...} of the form. */
   request() {
-    const request = {parameter: "b", base: {}};
-    const inBase = ({name}) => this.form.fields.find((f) => f.name === name).part === "base";
-    for (const [name, value] of Object.entries(this.form.values()))
-      (inBase({name}) ? request.base : request)[name] = value;
-    return request;
+    const {base, own} = this.form.parted();
+    return {parameter: "b", base, ...own};
   }
 
   formQuery() {
     const {base, ...own} = this.request();
     const entries = Object.entries({...own, ...base}).map(([name, v]) => [name, queryText(v)]);
     return String(new URLSearchParams(entries));
-  }
-
-  query() {
-    return this.asked;
-  }
-
-  isStale() {
-    return this.asked !== null && this.formQuery() !== this.asked;
   }
 
   /** Shows the motions of a query, or of the first example. */
@@ -120,15 +97,10 @@ export class MotionsTab extends RequestTab {
       : new URLSearchParams($("motions-example").options[1].dataset.query);
     const fields = Object.fromEntries(query);
     const unknown = Object.keys(fields).filter((name) => !this.form.inputs.has(name));
-    this.scale(fields.parameter ?? "b");
+    this.form.scale(ends, fields.parameter ?? "b");
     this.form.set(fields);
     setTexts({"motions-note": unknownText(unknown)});
     if (this.formQuery() !== this.asked) this.send();
-  }
-
-  submit() {
-    this.send();
-    this.scrollToResults();
   }
 
   send() {

@@ -121,12 +121,6 @@ export const unknownText = (names) =>
 /** A text as a JSON value. Text that is no number is sent unchanged, and the service rejects it. */
 const number = (text) => toNumber(text) ?? text.trim();
 const interval = (text) => text.split(text.includes(";") ? ";" : ",").map(number);
-function assignment(text) {
-  const [name, value = ""] = text.split("=");
-  return [name.trim(), number(value)];
-}
-const state = (text) =>
-  text.includes("=") ? Object.fromEntries(text.split(",").map(assignment)) : text.trim();
 const partsOf = (text) => text.split(";").filter((part) => part.trim());
 /** An object whose parts can be lists: speed_m_s=0, 0.5; R=0.8, 0.6. */
 const object = (text) =>
@@ -140,10 +134,7 @@ const object = (text) =>
     : text.trim();
 export const defaultSet = "default set"; // value of `starts` in place of a list
 
-/**
- * The first entry of a menu whose default depends on the other fields: it stands for the value that
- * the service chooses, and shows it.
- */
+/** The first entry of a menu whose default depends on other fields; shows the service's choice. */
 const automatic = ({group, default: standard}) =>
   group === "system" ? [new Option(`automatic: ${standard ?? "none"}`, "")] : [];
 
@@ -187,7 +178,7 @@ const types = {
   },
   states: {
     wide: true,
-    read: (text) => (text.trim() === defaultSet ? defaultSet : partsOf(text).map(state)),
+    read: (text) => (text.trim() === defaultSet ? defaultSet : partsOf(text).map(object)),
     hint: "one; e.g. x0=0.01; x0=0, y0=0.002",
   },
   object: {wide: true, read: object},
@@ -388,11 +379,6 @@ export class Form {
     return Boolean(this.inputs.get(name)?.value?.trim());
   }
 
-  /** True for an empty field that can be filled. */
-  isEmpty(name) {
-    return !this.filled(name) && !this.inputs.get(name).disabled;
-  }
-
   /** The group that no field can be given of: a system is given either in SI or reduced. */
   get excludedGroup() {
     const given = (f) => this.filled(f.name) || this.replaced.includes(f.name);
@@ -439,5 +425,45 @@ export class Form {
     const first = this.fields.find(({name}) => this.errors.get(name).textContent);
     if (lead && first) this.inputs.get(first.name).focus();
     return left;
+  }
+}
+
+const {system, reduced, SI, laws, start} = groups;
+const ofSystem = {system, reduced, SI, laws, start};
+
+/**
+ * A form with the fields of a system, which are the `base` of its request, and of parameters that
+ * vary, whose ends are typed in the unit of the parameter.
+ */
+export class BaseForm extends Form {
+  /**
+   * tables: the answer of /v1/parameters, and presets. grouped: the groups above those of the
+   * system; own(names): their fields, each with its `part` of the request; names: of the parameters
+   * that can vary.
+   */
+  constructor(container, {fields, presets}, prefix, grouped, own) {
+    const choices = presets.map(({name}) => name);
+    const shared = fields
+      .filter(({group}) => group in ofSystem)
+      .map((f) => ({...f, part: "base", ...(f.name === "preset" && {choices})}));
+    const parameters = new Map(shared.filter((f) => f.type === "number").map((f) => [f.name, f]));
+    const all = [...own([...parameters.keys()]), ...shared];
+    super(container, all, {prefix, grouped: {...grouped, ...ofSystem}});
+    this.parameters = parameters;
+  }
+
+  /** The values by their part of the request. */
+  parted() {
+    const values = this.values();
+    const parts = {base: {}};
+    for (const {name, label = name, part} of this.fields)
+      if (name in values) parts[part] = {...parts[part], [label]: values[name]};
+    return parts;
+  }
+
+  /** Sets the unit in which the ends of a range are typed to that of the parameter. */
+  scale(ends, parameter) {
+    const {factor} = unitShown(this.parameters.get(parameter)?.unit);
+    for (const name of ends) this.factors.set(name, factor);
   }
 }

@@ -102,13 +102,14 @@ export class Job {
 /**
  * Subclasses have ask() and show() of a Job, and
  * form: its showErrors(errors) shows errors at their fields and returns those without a field;
- * submit(): sends the form;
- * isStale(busy): true if the results belong to another request; busy: a computation takes long;
- * query(): the query of the request in the address; null before the first;
+ * formQuery(): the query of the form's request;
+ * send(): requests it;
  * open(query): shows the request of a query;
  * redraw(): draws in other colours.
  */
 export class RequestTab extends Job {
+  asked = null; // query of the request whose results are shown or computed; null before the first
+
   /** prefix: of the ids of the tab; changed({edit, soon}): called when query() changes. */
   constructor(prefix, changed) {
     super({changed, say: sayIn(`${prefix}message`), results: $(`${prefix}results`)});
@@ -119,6 +120,21 @@ export class RequestTab extends Job {
     };
     this.cancelButton = $(`${prefix}cancel`);
     this.cancelButton.onclick = () => this.cancel();
+  }
+
+  /** The query in the address. */
+  query() {
+    return this.asked;
+  }
+
+  /** True if the results belong to another request; busy: a computation takes long. */
+  isStale(_busy) {
+    return this.asked !== null && this.formQuery() !== this.asked;
+  }
+
+  submit() {
+    this.send();
+    this.scrollToResults();
   }
 
   busy(is, cancelled) {

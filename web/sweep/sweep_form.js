@@ -1,7 +1,7 @@
 // The form of a sweep: axes, run of each point, shared fields; and its conversion to and from a
 // query. The fields of an axis have its name in front: axis1_from.
 import {$, element, fillMenu, setTexts} from "../shared/dom.js";
-import {defaultSet, Form, groups, queryText, smallScreen, unknownText} from "../shared/form.js";
+import {BaseForm, defaultSet, queryText, smallScreen, unknownText} from "../shared/form.js";
 import {unitShown} from "../shared/units.js";
 
 const none = "none";
@@ -12,10 +12,7 @@ const defaultSetBox = $("sweep-default-set");
 const parameterOf = (axis) => `${axis}_parameter`;
 const endsOf = (axis) => [`${axis}_from`, `${axis}_to`];
 
-/**
- * Fields of an axis, from the service's table, with a menu of the parameters. An optional axis
- * starts without a parameter.
- */
+/** Fields of an axis with a menu of the parameters; an optional axis starts without one. */
 function axisFields(axis, fields, parameters, optional) {
   const choices = [...(optional ? [none] : []), ...parameters];
   const menu = {choices, default: optional ? none : undefined};
@@ -48,30 +45,21 @@ function noteOf({description, unit: own}) {
 /** A count with its digits in groups of three. */
 export const grouped = (n) => String(n).replace(/\B(?=(\d{3})+$)/g, " ");
 
-export class SweepForm extends Form {
+const ownGroups = {
+  axis1: ["First axis", true],
+  axis2: ["Second axis", true],
+  axis3: ["Third axis", false],
+  sweep: ["Each point", true],
+};
+
+export class SweepForm extends BaseForm {
   /** tables: the answer of /v1/parameters; changed: called after each change. */
   constructor(container, tables, changed) {
-    const {start, system, reduced, SI, laws} = groups;
-    const choices = tables.presets.map(({name}) => name);
-    const shared = tables.fields
-      .filter((f) => f.group in {system, reduced, SI, laws, start})
-      .map((f) => (f.name === "preset" ? {...f, choices} : f));
-    const swept = new Map(shared.filter((f) => f.type === "number").map((f) => [f.name, f]));
-    const fields = [
-      ...axisNames.flatMap((axis, i) => axisFields(axis, tables.axis_fields, swept.keys(), i > 0)),
+    super(container, tables, "sweep-", ownGroups, (names) => [
+      ...axisNames.flatMap((axis, i) => axisFields(axis, tables.axis_fields, names, i > 0)),
       ...runFields(tables.sweep_fields, tables.fields),
-      ...shared.map((f) => ({...f, part: "base"})),
-    ];
-    const grouped = {
-      axis1: ["First axis", true],
-      axis2: ["Second axis", true],
-      axis3: ["Third axis", false],
-      sweep: ["Each point", true],
-      ...{system, reduced, SI, laws, start},
-    };
-    super(container, fields, {prefix: "sweep-", grouped});
+    ]);
     $("sweep-more").open = !smallScreen; // the results lie below the form
-    this.parameters = swept;
     this.notes = axisNames.map((axis) =>
       this.parts.get(axis).appendChild(element("p", {className: "note"})),
     );
@@ -116,8 +104,8 @@ export class SweepForm extends Form {
       for (const part of axisParts)
         this.rows.get(`${axis}_${part}`).hidden = !field && part !== "parameter";
       this.notes[i].textContent = field ? noteOf(field) : "";
-      this.scale(axis, swept[i]);
       const [from, to] = endsOf(axis);
+      this.scale([from, to], swept[i]);
       this.inputs.get(from).placeholder = `from ${this.shown(from, field?.minimum)}`;
       this.inputs.get(to).placeholder = `to ${this.shown(to, field?.maximum)}`;
     }
@@ -143,12 +131,6 @@ export class SweepForm extends Form {
     this.disable([...off, ...axes]);
   }
 
-  /** The ends of an axis are typed in the unit of its parameter. */
-  scale(axis, parameter) {
-    const {factor} = unitShown(this.parameters.get(parameter)?.unit);
-    for (const name of endsOf(axis)) this.factors.set(name, factor);
-  }
-
   /** Shows the origins of the values, and the ranges of the axes. */
   showOrigins(parameters) {
     super.showOrigins(parameters);
@@ -156,18 +138,11 @@ export class SweepForm extends Form {
   }
 
   request() {
-    const values = this.values();
-    const parts = {axis1: {}, axis2: {}, axis3: {}, base: {}, run: {}};
-    for (const {name, label = name, part} of this.fields)
-      if (name in values) parts[part][label] = values[name];
-    const {base, run, ...axes} = parts;
+    const {base, run, ...axes} = this.parted();
     return {base, axes: Object.values(axes).filter(({parameter}) => parameter), ...run};
   }
 
-  /**
-   * A request as a query: an axis is parameter,from,to,count and, unless linear, its scale; other
-   * fields as in a form.
-   */
+  /** A request as a query; an axis is parameter,from,to,count and, unless linear, its scale. */
   static toQuery({base, axes, ...run}) {
     const query = new URLSearchParams();
     for (const [i, {parameter, from, to, count, scale}] of axes.entries()) {
@@ -187,7 +162,7 @@ export class SweepForm extends Form {
     const given = axisNames.filter((name) => fields[name]).map((name) => fields[name].split(","));
     for (const [i, axis] of axisNames.entries()) {
       const parts = given[i] ?? (i ? [] : ["b"]);
-      this.scale(axis, parts[0]);
+      this.scale(endsOf(axis), parts[0]);
       for (const [k, text] of parts.entries()) fields[`${axis}_${axisParts[k]}`] = text;
     }
     this.set(fields);
