@@ -8,7 +8,6 @@
 #include <set>
 #include <sstream>
 #include <string>
-#include <utility>
 #include <vector>
 
 #include "api/schema/field.hpp"
@@ -114,6 +113,10 @@ int main(int argc, char** argv) {
         vines::cli::add_manual(app)};
     vines::add_examples(app, examples);  // after the subcommands, which would inherit the examples
     const std::string first = argc > 1 ? argv[1] : "";
+    // Called by the functions of `vines completion`, hence in no help.
+    if (first == "complete" && argc > 2)
+        return run_with_exit_code(
+            [&] { return vines::cli::complete_words(app, {argv + 3, argv + argc}); });
     const std::string error = first_argument_error(app, first);
     if (!error.empty()) return usage_error(error, "vines");
     ignore_variables_of_others(commands, first);

@@ -6,6 +6,7 @@
 #include <CLI/CLI.hpp>
 #include <functional>
 #include <string>
+#include <vector>
 
 namespace vines {
 
@@ -32,8 +33,10 @@ AddCommand add_merge;     ///< combines the files of all shards, byte for byte
 AddCommand add_verify;    ///< recomputes an answer and compares it
 AddCommand add_plot;      ///< draws an answer in the terminal or as SVG
 AddCommand add_presets, add_parameters, add_openapi, add_example;  ///< print built-in data
-/// Completion script of a shell, and manual page, of the subcommands that `app` has when they run.
+/// Function of a shell that completes commands, and the manual page of all subcommands.
 AddCommand add_completion, add_manual;
+/// Prints what can stand in place of the last word of a command line; `words` without "vines".
+int complete_words(const CLI::App& app, const std::vector<std::string>& words);
 }  // namespace cli
 namespace http {
 AddCommand add_serve;        ///< serves until SIGTERM or SIGINT, then exits with code 0

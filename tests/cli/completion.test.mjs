@@ -3,8 +3,9 @@ import assert from "node:assert/strict";
 import {spawnSync} from "node:child_process";
 import {mkdirSync, mkdtempSync, rmSync, writeFileSync} from "node:fs";
 import {tmpdir} from "node:os";
-import {join} from "node:path";
+import {delimiter, dirname, join, resolve} from "node:path";
 import {after, before, test} from "node:test";
+import {program} from "../service.mjs";
 import {run} from "./run.mjs";
 
 const folder = mkdtempSync(join(tmpdir(), "vines-completion-"));
@@ -35,16 +36,17 @@ before(async () => {
 });
 
 /** Test options that skip the test if a program is missing. */
-const needs = (program) =>
-  spawnSync("sh", ["-c", `command -v ${program}`]).status === 0
+const needs = (name) =>
+  spawnSync("sh", ["-c", `command -v ${name}`]).status === 0
     ? {}
-    : {skip: `there is no ${program} (scripts/setup test)`};
+    : {skip: `there is no ${name} (scripts/setup test)`};
 
-/** Output of a shell run in the folder of files. */
-function shell(program, args, input) {
-  const {status, stdout, stderr} = spawnSync(program, args, {
+/** Output of a shell that finds `vines`, run in the folder of files. */
+function shell(file, args, input) {
+  const {status, stdout, stderr} = spawnSync(file, args, {
     cwd: join(folder, "files"),
     encoding: "utf8",
+    env: {...process.env, PATH: dirname(resolve(program)) + delimiter + process.env.PATH},
     input,
   });
   assert.deepEqual({status, stderr}, {status: 0, stderr: ""});
