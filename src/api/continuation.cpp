@@ -338,11 +338,10 @@ std::string continuation_progress(const ContinuationCount& count, double seconds
 
 std::string continuation_done(const ContinuationCount& count) {
     return json_text(
-               {{"type", "done"},
-                {"points", count.points.load()},
-                {"specials", count.specials.load()},
-                {"branches", count.branches.load()}}) +
-           "\n";
+        {{"type", "done"},
+         {"points", count.points.load()},
+         {"specials", count.specials.load()},
+         {"branches", count.branches.load()}});
 }
 
 bool run_continuation(

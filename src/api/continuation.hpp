@@ -46,7 +46,7 @@ Json continuation_start(const ContinueRequest& request);
 
 /// {type: progress, done, per_second}: points so far. With line end.
 std::string continuation_progress(const ContinuationCount& count, double seconds);
-/// {type: done, points, specials, branches}. With line end.
+/// {type: done, points, specials, branches}.
 std::string continuation_done(const ContinuationCount& count);
 
 namespace properties {

@@ -102,14 +102,6 @@ std::string describe_type(const Regime& r) {
     return "";
 }
 
-/// Floquet multipliers of one period, by descending modulus.
-Json describe_multipliers(const PeriodicOrbit& orbit) {
-    return object(
-        {{"re", column(orbit.multipliers, [](auto m) { return m.real(); })},
-         {"im", column(orbit.multipliers, [](auto m) { return m.imag(); })},
-         {"modulus", column(orbit.multipliers, elementary::modulus)}});
-}
-
 Json describe_capture(const Capture& c) {
     return object(
         {{"tau", or_null(c.tau)},
@@ -226,7 +218,7 @@ Json describe_regime(const Regime& r) {
     j.update(describe(properties::rhythm, r));
     j.update(describe(properties::orbit, orbit));
     append(
-        j, {{"multipliers", orbit ? describe_multipliers(*orbit) : Json(nullptr)},
+        j, {{"multipliers", orbit ? describe_multipliers(orbit->multipliers) : Json(nullptr)},
             {"orbit", describe(properties::orbit_state, r.orbit)},
             {"quasi_periodic", describe(properties::quasi_periodic, r.quasi_periodic)},
             {"capture", r.capture ? describe_capture(*r.capture) : Json(nullptr)},

@@ -1,7 +1,6 @@
 #include "api/request.hpp"
 
 #include <algorithm>
-#include <cmath>
 
 #include "core/motion/load.hpp"
 

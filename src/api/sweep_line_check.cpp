@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <string_view>
 
 #include "api/json_text.hpp"
 #include "api/provenance.hpp"

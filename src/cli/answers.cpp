@@ -9,7 +9,6 @@
 #include "api/parse.hpp"
 #include "cli/exit.hpp"
 #include "cli/files.hpp"
-#include "cli/output.hpp"
 #include "cli/plots.hpp"
 #include "cli/request_fields.hpp"
 #include "cli/terminal.hpp"
@@ -20,9 +19,8 @@ namespace vines::cli {
 namespace {
 
 struct AnswerOptions {
-    Files files;
-    /// For an identification all fields of a CSV file; they override those of JSON.
-    RequestFields fields;
+    /// For an identification the record, and all fields of a CSV file.
+    RequestOptions request;
     bool plot = false;  ///< draw instead of writing the answer
 };
 
@@ -49,41 +47,41 @@ void write(const std::string& path, api::Answer answer, api::Format format) {
 }
 
 /// Draws the parts of the request that have plots.
-int draw_run(const Files& files, api::Json request) {
+int draw_run(const std::string& path, api::Json request) {
     if (!request.contains("include") && !request.contains("fields"))
         request["include"] = {"series", "impacts", "exponents", "regime"};
     request["format"] = "json";
     api::Answer answer = computed(api::read_answer_request("/v1/simulate", std::move(request)));
     const std::string text =
         api::encoded(std::move(answer.json), api::Format::json, answer.provenance);
-    draw(plots_of(text), files.output);
+    draw(plots_of(text), path);
     return final_code();
 }
 
 int run(const AnswerOptions& o, const char* route, const api::FieldTable& table) {
-    if (o.plot) check_plot_file(o.files.output);
-    api::Json request = read_request(o.files, o.fields, table);
-    if (o.plot) return draw_run(o.files, std::move(request));
+    if (o.plot) check_plot_file(o.request.files.output);
+    api::Json request = read_request(o.request, table);
+    if (o.plot) return draw_run(o.request.files.output, std::move(request));
     api::AnswerRequest asked = api::read_answer_request(route, std::move(request));
     const api::Format format = asked.form.format.value_or(api::Format::json);
-    write(o.files.output, computed(std::move(asked)), format);
+    write(o.request.files.output, computed(std::move(asked)), format);
     return final_code();
 }
 
 api::AnswerRequest read_identification(const std::string& text, const AnswerOptions& o) {
-    api::Json fields = given_fields(o.fields, api::identify_fields());
+    api::Json fields = given_fields(o.request, api::identify_fields());
     const bool is_columns = !is_json(text);
     if (!is_columns) {
         api::Json request = api::parse_object(text, {}, api::Columns::packed);
         request.merge_patch(fields);
         fields = std::move(request);
     }
-    add_format_of(o.files.output, fields);
+    add_format_of(o.request.files.output, fields);
     return api::read_answer_request("/v1/identify", std::move(fields), {text, is_columns});
 }
 
 int identify(const AnswerOptions& o) {
-    std::string text = read_all(o.files.input);
+    std::string text = read_all(o.request.files.input);
     // Long steps on a list of impacts do not check stopped(); after the grace period this message
     // is printed and the process ends.
     std::optional<Stoppable> stoppable(
@@ -105,13 +103,8 @@ int identify(const AnswerOptions& o) {
         return stopped_code();
     }
     stoppable.reset();
-    write(o.files.output, std::move(answer), format);
+    write(o.request.files.output, std::move(answer), format);
     return complete;
-}
-
-void add_flags(CLI::App& command, AnswerOptions& options) {
-    add_request_fields(command, options.fields);
-    add_format(command, options.fields);
 }
 
 }  // namespace
@@ -119,8 +112,8 @@ void add_flags(CLI::App& command, AnswerOptions& options) {
 Command add_simulate(CLI::App& app) {
     const auto options = std::make_shared<AnswerOptions>();
     CLI::App* command = app.add_subcommand("simulate", "one run: POST /v1/simulate");
-    add_files(*command, options->files);
-    add_flags(*command, *options);
+    add_request(*command, options->request);
+    add_format(*command, options->request);
     add_plot_flag(*command, options->plot);
     return with_exit_codes(
         command, [options] { return run(*options, "/v1/simulate", api::simulate_fields()); },
@@ -134,8 +127,8 @@ Command add_manifold(CLI::App& app) {
     const auto options = std::make_shared<AnswerOptions>();
     CLI::App* command =
         app.add_subcommand("manifold", "the slow invariant manifold: POST /v1/manifold");
-    add_files(*command, options->files);
-    add_flags(*command, *options);
+    add_request(*command, options->request);
+    add_format(*command, options->request);
     return with_exit_codes(
         command, [options] { return run(*options, "/v1/manifold", api::manifold_fields()); },
         "vines manifold -p b=0.02 | jq .manifold.recommended");
@@ -145,9 +138,11 @@ Command add_identify(CLI::App& app) {
     const auto options = std::make_shared<AnswerOptions>();
     CLI::App* command =
         app.add_subcommand("identify", "impacts, exponents of a record: POST /v1/identify");
-    add_file(*command, "record", options->files.input, "CSV or JSON file; - or nothing: stdin");
-    add_output(*command, options->files.output);
-    add_flags(*command, *options);
+    add_file(
+        *command, "record", options->request.files.input, "CSV or JSON file; - or nothing: stdin");
+    add_output(*command, options->request.files.output);
+    add_request_fields(*command, options->request);
+    add_format(*command, options->request);
     return with_exit_codes(
         command, [options] { return identify(*options); },
         "vines example record > record.csv\n"

@@ -18,7 +18,6 @@
 #include "api/schema/tables.hpp"
 #include "cli/exit.hpp"
 #include "cli/files.hpp"
-#include "cli/output.hpp"
 #include "program/process.hpp"
 #include "program/subcommand.hpp"
 

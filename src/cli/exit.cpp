@@ -11,7 +11,7 @@
 #include <utility>
 
 #include "api/problem.hpp"
-#include "cli/output.hpp"
+#include "cli/files.hpp"
 #include "program/process.hpp"
 
 namespace vines::cli {

@@ -1,8 +1,14 @@
-// Input and output files of a command.
+// Input and output files of a command. An output path leads to a Destination: a stream, or a
+// regular file, which Output replaces by a complete new one and AppendFile extends. While a run has
+// a file open, it is locked against other runs of this program.
 #pragma once
 
 #include <CLI/CLI.hpp>
+#include <optional>
 #include <string>
+#include <string_view>
+
+#include "program/descriptor.hpp"
 
 namespace vines::cli {
 
@@ -20,10 +26,6 @@ CLI::Option* add_file(
 void add_output(
     CLI::App& command, std::string& path,
     const std::string& about = "file for the answer; - or nothing: stdout");
-/// Adds the file with the request, and that for the answer.
-void add_files(CLI::App& command, Files& files);
-/// Adds --plot, which excludes --format. Call add_files() and add_format() before.
-void add_plot_flag(CLI::App& command, bool& plot);
 
 /// Returns whether a path stands for stdin or stdout.
 bool is_standard(const std::string& path);
@@ -38,5 +40,87 @@ std::string read_open(int descriptor, const std::string& name);
 
 /// Returns whether a text is JSON rather than a file of columns.
 bool is_json(const std::string& text);
+
+/// Either a stream (stdout, a pipe, a device), which is written directly, or a regular file,
+/// existing or not, which is replaced or extended.
+struct Destination {
+    std::string name;  ///< for messages
+    Descriptor stream;
+    std::string file;  ///< path with symbolic links resolved; empty for a stream
+
+    bool is_stream() const { return static_cast<bool>(stream); }
+};
+
+/// "" and "-" stand for stdout. /dev/stdout, /dev/stderr and /dev/fd/N stand for descriptors that
+/// the process has open. Opening a named pipe blocks until it has a reader. Throws
+/// std::runtime_error with the reason if the path is a directory or cannot be resolved.
+Destination destination_of(const std::string& path);
+
+/// A file that replaces another one atomically. Created in the target's folder, with the target's
+/// mode if that exists. The destructor removes it unless it has replaced the target; so does
+/// remove_temporary_files() when a signal ends the program.
+class TemporaryFile {
+public:
+    /// `name` is used in messages. The constructor and all members throw std::runtime_error with
+    /// the reason.
+    TemporaryFile(std::string target, std::string name);
+    ~TemporaryFile();
+    TemporaryFile(const TemporaryFile&) = delete;
+    TemporaryFile& operator=(const TemporaryFile&) = delete;
+
+    void write(std::string_view text);
+    /// Syncs the file to disk first, so that a power failure leaves the old or the new content.
+    void replace_target();
+
+private:
+    const std::string target_, name_;
+    std::string path_;  ///< empty after it has replaced the target
+    Descriptor file_;
+};
+
+/// Removes all temporary files and blocks the creation and renaming of others for good. Called by
+/// the thread that ends the program after a signal.
+void remove_temporary_files();
+
+/// A file is replaced atomically by end(): other processes see the old or the new content. A stream
+/// is written at once. All members throw std::runtime_error with the reason, or BrokenPipe.
+class Output {
+public:
+    explicit Output(const std::string& path) : Output(destination_of(path)) {}
+    explicit Output(Destination to);
+    void write(std::string_view text);
+    void end();
+
+private:
+    const Destination to_;
+    /// The existing file, opened and locked: fails if it is not writable or another run writes it.
+    Descriptor old_;
+    std::optional<TemporaryFile> file_;
+};
+
+/// Writes a whole text.
+void write_all(const std::string& path, const std::string& text);
+
+/// File to which lines are appended. Created by the constructor and locked against other runs. All
+/// members throw std::runtime_error with the reason.
+class AppendFile {
+public:
+    explicit AppendFile(const Destination& file);
+
+    /// Returns the content.
+    std::string read() const;
+    /// Truncates the file to its first `length` bytes.
+    void truncate(std::size_t length);
+    /// Appends all lines in one write, so that a killed run keeps them. On an error nothing is
+    /// appended.
+    void append(std::string_view lines);
+    /// Waits until the content is on the disk.
+    void sync();
+
+private:
+    const std::string name_;
+    const Descriptor file_;
+    std::size_t length_ = 0;
+};
 
 }  // namespace vines::cli

@@ -8,7 +8,6 @@
 
 #include "cli/exit.hpp"
 #include "cli/files.hpp"
-#include "cli/output.hpp"
 #include "cli/sweep_file.hpp"
 #include "program/process.hpp"
 

@@ -15,7 +15,6 @@
 #include <optional>
 #include <sstream>
 #include <stdexcept>
-#include <string>
 #include <utility>
 
 #include "api/json_text.hpp"
@@ -25,9 +24,7 @@
 #include "cli/exit.hpp"
 #include "cli/files.hpp"
 #include "cli/json_values.hpp"
-#include "cli/output.hpp"
 #include "cli/terminal.hpp"
-#include "plot/plot.hpp"
 
 namespace vines::cli {
 
@@ -350,6 +347,12 @@ void draw(const std::vector<Plot>& plots, const std::string& path) {
     write_all(
         path, path.ends_with(".svg") ? plot::svg(plots, picture_width, plot_height)
                                      : in_characters(plots, is_standard(path)));
+}
+
+void add_plot_flag(CLI::App& command, bool& plot) {
+    command
+        .add_flag("--plot", plot, "draw plots instead, in the terminal or as SVG with -o FILE.svg")
+        ->excludes(command.get_option("--format"));
 }
 
 Command add_plot(CLI::App& app) {

@@ -1,6 +1,7 @@
 // Plots of answers.
 #pragma once
 
+#include <CLI/CLI.hpp>
 #include <string>
 #include <vector>
 
@@ -13,6 +14,9 @@ namespace vines::cli {
 /// std::runtime_error if the answer has nothing to draw.
 std::vector<plot::Plot> plots_of(const std::string& answer);
 std::vector<plot::Plot> plots_of(const api::Json& start, const std::vector<api::Json>& points);
+
+/// Adds --plot, which excludes --format. Call add_format() before.
+void add_plot_flag(CLI::App& command, bool& plot);
 
 /// Throws Problem if the file's name asks for an image format other than SVG. Call before
 /// computing.

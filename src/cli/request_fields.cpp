@@ -26,7 +26,7 @@ std::pair<std::string, std::string> split_at_equals(
     return {text.substr(0, equals), text.substr(equals + 1)};
 }
 
-api::Query pairs_of(const RequestFields& given) {
+api::Query pairs_of(const RequestOptions& given) {
     api::Query pairs = api::parse_query(given.query);
     for (const std::string& field : given.fields)
         pairs.push_back(split_at_equals(field, "-p", "b=0.02"));
@@ -90,7 +90,7 @@ bool belongs_to(const FieldTable& table, const std::string& name) {
     throw api::Problem(400, name + " and " + api::shortened(other) + " exclude each other");
 }
 
-Json given_over_base(const RequestFields& given, const FieldTable& table) {
+Json given_over_base(const RequestOptions& given, const FieldTable& table) {
     api::Query own, base;
     for (auto& pair : pairs_of(given)) (belongs_to(table, pair.first) ? own : base).push_back(pair);
     Json object = fields_of_pairs(own, table);
@@ -107,19 +107,27 @@ Json given_over_base(const RequestFields& given, const FieldTable& table) {
     return object;
 }
 
-Json with_file(const Files& files, const RequestFields& given, const Json& fields) {
+Json with_file(const RequestOptions& given, const Json& fields) {
     Json request = fields;
-    if (!files.input.empty() || !given.is_given()) {
-        request = api::parse_object(read_all(files.input));
+    if (!given.files.input.empty() || !given.is_given()) {
+        request = api::parse_object(read_all(given.files.input));
         request.merge_patch(fields);
     }
-    add_format_of(files.output, request);
+    add_format_of(given.files.output, request);
     return request;
 }
 
 }  // namespace
 
-void add_request_fields(CLI::App& command, RequestFields& given) {
+void add_request(CLI::App& command, RequestOptions& given) {
+    add_file(
+        command, "request", given.files.input,
+        "file with the request as JSON; - or nothing: stdin");
+    add_output(command, given.files.output);
+    add_request_fields(command, given);
+}
+
+void add_request_fields(CLI::App& command, RequestOptions& given) {
     command.add_option(
         "--query,-q", given.query, "request fields as in a URL: 'preset=fig3&b=0.02'");
     command
@@ -132,7 +140,7 @@ void add_request_fields(CLI::App& command, RequestFields& given) {
 }
 
 void add_format(
-    CLI::App& command, RequestFields& given, const FieldTable& table, const std::string& about) {
+    CLI::App& command, RequestOptions& given, const FieldTable& table, const std::string& about) {
     const std::vector<std::string>& choices = api::find(table, "format")->choices;
     command
         .add_option(
@@ -142,7 +150,7 @@ void add_format(
         ->check(CLI::IsMember(choices));
 }
 
-void add_axes(CLI::App& command, RequestFields& given) {
+void add_axes(CLI::App& command, RequestOptions& given) {
     command
         .add_option(
             "--axis,-a", given.axes,
@@ -159,18 +167,18 @@ void add_format_of(const std::string& output, Json& request) {
             if (extension == std::string(".") + format) request["format"] = format;
 }
 
-Json given_fields(const RequestFields& given, const FieldTable& table) {
+Json given_fields(const RequestOptions& given, const FieldTable& table) {
     Json object = fields_of_pairs(pairs_of(given), table);
     if (!given.format.empty()) object["format"] = given.format;
     return object;
 }
 
-Json read_request(const Files& files, const RequestFields& given, const FieldTable& table) {
-    return with_file(files, given, given_fields(given, table));
+Json read_request(const RequestOptions& given, const FieldTable& table) {
+    return with_file(given, given_fields(given, table));
 }
 
-Json read_over_base(const Files& files, const RequestFields& given, const FieldTable& table) {
-    return with_file(files, given, given_over_base(given, table));
+Json read_over_base(const RequestOptions& given, const FieldTable& table) {
+    return with_file(given, given_over_base(given, table));
 }
 
 }  // namespace vines::cli

@@ -1,4 +1,4 @@
-// Request fields given as options.
+// A request: its file, and its fields as options, which override those of the file.
 #pragma once
 
 #include <CLI/CLI.hpp>
@@ -11,7 +11,8 @@
 
 namespace vines::cli {
 
-struct RequestFields {
+struct RequestOptions {
+    Files files;                      ///< of the request and of the answer
     std::string query;                ///< URL query syntax
     std::vector<std::string> fields;  ///< NAME=VALUE each
     std::vector<std::string> axes;    ///< of a sweep: NAME=FROM:TO:COUNT[:log] or NAME=A,B,C
@@ -21,21 +22,22 @@ struct RequestFields {
     bool is_given() const { return !query.empty() || !fields.empty() || !axes.empty(); }
 };
 
-void add_request_fields(CLI::App& command, RequestFields& fields);
+/// Adds the files and the options for fields; the second function without the files.
+void add_request(CLI::App& command, RequestOptions& options);
+void add_request_fields(CLI::App& command, RequestOptions& options);
 /// --format; `table` has the field `format`, `about` ends the help.
 void add_format(
-    CLI::App& command, RequestFields& fields, const api::FieldTable& table = api::form_fields(),
+    CLI::App& command, RequestOptions& options, const api::FieldTable& table = api::form_fields(),
     const std::string& about = "");
-void add_axes(CLI::App& command, RequestFields& fields);
+void add_axes(CLI::App& command, RequestOptions& options);
 
 /// The options as a request's JSON, typed by the route's table. Throws Problem 400 for an argument
 /// that is not NAME=VALUE or for a duplicate.
-api::Json given_fields(const RequestFields& fields, const api::FieldTable& table);
+api::Json given_fields(const RequestOptions& options, const api::FieldTable& table);
 
 /// The request of a file or stdin, overridden by the options. If options are given and no file is
 /// named, the options are the request.
-api::Json read_request(
-    const Files& files, const RequestFields& fields, const api::FieldTable& table);
+api::Json read_request(const RequestOptions& options, const api::FieldTable& table);
 
 /// Sets the format that the extension of the output file names (csv, cbor, npz), unless the request
 /// has one.
@@ -43,7 +45,6 @@ void add_format_of(const std::string& output, api::Json& request);
 
 /// The same as read_request() for a request with a base, such as a sweep: fields that are not in
 /// its own table are set in the base.
-api::Json read_over_base(
-    const Files& files, const RequestFields& fields, const api::FieldTable& table);
+api::Json read_over_base(const RequestOptions& options, const api::FieldTable& table);
 
 }  // namespace vines::cli

@@ -27,7 +27,6 @@
 #include "api/sweep.hpp"
 #include "cli/exit.hpp"
 #include "cli/files.hpp"
-#include "cli/output.hpp"
 #include "cli/plots.hpp"
 #include "cli/request_fields.hpp"
 #include "cli/shard.hpp"
@@ -40,8 +39,7 @@ namespace vines::cli {
 namespace {
 
 struct SweepOptions {
-    Files files;
-    RequestFields fields;
+    RequestOptions request;
     bool basins = false;  ///< a request of /v1/basins
     bool plot = false;    ///< draw instead of writing the points
     bool resume = false;  ///< complete the output file instead of refusing to overwrite it
@@ -61,7 +59,7 @@ api::SweepRequest read_request(const SweepOptions& o, const api::Json& given) {
 
 /// Throws Problem 422 for incompatible options, before anything is computed.
 void check(const SweepOptions& o, api::Format format, const api::SweepRequest& request) {
-    if (o.plot) check_plot_file(o.files.output);
+    if (o.plot) check_plot_file(o.request.files.output);
     if ((o.plot || format != api::Format::json) && o.resume)
         throw api::Problem(422, "--resume needs --format ndjson and excludes --plot");
     // Axes with several values, except the one that is reduced (if any).
@@ -319,21 +317,22 @@ int sweep_drawn(const SweepRun& run, const SweepOptions& o) {
     if (!points.empty())
         draw(
             plots_of(api::Json::parse(api::json_text(api::sweep_start(run.request))), points),
-            o.files.output);
+            o.request.files.output);
     return conclude(warning, points.size(), run.total);
 }
 
 int sweep(const SweepOptions& o) {
     const api::Json given =
-        read_over_base(o.files, o.fields, o.basins ? api::basins_fields() : api::sweep_fields());
+        read_over_base(o.request, o.basins ? api::basins_fields() : api::sweep_fields());
     api::SweepRequest request = read_request(o, given);
     const api::Format format = api::sweep_format(given).value_or(api::Format::json);
     check(o, format, request);
     const std::size_t total = request.plan.lines.size();
     SweepRun run{std::move(request), total, o.threads > 0 ? o.threads : cores()};
     if (o.plot) return sweep_drawn(run, o);
-    if (format != api::Format::json) return sweep_to_table(std::move(run), format, o.files.output);
-    Destination to = destination_of(o.files.output);
+    if (format != api::Format::json)
+        return sweep_to_table(std::move(run), format, o.request.files.output);
+    Destination to = destination_of(o.request.files.output);
     return to.is_stream() || o.basins ? sweep_to_stream(std::move(run), std::move(to))
                                       : sweep_to_file(std::move(run), to, o.resume);
 }
@@ -359,11 +358,10 @@ Command add_sweep(CLI::App& app) {
     const auto options = std::make_shared<SweepOptions>();
     CLI::App* command =
         app.add_subcommand("sweep", "runs over one to three parameters: POST /v1/sweep");
-    add_files(*command, options->files);
-    add_request_fields(*command, options->fields);
-    add_axes(*command, options->fields);
+    add_request(*command, options->request);
+    add_axes(*command, options->request);
     add_format(
-        *command, options->fields, api::sweep_fields(),
+        *command, options->request, api::sweep_fields(),
         ", one JSON line per point as it is computed; others: a table of all points");
     add_plot_flag(*command, options->plot);
     command->add_flag(
@@ -384,11 +382,10 @@ Command add_basins(CLI::App& app) {
     options->basins = true;
     CLI::App* command =
         app.add_subcommand("basins", "which starts lead to which motion: POST /v1/basins");
-    add_files(*command, options->files);
-    add_request_fields(*command, options->fields);
-    add_axes(*command, options->fields);
+    add_request(*command, options->request);
+    add_axes(*command, options->request);
     add_format(
-        *command, options->fields, api::basins_fields(),
+        *command, options->request, api::basins_fields(),
         ", one JSON line per start as it is computed; others: a table of all starts");
     add_part(*command, *options);
     return with_exit_codes(

@@ -1,6 +1,5 @@
 #include "http/admission_control.hpp"
 
-#include <chrono>
 #include <utility>
 
 #include "http/memory.hpp"

@@ -9,7 +9,6 @@
 #include <utility>
 
 #include "api/problem.hpp"
-#include "http/message.hpp"
 
 namespace vines::http {
 

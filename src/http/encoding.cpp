@@ -5,11 +5,8 @@
 #include <algorithm>
 #include <cstdint>
 #include <cstring>
-#include <optional>
 #include <stdexcept>
-#include <string>
 #include <utility>
-#include <vector>
 
 #include "api/problem.hpp"
 #include "api/schema/field.hpp"

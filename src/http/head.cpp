@@ -2,10 +2,8 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <cstdint>
 #include <random>
-#include <string_view>
 #include <tuple>
 
 #include "api/problem.hpp"

@@ -6,10 +6,8 @@
 #include <algorithm>
 #include <filesystem>
 #include <stdexcept>
-#include <string_view>
 #include <utility>
 
-#include "http/message.hpp"
 #include "program/descriptor.hpp"
 
 namespace vines::http {

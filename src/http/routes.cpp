@@ -11,7 +11,6 @@
 #include "api/version.hpp"
 #include "http/encoding.hpp"
 #include "http/message.hpp"
-#include "http/page.hpp"
 
 namespace vines::http {
 

@@ -1,7 +1,6 @@
 // All routes of the service.
 #pragma once
 
-#include <string>
 #include <vector>
 
 #include "api/simulate.hpp"

@@ -13,14 +13,12 @@
 #include <mutex>
 #include <optional>
 #include <stdexcept>
-#include <string>
 #include <utility>
 
 #include "http/event_loop.hpp"
 #include "http/head.hpp"
 #include "http/log.hpp"
 #include "http/memory.hpp"
-#include "http/message.hpp"
 #include "http/send.hpp"
 
 namespace vines::http {

@@ -7,6 +7,7 @@
 #include <chrono>
 #include <condition_variable>
 #include <exception>
+#include <future>
 #include <memory>
 #include <mutex>
 #include <string>
@@ -16,7 +17,6 @@
 #include "api/json_text.hpp"
 #include "http/log.hpp"
 #include "http/memory.hpp"
-#include "http/message.hpp"
 
 namespace vines::http {
 
@@ -225,7 +225,7 @@ private:
     std::stop_source stop_;
 };
 
-/// A computation whose lines are sent while it runs.
+/// A computation whose lines, or parts of a table, are sent while it runs.
 struct LineWork {
     using Push = std::function<void(const std::string& text)>;
 
@@ -237,7 +237,7 @@ struct LineWork {
     std::function<std::string(std::size_t done, const api::RunControl& control, double seconds)>
         progress;
     std::function<std::string(std::size_t done)> complete;  ///< last lines
-    const char* how_to_go_on = "";  ///< after an early end; null: the stream ends without a line
+    const char* how_to_go_on = "";  ///< after an early end; null for a table, which is then cut off
 };
 
 /// The last line of an incomplete stream, for a client that is still connected.
@@ -285,30 +285,21 @@ public:
     std::size_t impacts() const { return control_.impacts; }
 
 private:
-    /// Computes the lines on another thread while this one sends them, and rethrows its exceptions.
-    /// Returns the number of lines sent.
+    /// Computes the lines on another thread while this one sends them. Returns the number of lines
+    /// sent.
     std::size_t lines() {
-        std::exception_ptr failure;
-        std::thread computing([&] {
-            try {
-                is_complete_ =
-                    work_.compute(control_, [this](const std::string& text) { lines_.push(text); });
-            } catch (...) {
-                failure = std::current_exception();
-            }
-            lines_.finish();
+        auto computing = std::async(std::launch::async, [this] {
+            const std::shared_ptr<void> at_end(nullptr, [this](void*) { lines_.finish(); });
+            return work_.compute(control_, [this](const std::string& text) { lines_.push(text); });
         });
-        std::size_t done = 0;
         try {
-            done = write_lines();
+            const std::size_t done = write_lines();
+            is_complete_ = computing.get();
+            return done;
         } catch (...) {
-            control_.stop();
-            computing.join();
+            control_.stop();  // the destructor of `computing` waits for its end
             throw;
         }
-        computing.join();
-        if (failure) std::rethrow_exception(failure);
-        return done;
     }
 
     /// Sends lines as they come, and progress between them; returns their number. Stops the
@@ -340,41 +331,6 @@ private:
     bool connected_ = true, is_complete_ = false;
 };
 
-/// Computes a sweep's lines, or the rows of `table` unless it is null.
-LineWork work_of(const api::SweepRequest& request, api::SweepTable* table, int threads) {
-    const auto warning = std::make_shared<std::string>();
-    LineWork work{
-        request.basins ? "/v1/basins" : "/v1/sweep",
-        table ? table->begin() : api::start_line(request),
-        [&request, table, threads, warning](api::RunControl& control, const LineWork::Push& push) {
-            std::size_t lines = 0;
-            *warning = api::run_sweep(
-                request, threads, control, [&](std::size_t index, const std::string& line) {
-                    push(table ? table->add(index, line) : line + '\n');
-                    ++lines;
-                });
-            return lines == request.plan.lines.size();
-        },
-        {},
-        [&request, table, warning](std::size_t done) {
-            if (table) return table->end(*warning);
-            return (warning->empty() ? "" : api::warning_line(*warning)) +
-                   api::done_line(done, &request);
-        },
-        table ? nullptr : "request the missing indices again"};
-    if (!table)
-        work.progress = [&request](
-                            std::size_t done, const api::RunControl& control, double seconds) {
-            return api::progress_line(
-                {.done = done,
-                 .of = request.plan.lines.size(),
-                 .runs = control.runs,
-                 .runs_of = request.plan.runs(),
-                 .seconds = seconds});
-        };
-    return work;
-}
-
 Response sweep_refusal(const AdmissionControl& admission) {
     if (admission.sweeps_stopped()) return stopping_refusal();
     const bool own_limit = admission.sweeps_left();
@@ -385,40 +341,8 @@ Response sweep_refusal(const AdmissionControl& admission) {
     return response;
 }
 
-}  // namespace
-
-Response stream_sweep(
-    api::SweepRequest request, SweepForm form, double deadline, const Request& asked,
-    AdmissionControl& admission, Metrics& metrics) {
-    request.plan.in_order = form.format == api::Format::csv;
-    // Shared, because a response can be copied: the sweep's slot is released with the last copy,
-    // whether it was sent or not.
-    const auto shared = std::make_shared<const api::SweepRequest>(std::move(request));
-    std::shared_ptr<api::SweepTable> table;
-    if (form.format != api::Format::json)
-        table = std::make_shared<api::SweepTable>(*shared, form.format, form.most_bytes);
-    const AdmissionControl::SweepSlot sweep_slot = admission.acquire_sweep(asked.client);
-    if (!sweep_slot) return sweep_refusal(admission);
-    return {
-        .content_type =
-            table ? api::name_of(form.format).media_type : api::sweep_format_names[0].media_type,
-        .headers = {{"Cache-Control", "no-store"}, {"X-Accel-Buffering", "no"}},
-        .stream =
-            [shared, table, deadline, of = StreamOf(asked), &admission, &metrics,
-             sweep_slot](Writer& out) {
-                const LineWork work = work_of(*shared, table.get(), admission.threads());
-                LineStream sending(work, deadline, of, admission, out);
-                const SweepEnd end = sending.run();
-                metrics.count_sweep(end, sending.runs(), sending.impacts());
-                return table ? end == SweepEnd::complete : end != SweepEnd::client_left;
-            },
-        .held = table ? 2 * table->bytes() : 0,
-        .silent = table != nullptr && form.format != api::Format::csv};
-}
-
-namespace {
-
-/// Lines of NDJSON that one computation passes on; it counts as a sweep.
+/// Sends a computation, which counts as a sweep. The response can be copied: the sweep's slot is
+/// released with the last copy, whether it was sent or not.
 Response stream_lines(
     LineWork lines, double deadline, const Request& asked, AdmissionControl& admission,
     Metrics& metrics) {
@@ -433,11 +357,65 @@ Response stream_lines(
             LineStream sending(*work, deadline, of, admission, out);
             const SweepEnd end = sending.run();
             metrics.count_sweep(end, sending.runs(), sending.impacts());
-            return end != SweepEnd::client_left;
+            return work->how_to_go_on ? end != SweepEnd::client_left : end == SweepEnd::complete;
         }};
 }
 
+/// A sweep's lines, or the rows of `table` unless it is null.
+LineWork work_of(
+    const std::shared_ptr<const api::SweepRequest>& request,
+    const std::shared_ptr<api::SweepTable>& table, int threads) {
+    const auto warning = std::make_shared<std::string>();
+    LineWork work{
+        request->basins ? "/v1/basins" : "/v1/sweep",
+        table ? table->begin() : api::start_line(*request),
+        [=](api::RunControl& control, const LineWork::Push& push) {
+            std::size_t lines = 0;
+            *warning = api::run_sweep(
+                *request, threads, control, [&](std::size_t index, const std::string& line) {
+                    push(table ? table->add(index, line) : line + '\n');
+                    ++lines;
+                });
+            return lines == request->plan.lines.size();
+        },
+        {},
+        [=](std::size_t done) {
+            if (table) return table->end(*warning);
+            return (warning->empty() ? "" : api::warning_line(*warning)) +
+                   api::done_line(done, request.get());
+        },
+        table ? nullptr : "request the missing indices again"};
+    if (table) return work;
+    work.progress = [=](std::size_t done, const api::RunControl& control, double seconds) {
+        return api::progress_line(
+            {.done = done,
+             .of = request->plan.lines.size(),
+             .runs = control.runs,
+             .runs_of = request->plan.runs(),
+             .seconds = seconds});
+    };
+    return work;
+}
+
 }  // namespace
+
+Response stream_sweep(
+    api::SweepRequest request, SweepForm form, double deadline, const Request& asked,
+    AdmissionControl& admission, Metrics& metrics) {
+    request.plan.in_order = form.format == api::Format::csv;
+    const auto shared = std::make_shared<const api::SweepRequest>(std::move(request));
+    std::shared_ptr<api::SweepTable> table;
+    if (form.format != api::Format::json)
+        table = std::make_shared<api::SweepTable>(*shared, form.format, form.most_bytes);
+    Response response = stream_lines(
+        work_of(shared, table, admission.threads()), deadline, asked, admission, metrics);
+    if (table && response.stream) {
+        response.content_type = api::name_of(form.format).media_type;
+        response.held = 2 * table->bytes();
+        response.silent = form.format != api::Format::csv;
+    }
+    return response;
+}
 
 Response stream_continuation(
     api::ContinueRequest request, double deadline, const Request& asked,
@@ -453,7 +431,7 @@ Response stream_continuation(
          [=](std::size_t, const api::RunControl&, double seconds) {
              return api::continuation_progress(*count, seconds);
          },
-         [=](std::size_t) { return api::continuation_done(*count); },
+         [=](std::size_t) { return api::continuation_done(*count) + '\n'; },
          "continue from the state of a last point, with orbit \"stated\""},
         deadline, asked, admission, metrics);
 }

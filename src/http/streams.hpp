@@ -2,8 +2,6 @@
 // sweep. They take compute slots as background work, and stop when their client leaves.
 #pragma once
 
-#include <string>
-
 #include "api/continuation.hpp"
 #include "api/design.hpp"
 #include "api/format/sweep_table.hpp"

@@ -1,19 +1,15 @@
 #include "report/report.hpp"
 
-#include <fmt/format.h>
 #include <fmt/ranges.h>
 
-#include <algorithm>
 #include <cmath>
 #include <filesystem>
 #include <fstream>
 #include <map>
 #include <memory>
 #include <stdexcept>
-#include <utility>
 
 #include "core/motion/elementary.hpp"
-#include "plot/plot.hpp"
 #include "program/process.hpp"
 #include "program/subcommand.hpp"
 #include "report/runs.hpp"

@@ -7,14 +7,16 @@ namespace vines::api::document {
 
 namespace {
 
+const std::vector<std::string>& objectives() { return find(design_fields(), "objective")->choices; }
+
 /// The objective's value, whose key is its name.
 Keys objective_keys() {
     Keys keys;
-    for (const std::string& name : find(design_fields(), "objective")->choices)
+    for (const std::string& name : objectives())
         keys.push_back(optional(
             {name, or_null(number()),
-             "largest value over the band, m, m/s or m/s^2; null if " +
-                 std::string("a motion has too many impacts")}));
+             "largest value over the band, m, m/s or m/s^2; null if a motion has too many "
+             "impacts"}));
     return keys;
 }
 
@@ -47,20 +49,17 @@ Json linear(const Keys& more) {
 Keys response_keys() {
     const Json columns = list_of(or_null(number()));
     Keys response = {{"f", columns, "frequencies, Hz"}};
-    for (const std::string& name : find(design_fields(), "objective")->choices) {
-        response.push_back(
-            optional({name + "_worst_start", columns, "objective with the worst start"}));
-        response.push_back(
-            optional({name + "_best_start", columns, "objective with the best start"}));
-    }
-    response =
-        response + Keys{
-                       {"without", columns, "objective without absorber"},
-                       {"tuned_mass_damper", columns, "objective with the tuned mass damper"},
-                       {"impact_speed_max", columns, "largest |x' - y'| before an impact, m/s"},
-                       {"impulse_max", columns, "largest impulse of an impact, N s"},
-                       {"impacts_per_second", columns, "most impacts per second"}};
-    return response;
+    for (const std::string& name : objectives())
+        for (const std::string start : {"worst", "best"})
+            response.push_back(optional(
+                {name + "_" + start + "_start", columns,
+                 "objective with the " + start + " start"}));
+    return response + Keys{
+                          {"without", columns, "objective without absorber"},
+                          {"tuned_mass_damper", columns, "objective with the tuned mass damper"},
+                          {"impact_speed_max", columns, "largest |x' - y'| before an impact, m/s"},
+                          {"impulse_max", columns, "largest impulse of an impact, N s"},
+                          {"impacts_per_second", columns, "most impacts per second"}};
 }
 
 /// The keys of the best absorber, with the details that follow the search.
@@ -100,34 +99,32 @@ void add_design_lines(Json& schemas) {
          {"progress", "DesignProgress"},
          {"done", "DesignDone"},
          {"error", "SweepError"}});
-    schemas["DesignStart"] = object_of(
-        {{"type", constant("start"), ""},
-         {"version", text(), "version of the program"},
-         {"commit", text(), "commit of the program; empty if unknown"},
-         {"runs_of", whole(), "motions of the first map"},
-         {"b_from", number(), "smallest clearance, m"},
-         {"b_to", number(), "largest clearance, m"},
-         {"host",
-          object_of(
-              {{"m1", number(), "mass, kg"},
-               {"c1", number(), "damping, N s/m"},
-               {"k1", number(), "stiffness, N/m"},
-               {"f0", number(), "frequency, Hz"},
-               {"damping_ratio", number(), "damping ratio"}}),
-          "the machine without absorber"},
-         {"request", reference("DesignRequest"), "the request"}});
-    schemas["DesignPoint"] = object_of(Keys{{"type", constant("point"), ""}} + absorber_keys());
-    schemas["DesignProgress"] = object_of(
-        {{"type", constant("progress"), ""},
-         {"done", whole(), "absorbers so far"},
-         {"runs", whole(), "motions so far"},
-         {"runs_of", whole(), "motions of the first map, or those so far"}});
+    schemas["DesignStart"] = line_of(
+        "start", {{"version", text(), "version of the program"},
+                  {"commit", text(), "commit of the program; empty if unknown"},
+                  {"runs_of", whole(), "motions of the first map"},
+                  {"b_from", number(), "smallest clearance, m"},
+                  {"b_to", number(), "largest clearance, m"},
+                  {"host",
+                   object_of(
+                       {{"m1", number(), "mass, kg"},
+                        {"c1", number(), "damping, N s/m"},
+                        {"k1", number(), "stiffness, N/m"},
+                        {"f0", number(), "frequency, Hz"},
+                        {"damping_ratio", number(), "damping ratio"}}),
+                   "the machine without absorber"},
+                  {"request", reference("DesignRequest"), "the request"}});
+    schemas["DesignPoint"] = line_of("point", absorber_keys());
+    schemas["DesignProgress"] = line_of(
+        "progress", {{"done", whole(), "absorbers so far"},
+                     {"runs", whole(), "motions so far"},
+                     {"runs_of", whole(), "motions of the first map, or those so far"}});
     const Keys ratios = {
         {"frequency_ratio", number(), "its frequency over that of the host"},
         {"damping_ratio", number(), "its damping ratio c2/(2 sqrt(k2 m2))"}};
-    schemas["DesignDone"] = object_of(
-        {{"type", constant("done"), ""},
-         {"complete", flag(), "false if stopped: best is the best so far, without its details"},
+    schemas["DesignDone"] = line_of(
+        "done",
+        {{"complete", flag(), "false if stopped: best is the best so far, without its details"},
          {"best", object_of(best_keys()), "the best absorber"},
          {"without", linear({}), "the host without absorber"},
          {"tuned_mass_damper", linear(ratios), "the best one of the same mass for this band"},

@@ -1,6 +1,5 @@
 #include "api/openapi/json_schema.hpp"
 
-#include <span>
 #include <utility>
 
 #include "core/measures/regime.hpp"

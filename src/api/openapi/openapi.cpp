@@ -101,62 +101,14 @@ Json run_path(Operation o, const char* request, const FieldTable& fields) {
     return {{"get", get_by_query(by_query, fields)}, {"post", post(o, request)}};
 }
 
-Json sweep_path() {
-    Operation o = {
-        "sweep",
-        "sweep",
-        "Many runs over one to three parameters, as a stream",
-        "A stream of JSON lines: start, then points in any order, progress every 200 ms, sometimes "
-        "a warning, and finally done or error. As CSV, CBOR or npz: a table of all points, whose "
-        "connection is reset if the sweep ends early.",
-        "SweepLine",
-        "application/x-ndjson"};
+/// A POST whose response is a stream of JSON lines or, with formats, a table.
+Json stream_path(
+    const char* id, const char* summary, const char* description, const char* line,
+    const char* request, bool has_formats) {
+    Operation o = {id, "sweep", summary, description, line, "application/x-ndjson"};
     o.computes = true;
-    return {{"post", post(o, "SweepRequest")}};
-}
-
-Json basins_path() {
-    Operation o = {
-        "basins",
-        "sweep",
-        "Which starts lead to which motion, as a stream",
-        "A stream of JSON lines: start, then a point for each start in any order, progress every "
-        "200 ms, and finally done with the motions, their fractions of the starts and the "
-        "roughness of the boundaries, or error. As CSV, CBOR or npz: a table of all starts.",
-        "BasinsLine",
-        "application/x-ndjson"};
-    o.computes = true;
-    return {{"post", post(o, "BasinsRequest")}};
-}
-
-Json continue_path() {
-    Operation o = {
-        "continue",
-        "sweep",
-        "Branches of periodic orbits along a parameter, stable and unstable, as a stream",
-        "A stream of JSON lines: start; for each branch a line branch, its points, its special "
-        "points and its end with the reason, in order; progress every 200 ms; finally done or "
-        "error.",
-        "ContinueLine",
-        "application/x-ndjson"};
-    o.computes = true;
-    o.has_formats = false;
-    return {{"post", post(o, "ContinueRequest")}};
-}
-
-Json design_path() {
-    Operation o = {
-        "design",
-        "sweep",
-        "The best absorber over a band and a range of amplitudes, next to its alternatives",
-        "A stream of JSON lines: start, the absorbers that are tried, progress every 200 ms, and "
-        "done with the best one, its margins, and the responses without absorber and with a tuned "
-        "mass damper; or error.",
-        "DesignLine",
-        "application/x-ndjson"};
-    o.computes = true;
-    o.has_formats = false;
-    return {{"post", post(o, "DesignRequest")}};
+    o.has_formats = has_formats;
+    return {{"post", post(o, request)}};
 }
 
 /// The body is JSON with all fields, or a file of columns with the fields in the query.
@@ -220,10 +172,37 @@ Json paths() {
               "walls must have the same R.",
               "Manifold"},
              "ManifoldRequest", manifold_fields())},
-        {"/v1/sweep", sweep_path()},
-        {"/v1/basins", basins_path()},
-        {"/v1/continue", continue_path()},
-        {"/v1/design", design_path()},
+        {"/v1/sweep",
+         stream_path(
+             "sweep", "Many runs over one to three parameters, as a stream",
+             "A stream of JSON lines: start, then points in any order, progress every 200 ms, "
+             "sometimes a warning, and finally done or error. As CSV, CBOR or npz: a table of all "
+             "points, whose connection is reset if the sweep ends early.",
+             "SweepLine", "SweepRequest", true)},
+        {"/v1/basins",
+         stream_path(
+             "basins", "Which starts lead to which motion, as a stream",
+             "A stream of JSON lines: start, then a point for each start in any order, progress "
+             "every 200 ms, and finally done with the motions, their fractions of the starts and "
+             "the roughness of the boundaries, or error. As CSV, CBOR or npz: a table of all "
+             "starts.",
+             "BasinsLine", "BasinsRequest", true)},
+        {"/v1/continue",
+         stream_path(
+             "continue",
+             "Branches of periodic orbits along a parameter, stable and unstable, as a stream",
+             "A stream of JSON lines: start; for each branch a line branch, its points, its "
+             "special points and its end with the reason, in order; progress every 200 ms; finally "
+             "done or error.",
+             "ContinueLine", "ContinueRequest", false)},
+        {"/v1/design",
+         stream_path(
+             "design",
+             "The best absorber over a band and a range of amplitudes, next to its alternatives",
+             "A stream of JSON lines: start, the absorbers that are tried, progress every 200 ms, "
+             "and done with the best one, its margins, and the responses without absorber and with "
+             "a tuned mass damper; or error.",
+             "DesignLine", "DesignRequest", false)},
         {"/v1/identify", identify_path()},
         {"/v1/parameters",
          read_path(

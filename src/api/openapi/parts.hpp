@@ -1,6 +1,8 @@
 // The parts of the OpenAPI document, each made in a file of its own.
 #pragma once
 
+#include <functional>
+
 #include "api/openapi/json_schema.hpp"
 #include "api/schema/tables.hpp"
 
@@ -26,6 +28,12 @@ Keys answer_keys(const std::string& parameters);
 /// The same with provenance.
 Keys sealed_keys(const std::string& parameters);
 Json multipliers_schema();  // continuation_lines.cpp
+/// A line of a stream: `type`, then these keys.
+Json line_of(const char* type, const Keys& keys);
+/// An optional key for each parameter that can be swept and for which is_kept() is true.
+Keys swept_keys(
+    const Json& value, const std::string& description,
+    const std::function<bool(const Field&)>& is_kept = [](const Field&) { return true; });
 /// One of these schemas, selected by the key `type`: {value of type, name of the schema}.
 Json by_type(const std::vector<std::pair<std::string, std::string>>& schemas);
 /// Columns of a Poincare section at impact, without tau.

@@ -6,14 +6,6 @@ namespace vines::api::document {
 
 namespace {
 
-/// An optional key for each parameter that can be swept.
-Keys swept_keys(const Json& value, const std::string& description) {
-    Keys keys;
-    for (const Field& f : sweep_base_fields())
-        if (f.type == FieldType::number) keys.push_back(optional({f.name, value, description}));
-    return keys;
-}
-
 Keys index_keys() {
     return {
         {"type", constant("point"), ""},
@@ -48,12 +40,10 @@ Json point_section() {
 Json measured_point() {
     const Keys own = index_keys() + Keys{start_of_line()} +
                      or_null(values_of(properties::point));  // null if the transient did not end
-    Keys swept;
-    for (const Key& key : swept_keys(number(), "value at this point, if swept"))
-        // The key lambda holds the exponents; a swept lambda is in `axes` of the line start.
-        if (key.name != "lambda") swept.push_back(key);
+    // The key lambda holds the exponents; a swept lambda is in `axes` of the line start.
+    const auto is_no_result = [](const Field& f) { return f.name != "lambda"; };
     return object_of(
-        own + swept +
+        own + swept_keys(number(), "value at this point, if swept", is_no_result) +
         Keys{
             state_key("with the default set: initial state of the worst motion"),
             {"reason", one_of({"complete", "max_impacts", "transient_max_impacts"}),
@@ -162,21 +152,20 @@ Json start_line_schema(const char* request) {
 }
 
 Json progress_line_schema() {
-    return object_of(
-        {{"type", constant("progress"), ""},
-         {"done", whole(), "lines sent"},
-         {"of", whole(), "lines in total"},
-         {"per_second", number(), "lines per second"},
-         {"seconds_left", or_null(number()),
-          "estimate from the completed runs; null before the first"},
-         {"runs", whole(), "completed runs"},
-         {"runs_of", whole(), "runs in total, approximately"}});
+    return line_of(
+        "progress", {{"done", whole(), "lines sent"},
+                     {"of", whole(), "lines in total"},
+                     {"per_second", number(), "lines per second"},
+                     {"seconds_left", or_null(number()),
+                      "estimate from the completed runs; null before the first"},
+                     {"runs", whole(), "completed runs"},
+                     {"runs_of", whole(), "runs in total, approximately"}});
 }
 
 Json error_line_schema() {
-    return object_of(
-        {{"type", constant("error"), ""},
-         {"status",
+    return line_of(
+        "error",
+        {{"status",
           {{"type", "integer"}, {"enum", {500, 503}}},
           "503: the server is stopping, or the sweep reached its time limit: request the missing "
           "indices again; 500: the server failed"},
@@ -184,15 +173,13 @@ Json error_line_schema() {
          {"points", whole(), "lines sent"}});
 }
 
-Json start_schema() { return object_of(values_of(properties::start)); }
-
 Json basins_point() {
-    return object_of(
+    return line_of(
+        "point",
         Keys{
-            {"type", constant("point"), ""},
             {"index", whole(), "number of the line: the values of the axis vary fastest"},
-            {"start", start_schema(), "the start"}} +
-        swept_keys(number(), "value of the axis") + values_of(properties::motion_name));
+            {"start", object_of(values_of(properties::start)), "the start"}} +
+            swept_keys(number(), "value of the axis") + values_of(properties::motion_name));
 }
 
 Json basins_attractor() {
@@ -224,6 +211,20 @@ Json basins_statistics() {
 
 }  // namespace
 
+Json line_of(const char* type, const Keys& keys) {
+    return object_of(Keys{{"type", constant(type), ""}} + keys);
+}
+
+Keys swept_keys(
+    const Json& value, const std::string& description,
+    const std::function<bool(const Field&)>& is_kept) {
+    Keys keys;
+    for (const Field& f : sweep_base_fields())
+        if (f.type == FieldType::number && is_kept(f))
+            keys.push_back(optional({f.name, value, description}));
+    return keys;
+}
+
 Json by_type(const std::vector<std::pair<std::string, std::string>>& schemas) {
     Json any = Json::array(), mapping = Json::object();
     for (const auto& [type, name] : schemas) {
@@ -252,10 +253,8 @@ void add_sweep_lines(Json& schemas) {
     schemas["SweepPeak"] = object_of(
         Keys{optional({"start", text(), "name of the start in the default set"})} + peak_keys());
     schemas["SweepProgress"] = progress_line_schema();
-    schemas["SweepWarning"] =
-        object_of({{"type", constant("warning"), ""}, {"message", text(), "a sentence"}});
-    schemas["SweepDone"] =
-        object_of({{"type", constant("done"), ""}, {"points", whole(), "lines sent"}});
+    schemas["SweepWarning"] = line_of("warning", {{"message", text(), "a sentence"}});
+    schemas["SweepDone"] = line_of("done", {{"points", whole(), "lines sent"}});
     schemas["SweepError"] = error_line_schema();
     schemas["BasinsLine"] = by_type(
         {{"start", "BasinsStart"},
@@ -267,13 +266,12 @@ void add_sweep_lines(Json& schemas) {
     schemas["BasinsPoint"] = basins_point();
     schemas["BasinsAttractor"] = basins_attractor();
     schemas["BasinsStatistics"] = basins_statistics();
-    schemas["BasinsDone"] = object_of(
-        {{"type", constant("done"), ""},
-         {"points", whole(), "lines sent"},
-         {"attractors", list_of(reference("BasinsAttractor")),
-          "the motions that the starts of these lines lead to, the largest basin first"},
-         {"basins", list_of(reference("BasinsStatistics")),
-          "all starts of these lines, for each value of the axis"}});
+    schemas["BasinsDone"] = line_of(
+        "done", {{"points", whole(), "lines sent"},
+                 {"attractors", list_of(reference("BasinsAttractor")),
+                  "the motions that the starts of these lines lead to, the largest basin first"},
+                 {"basins", list_of(reference("BasinsStatistics")),
+                  "all starts of these lines, for each value of the axis"}});
 }
 
 }  // namespace vines::api::document

@@ -2,8 +2,6 @@
 // the restitution coefficient.
 #include <fmt/format.h>
 
-#include <algorithm>
-#include <cmath>
 #include <limits>
 #include <list>
 
@@ -219,11 +217,12 @@ const std::vector<std::pair<double, double>> other_walls = {{0.6, 0.6}, {0.7, 0.
                                                             {0.9, 0.9}, {0.95, 0.95}, {0.8, 0.9},
                                                             {0.9, 0.8}, {0.7, 0.95},  {0.95, 0.7}};
 
-/// Counts the verdicts that stay the same for assumed restitution coefficients.
-void assumed_restitution(Report& report, const Experiment& regular, const Experiment& irregular) {
+}  // namespace
+
+void vary_restitution(Report& report, const MeasuredResponses& responses) {
     DataTable table{{"b (mm)", "assumed R", "slope", "90 % interval", "verdict"}};
     double same = 0;
-    for (const Experiment* const e : {&regular, &irregular})
+    for (const Experiment* const e : {&responses.regular, &responses.irregular})
         for (const auto& [R_plus, R_minus] : other_walls) {
             Parameters p = e->result.parameters;
             p.R_plus = R_plus, p.R_minus = R_minus;
@@ -242,12 +241,6 @@ void assumed_restitution(Report& report, const Experiment& regular, const Experi
         {same, fmt::format("{} of {}", same, all)},
         {exactly(all), "all; in part: half or more", Band{all / 2, all}});
     report.table(table);
-}
-
-}  // namespace
-
-void vary_restitution(Report& report, const MeasuredResponses& responses) {
-    assumed_restitution(report, responses.regular, responses.irregular);
 }
 
 }  // namespace vines::report

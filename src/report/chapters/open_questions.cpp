@@ -1,7 +1,6 @@
 // Questions left open by the paper: the borders of the regimes; the steady state at 22 mm.
 #include <fmt/ranges.h>
 
-#include <algorithm>
 #include <cmath>
 
 #include "report/report.hpp"
