@@ -2,7 +2,6 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <atomic>
 #include <chrono>
 #include <condition_variable>
@@ -10,104 +9,16 @@
 #include <future>
 #include <memory>
 #include <mutex>
-#include <string>
-#include <thread>
 #include <utility>
 
 #include "api/json_text.hpp"
 #include "http/log.hpp"
-#include "http/memory.hpp"
 
 namespace vines::http {
-
-// --- Simulations with long lists ---
 
 namespace {
 
 using Clock = std::chrono::steady_clock;
-
-/// RunControl of a streamed answer: one slot for each run, none while its lists are sent. It
-/// releases the slot while requests wait. A started answer is finished even if the server is about
-/// to stop.
-class StreamPace : public RunControl {
-public:
-    StreamPace(AdmissionControl& admission, std::string client, Writer& out)
-        : admission_(admission),
-          client_(std::move(client)),
-          out_(out) {}
-    void begin() override {
-        slot_ = admission_.acquire_background(client_, {});
-        while (!slot_ && out_.connected() && !admission_.all_stopped()) {
-            slot_ = admission_.acquire(client_);
-            if (!slot_) std::this_thread::sleep_for(client_check_interval);  // the queue is full
-        }
-    }
-    void end() override { slot_.reset(); }
-    bool stop_or_yield() override {
-        if (slot_ && admission_.foreground_waits()) {
-            end();
-            begin();
-        }
-        if (const auto now = Clock::now(); now - checked_ >= client_check_interval) {
-            checked_ = now;
-            connected_ = out_.connected();
-        }
-        return !slot_ || !connected_;
-    }
-
-private:
-    AdmissionControl& admission_;
-    const std::string client_;
-    Writer& out_;
-    AdmissionControl::Slot slot_;
-    Clock::time_point checked_ = Clock::now();
-    bool connected_ = true;
-};
-
-// Memory of a run while its lists are made and sent: measured at 5 to 7 MB.
-constexpr std::size_t held_by_answer = 8 << 20;
-
-/// A stream's client, and its request's id for the log.
-struct StreamOf {
-    explicit StreamOf(const Request& r) : client(r.client), id(r.id) {}
-    std::string client, id;
-};
-
-bool write(api::Answer answer, const StreamOf& of, AdmissionControl& admission, Writer& out) {
-    trim_memory();  // the memory of the run
-    StreamPace control(admission, of.client, out);
-    try {
-        api::write_answer(std::move(answer), control, [&out](std::string_view piece) {
-            if (!out.write(piece)) throw api::Cancelled();
-        });
-        return true;
-    } catch (const api::Cancelled&) {
-    } catch (...) {
-        log_failure("/v1/simulate", of.id, std::current_exception());
-    }
-    return false;
-}
-
-}  // namespace
-
-Response stream_answer(api::Answer answer, const Request& request, AdmissionControl& admission) {
-    // Shared, because a response can be copied.
-    auto shared = std::make_shared<api::Answer>(std::move(answer));
-    return {
-        .headers = {{"Cache-Control", "no-store"}},
-        .stream =
-            [shared, of = StreamOf(request), &admission](Writer& out) {
-                const bool whole = write(std::move(*shared), of, admission, out);
-                trim_memory();
-                return whole;
-            },
-        .held = held_by_answer,
-        .compressible = true};
-}
-
-// --- Sweeps ---
-
-namespace {
 
 // Interval between progress lines.
 constexpr auto report_interval = std::chrono::milliseconds(200);
@@ -119,21 +30,15 @@ constexpr auto time_slice = std::chrono::milliseconds(20);
 class LineQueue {
 public:
     void push(const std::string& text) {
-        {
-            const std::lock_guard lock(mutex_);
+        change([&] {
             text_ += text;
             size_ = text_.size();
             ++count_;
-        }
-        changed_.notify_all();
+        });
     }
     /// To be called after the last line.
     void finish() {
-        {
-            const std::lock_guard lock(mutex_);
-            finished_ = true;
-        }
-        changed_.notify_all();
+        change([this] { finished_ = true; });
     }
 
     struct Taken {
@@ -161,6 +66,15 @@ public:
     }
 
 private:
+    template <class Change>
+    void change(Change make) {
+        {
+            const std::lock_guard lock(mutex_);
+            make();
+        }
+        changed_.notify_all();
+    }
+
     static constexpr std::size_t capacity_ = 1 << 20;  // bytes
 
     std::mutex mutex_;
@@ -240,53 +154,54 @@ struct LineWork {
     const char* how_to_go_on = "";  ///< after an early end; null for a table, which is then cut off
 };
 
-/// The last line of an incomplete stream, for a client that is still connected.
-std::string line_of_end(const LineWork& work, SweepEnd end, std::size_t done) {
-    if (!work.how_to_go_on) return "";
-    const bool late = end == SweepEnd::deadline;
-    return api::error_line(
-        503,
-        fmt::format(
-            "the {}; {}", late ? "time limit of one sweep is reached" : "server is stopping",
-            work.how_to_go_on),
-        done);
-}
-
+/// Computes the lines on another thread while this one sends them.
 class LineStream {
 public:
+    /// `id`: of the request, for the log.
     LineStream(
-        const LineWork& work, double deadline, const StreamOf& of, AdmissionControl& admission,
-        Writer& out)
+        const LineWork& work, double deadline, std::string client, std::string id,
+        AdmissionControl& admission, Writer& out)
         : work_(work),
           out_(out),
-          id_(of.id),
-          control_(admission, of.client, lines_, deadline) {}
+          id_(std::move(id)),
+          control_(admission, std::move(client), lines_, deadline) {}
 
     SweepEnd run() {
         if (!out_.write(work_.begin)) return SweepEnd::client_left;
+        SweepEnd end;
+        std::string last;
         try {
             const std::size_t done = lines();
-            const SweepEnd end = is_complete_         ? SweepEnd::complete
-                                 : control_.is_late() ? SweepEnd::deadline
-                                                      : SweepEnd::stopping;
-            const bool sent =
-                connected_ &&
-                out_.write(is_complete_ ? work_.complete(done) : line_of_end(work_, end, done));
-            return sent ? end : SweepEnd::client_left;
+            end = is_complete_         ? SweepEnd::complete
+                  : control_.is_late() ? SweepEnd::deadline
+                                       : SweepEnd::stopping;
+            last = is_complete_ ? work_.complete(done) : line_of_end(end, done);
         } catch (...) {
             log_failure(work_.path, id_, std::current_exception());
-            const std::string line = api::error_line(
-                500, "the server failed; the reason is in its log", lines_.take({}).count);
-            return connected_ && (!work_.how_to_go_on || out_.write(line)) ? SweepEnd::failed
-                                                                           : SweepEnd::client_left;
+            end = SweepEnd::failed;
+            last = line_of_end(end, lines_.take({}).count);
         }
+        return connected_ && out_.write(last) ? end : SweepEnd::client_left;
     }
     std::size_t runs() const { return control_.runs; }
     std::size_t impacts() const { return control_.impacts; }
 
 private:
-    /// Computes the lines on another thread while this one sends them. Returns the number of lines
-    /// sent.
+    /// The last line of an incomplete stream; a table has none.
+    std::string line_of_end(SweepEnd end, std::size_t done) const {
+        if (!work_.how_to_go_on) return "";
+        if (end == SweepEnd::failed)
+            return api::error_line(500, "the server failed; the reason is in its log", done);
+        const bool late = end == SweepEnd::deadline;
+        return api::error_line(
+            503,
+            fmt::format(
+                "the {}; {}", late ? "time limit of one sweep is reached" : "server is stopping",
+                work_.how_to_go_on),
+            done);
+    }
+
+    /// Computes the lines on another thread while this one sends them. Returns their number.
     std::size_t lines() {
         auto computing = std::async(std::launch::async, [this] {
             const std::shared_ptr<void> at_end(nullptr, [this](void*) { lines_.finish(); });
@@ -315,8 +230,7 @@ private:
                 taken.text += work_.progress(taken.count, control_, seconds.count());
                 reported = now;
             }
-            connected_ =
-                connected_ && out_.connected() && (taken.text.empty() || out_.write(taken.text));
+            connected_ = connected_ && out_.connected() && out_.write(taken.text);
             if (!connected_) control_.stop();
         } while (!taken.finished);
         return taken.count;
@@ -352,9 +266,9 @@ Response stream_lines(
     return {
         .content_type = api::sweep_format_names[0].media_type,
         .headers = {{"Cache-Control", "no-store"}, {"X-Accel-Buffering", "no"}},
-        .stream = [work, deadline, of = StreamOf(asked), &admission, &metrics,
+        .stream = [work, deadline, client = asked.client, id = asked.id, &admission, &metrics,
                    sweep_slot](Writer& out) {
-            LineStream sending(*work, deadline, of, admission, out);
+            LineStream sending(*work, deadline, client, id, admission, out);
             const SweepEnd end = sending.run();
             metrics.count_sweep(end, sending.runs(), sending.impacts());
             return work->how_to_go_on ? end != SweepEnd::client_left : end == SweepEnd::complete;

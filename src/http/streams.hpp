@@ -1,20 +1,16 @@
-// Answers that are computed while they are sent: the long lists of a simulation, and the lines of a
-// sweep. They take compute slots as background work, and stop when their client leaves.
+// The lines of sweeps, continuations and designs, which are sent while they are computed. They take
+// compute slots as background work, and stop when their client leaves.
 #pragma once
 
 #include "api/continuation.hpp"
 #include "api/design.hpp"
 #include "api/format/sweep_table.hpp"
-#include "api/simulate.hpp"
 #include "api/sweep.hpp"
 #include "http/admission_control.hpp"
 #include "http/message.hpp"
 #include "http/metrics.hpp"
 
 namespace vines::http {
-
-/// Sends an answer whose lists of impacts are computed meanwhile; `admission` must outlive it.
-Response stream_answer(api::Answer answer, const Request& request, AdmissionControl& admission);
 
 /// The format of a sweep, and the largest table in CBOR or npz, bytes.
 struct SweepForm {
