@@ -58,14 +58,17 @@ void add_forcing(Json& j, const JointFit& fit, const Parameters& p) {
         fit.forcing.phase.has_value());
 }
 
-// Smaller relative variations of the forcing are not reported: in a record without noise they are
-// numerical errors.
-constexpr double steadiest_forcing = 1e-4;
+// Smaller variations of the forcing, relative to its amplitude, are only part of the errors: in
+// short or noiseless records they can be numerical.
+constexpr double named_variation = 0.01;
+
+double force_of(const JointFit& fit) {
+    return elementary::hypot(fit.values[Unknown::force_sin], fit.values[Unknown::force_cos]);
+}
 
 /// Describes an effect outside the model, with its size.
 std::string effect_size_text(const FittedEffect& e, const JointFit& fit, double omega0) {
-    const double amplitude =
-        elementary::hypot(fit.values[Unknown::force_sin], fit.values[Unknown::force_cos]);
+    const double amplitude = force_of(fit);
     // Amplitude at which the stiffness is compared, m.
     constexpr double compared = 0.01;
     switch (e.effect) {
@@ -76,8 +79,8 @@ std::string effect_size_text(const FittedEffect& e, const JointFit& fit, double 
                 e.effect == Effect::second_harmonic ? 2 : 3, 100 * e.size / amplitude);
         case Effect::forcing_varies:
             return fmt::format(
-                "amplitude or phase of the forcing vary during the record, by about {:.2g} %",
-                100 * e.size);
+                "amplitude or phase of the forcing vary during the record{}, by about {:.2g} %",
+                fit.forcing.load ? " otherwise than in its channel" : "", 100 * e.size / amplitude);
         case Effect::stiffness_varies:
             return fmt::format(
                 "the stiffness changes with the amplitude, by about {:.2g} % at 10 mm",
@@ -158,7 +161,7 @@ void add_fitted_warnings(
             "the forcing has f = {:.6g} Hz, not f = {:.6g} Hz",
             hertz(fit.values[Unknown::Omega], omega0), hertz(given[Unknown::Omega], omega0)));
     for (const FittedEffect& e : fit.effects)
-        if (e.effect != Effect::forcing_varies || e.size > steadiest_forcing)
+        if (e.effect != Effect::forcing_varies || e.size > named_variation * force_of(fit))
             warnings.push_back(effect_text(e, fit, omega0));
     // The search fits the oscillator only where the record contradicts it.
     if (!fit.fixed[Unknown::stiffness] || !fit.fixed[Unknown::damping])

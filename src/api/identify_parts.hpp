@@ -25,10 +25,23 @@ RecordColumn find_column(
 
 // The forcing measured by a channel of the record (measured_forcing.cpp).
 
-/// Fits a harmonic to the channel's column; nullopt without a channel. Problem 422 if one harmonic
-/// does not describe it; throws Cancelled.
-std::optional<MeasuredForcing> measured_forcing(
-    const std::vector<CsvColumn>& columns, const Json& fields, CancelCheck& cancel);
+/// Samples of the channel, with empty cells left out.
+struct ForcingSamples {
+    bool is_force;
+    std::string name;
+    std::vector<double> seconds, values;  ///< values in m/s^2 or N
+};
+/// nullopt without a channel.
+std::optional<ForcingSamples> forcing_samples(
+    const std::vector<CsvColumn>& columns, const Json& fields);
+
+/// Fits a harmonic to the channel. Problem 422 if one harmonic does not describe it; throws
+/// Cancelled.
+MeasuredForcing measured_forcing(const ForcingSamples& samples, CancelCheck& cancel);
+
+/// Takes what the channel shows beyond a sine as the load of the record; then the harmonic is its
+/// fundamental. Call after the record has been read.
+void take_load(IdentifyRequest& request, ForcingSamples samples, CancelCheck& cancel);
 
 /// The model's forcing from a channel: amplitude in m, and phase at t = 0 in rad.
 struct ChannelForcing {
@@ -36,7 +49,7 @@ struct ChannelForcing {
 };
 ChannelForcing channel_forcing(const MeasuredForcing& measured, const System& system);
 
-/// {f, F, phase}. `phase` is the lag of the forcing in the oscillator's motion after the
+/// {f, F, phase, load}. `phase` is the lag of the forcing in the oscillator's motion after the
 /// channel, in rad. Warns if amplitudes or phases disagree.
 Json describe_measured_forcing(
     const MeasuredForcing& measured, const System& used, const JointFit& fit,

@@ -238,20 +238,23 @@ Json taken(Json& object, const char* name) {
 }
 
 /// Request with a record: reads the forcing, the fields and the columns in this order, because a
-/// measured channel of the forcing supplies f unless the request gives it.
+/// measured channel of the forcing supplies f unless the request gives it; then its load.
 IdentifyRequest read_request_of_record(const Json& given, Csv csv, CancelCheck& cancel) {
     // Checks all fields first: the lookup of columns below reads them unchecked.
     if (auto errors = check(identify_fields(), given); !errors.empty()) refuse(std::move(errors));
-    const std::optional<MeasuredForcing> forcing = measured_forcing(csv.columns, given, cancel);
+    std::optional<ForcingSamples> samples = forcing_samples(csv.columns, given);
+    std::optional<MeasuredForcing> forcing;
+    if (samples) forcing = measured_forcing(*samples, cancel);
     Json fields = given;
     const bool f_is_given = fields.contains("f") || fields.contains("Omega");
     if (forcing && !f_is_given) fields["f"] = forcing->f;
     IdentifyRequest r = read_fields(fields, true, true);
     r.forcing = forcing;
-    read_known_forcing(r, fields);
     if (forcing && !f_is_given)
         r.system.origin["f"] = r.system.origin["Omega"] = "measured with the record";
     read_record(r, fields, std::move(csv), cancel);
+    if (samples) take_load(r, std::move(*samples), cancel);
+    read_known_forcing(r, fields);
     return r;
 }
 

@@ -18,8 +18,8 @@ double angular(double f) { return 2 * std::numbers::pi * f; }
 
 }  // namespace
 
-std::optional<MeasuredForcing> measured_forcing(
-    const std::vector<CsvColumn>& columns, const Json& fields, CancelCheck& cancel) {
+std::optional<ForcingSamples> forcing_samples(
+    const std::vector<CsvColumn>& columns, const Json& fields) {
     const RecordColumn time = find_column(columns, fields, time_channel),
                        base = find_column(columns, fields, base_channel),
                        force = find_column(columns, fields, force_channel);
@@ -30,25 +30,49 @@ std::optional<MeasuredForcing> measured_forcing(
             "/record/" + shortened(force.column->name),
             "the record has a channel of the base, " + shortened(base.column->name) +
                 ", and one of a force: the model has one forcing");
+    ForcingSamples samples{force.column != nullptr, channel.column->name, {}, {}};
     // A slower channel has empty cells.
-    std::vector<double> seconds, values;
     for (std::size_t k = 0; k < time.column->values.size(); ++k) {
         if (std::isnan(channel.column->values[k] + time.column->values[k])) continue;
-        seconds.push_back(time.column->values[k] * time.factor);
-        values.push_back(channel.column->values[k]);
+        samples.seconds.push_back(time.column->values[k] * time.factor);
+        samples.values.push_back(channel.column->values[k] * channel.factor);
     }
+    return samples;
+}
+
+MeasuredForcing measured_forcing(const ForcingSamples& s, CancelCheck& cancel) {
     const std::optional<Harmonic> h =
-        seconds.empty() ? std::nullopt
-                        : harmonic_of(seconds, values, [&] { cancel.step(seconds.size()); });
+        s.seconds.empty()
+            ? std::nullopt
+            : harmonic_of(s.seconds, s.values, [&] { cancel.step(s.seconds.size()); });
     if (!h)
         refuse(
-            "/record/" + shortened(channel.column->name),
-            "column " + shortened(channel.column->name) +
+            "/record/" + shortened(s.name),
+            "column " + shortened(s.name) +
                 " is not harmonic: one sine must explain three quarters of it, over five cycles "
                 "or more");
-    return MeasuredForcing{
-        force.column != nullptr, h->omega / (2 * std::numbers::pi), h->sin * channel.factor,
-        h->cos * channel.factor};
+    return {s.is_force, h->omega / (2 * std::numbers::pi), h->sin, h->cos};
+}
+
+void take_load(IdentifyRequest& r, ForcingSamples s, CancelCheck& cancel) {
+    const double omega0 = r.system.si->omega0();
+    // In the units of the model, m (per unit of tau squared).
+    const double unit = s.is_force ? r.system.si->k1 : omega0 * omega0;
+    MeasuredForcing& m = *r.forcing;
+    for (double& t : s.seconds) t *= omega0;
+    for (double& v : s.values) v /= unit;
+    const MeasuredRecord& record = r.measurement.record;
+    const Parameters& p = r.system.parameters;
+    const std::size_t samples = s.seconds.size();
+    r.measurement.forcing.load = MeasuredLoad::of(
+        {s.is_force, std::move(s.seconds), std::move(s.values), record.tau.front(),
+         record.tau.back(), p.lambda * p.epsilon},
+        {angular(m.f) / omega0, m.sin / unit, m.cos / unit}, [&] { cancel.step(samples); });
+    if (!r.measurement.forcing.load) return;
+    // A modulated sine has a smaller mean than its fundamental.
+    const double ratio = elementary::modulus(r.measurement.forcing.load->fundamental) /
+                         channel_forcing(m, r.system).amplitude;
+    m.sin *= ratio, m.cos *= ratio;
 }
 
 ChannelForcing channel_forcing(const MeasuredForcing& m, const System& system) {
@@ -85,7 +109,8 @@ Json describe_measured_forcing(
             "the forcing in the oscillator's motion {} the channel of the {} by {:.3g} rad: is the "
             "channel inverted or delayed?",
             phase > 0 ? "lags" : "leads", m.is_force ? "force" : "base", std::abs(phase)));
-    return {{"f", m.f}, {"F", F}, {"phase", phase}};
+    return {
+        {"f", m.f}, {"F", F}, {"phase", phase}, {"load", fit.forcing.load ? "measured" : "sine"}};
 }
 
 }  // namespace vines::api

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <complex>
 #include <cstdio>
 #include <functional>
 #include <numbers>
@@ -11,6 +12,7 @@
 
 #include "api/csv.hpp"
 #include "api/identify.hpp"
+#include "core/measurement/measured_load.hpp"
 #include "core/measurement/synthetic_record.hpp"
 #include "record_support.hpp"
 
@@ -183,6 +185,7 @@ TEST_CASE(
         CHECK(forcing["f"].get<double>() == doctest::Approx(f).epsilon(2e-5));
         CHECK(forcing["F"].get<double>() == doctest::Approx(F).epsilon(1e-3));
         CHECK(std::abs(forcing["phase"].get<double>()) < 0.02);
+        CHECK(forcing["load"] == "sine");
         for (const auto& [key, truth] : {std::pair("F", F), std::pair("phase", 0.0)}) {
             const Json& fitted = a["fitted"][key];
             CHECK(
@@ -204,6 +207,35 @@ TEST_CASE(
         // channel's.
         CHECK(std::abs(fixed["signal"]["forcing"]["phase"].get<double>()) < 1e-4);
     }
+    // A harmonic of the base becomes part of the load, whichever channel shows it.
+    const double second = 0.05;
+    const Channel base_with_harmonic{
+        "base_acceleration_g",
+        [&](double t) {
+            return base(t) - 4 * second * F * omega * omega * std::sin(2 * omega * t) / 9.80665;
+        }},
+        force_with_harmonic{"force_N", [&](double t) {
+                                return force(t) + second * F *
+                                                      (k1 * std::sin(2 * omega * t) +
+                                                       2 * c1 * omega * std::cos(2 * omega * t));
+                            }};
+    std::vector<std::complex<double>> excess;
+    for (const Channel& c : {base_with_harmonic, force_with_harmonic}) {
+        const IdentifyRequest r =
+            read_identify_request(system, with_column(csv, c.name, c.of_time));
+        const MeasuredLoad* load = r.measurement.forcing.load.get();
+        REQUIRE(load);
+        CHECK(
+            elementary::modulus(load->fundamental) ==
+            doctest::Approx(F * std::hypot(1, c1 * omega / k1)).epsilon(1e-4));
+        UnknownValues values{};
+        values[Unknown::Omega] = load->Omega;
+        values[Unknown::force_cos] = load->fundamental.real();
+        values[Unknown::force_sin] = -load->fundamental.imag();
+        excess.push_back(load->excess(3, values));
+    }
+    CHECK(elementary::modulus(excess[0]) == doctest::Approx(second).epsilon(0.02));
+    CHECK(elementary::modulus(excess[0] - excess[1]) < 0.02 * second);
     const std::string inverted =
         with_column(csv, "base_acceleration_g", [&](double t) { return -1.2 * base(t); });
     const std::string said = identified(read_identify_request(system, inverted))["warnings"].dump();

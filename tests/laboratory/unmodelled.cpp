@@ -24,6 +24,18 @@ Motion moved(const Motion& from, const Motion& by, double h) {
     return to;
 }
 
+/// Right-hand side of eq. (2).
+double forcing_at(const Parameters& p, double omega0, const UnmodelledEffects& o, double tau) {
+    const double length = seconds * omega0, u = (tau - settling * omega0) / length,
+                 slow = 2 * std::numbers::pi * o.modulation_cycles * u,
+                 swept = u > 0 ? 0.5 * o.sweep * p.Omega * length * (u * u - u) : 0,
+                 angle =
+                     p.Omega * tau + p.phi() + o.phase_modulation * elementary::sin(slow) + swept;
+    return p.epsilon * p.A() *
+           ((1 + o.amplitude_modulation * elementary::sin(slow)) * elementary::sin(angle) +
+            o.second * elementary::sin(2 * angle + 1) + o.third * elementary::sin(3 * angle + 2));
+}
+
 class UnmodelledRun {
 public:
     UnmodelledRun(const Parameters& p, double omega0, const UnmodelledEffects& o)
@@ -61,16 +73,7 @@ private:
     bool is_outside(const Motion& m) const { return std::abs(m[0] - m[2]) > p_.b; }
 
     Motion derivative(double tau, const Motion& m) const {
-        const double slow = 2 * std::numbers::pi * o_.modulation_cycles * (tau - begin_) /
-                            (seconds * omega0_),
-                     angle =
-                         p_.Omega * tau + p_.phi() + o_.phase_modulation * elementary::sin(slow),
-                     forcing = p_.epsilon * p_.A() *
-                               ((1 + o_.amplitude_modulation * elementary::sin(slow)) *
-                                    elementary::sin(angle) +
-                                o_.second * elementary::sin(2 * angle + 1) +
-                                o_.third * elementary::sin(3 * angle + 2)),
-                     slip = m[3] > m[1] ? 1 : -1,
+        const double forcing = forcing_at(p_, omega0_, o_, tau), slip = m[3] > m[1] ? 1 : -1,
                      stiffness = 1 + o_.cubic * m[0] * m[0] / (compared * compared);
         return {
             m[1], forcing - stiffness * m[0] - 2 * p_.zeta() * m[1] + p_.epsilon * friction_ * slip,
@@ -204,6 +207,24 @@ Experiment unmodelled_experiment(double b, const UnmodelledEffects& o) {
     }
     e.parameters.epsilon *= 1 + o.given_m2, e.parameters.lambda /= 1 + o.given_m2;
     return e;
+}
+
+ForcingChannel unmodelled_channel(
+    const Experiment& e, const UnmodelledEffects& o, bool is_force, double noise) {
+    const Parameters& p = e.true_parameters;
+    const std::vector<double>& tau = e.record.tau;
+    ForcingChannel c{is_force, tau, {}, tau.front(), tau.back(), 2 * p.zeta()};
+    std::mt19937_64 engine(7);
+    for (const double at : tau) {
+        // The base leads its force by 2 zeta, to first order.
+        constexpr double h = 0.01;
+        const auto force = [&](double by) {
+            return forcing_at(p, e.omega0, o, at + by - (is_force ? 0 : c.damping));
+        };
+        const double value = is_force ? force(0) : (force(h) - 2 * force(0) + force(-h)) / (h * h);
+        c.values.push_back(value + noise * p.epsilon * p.A() * standard_normal(engine));
+    }
+    return c;
 }
 
 double mean_R(const Experiment& e, int side) {

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "../core/measurement/laboratory.hpp"
+#include "core/measurement/measured_load.hpp"
 
 namespace vines::test {
 
@@ -14,6 +15,7 @@ struct UnmodelledEffects {
     /// Of the forcing's amplitude, relative, and of its phase, rad, with this many cycles over the
     /// record.
     double amplitude_modulation = 0, phase_modulation = 0, modulation_cycles = 1.5;
+    double sweep = 0;                ///< relative growth of f over the record
     double cubic = 0;                ///< relative change of the stiffness at 10 mm
     double R_slope = 0;              ///< relative change of R per m/s
     double R_scatter = 0;            ///< standard deviation of R from impact to impact
@@ -34,6 +36,11 @@ std::vector<UnmodelledCase> unmodelled_cases();
 /// Table 4's oscillator with R = .85, 20 s after rest; 12 s at 2048 Hz with the default noise and
 /// pulses of Sensors. Experiment::lambda1 and verdict are not set.
 Experiment unmodelled_experiment(double b, const UnmodelledEffects& effects);
+
+/// What a channel of the forcing shows of it, with noise: the force, or the acceleration of the
+/// base. `noise`: relative to the amplitude.
+ForcingChannel unmodelled_channel(
+    const Experiment& experiment, const UnmodelledEffects& effects, bool is_force, double noise);
 
 /// Mean R of the true impacts at a wall.
 double mean_R(const Experiment& experiment, int side);

@@ -12,7 +12,10 @@ Json signal() {
          {"F", number(),
           "amplitude of the base, m; for a force, that of the equivalent base motion"},
          {"phase", number(),
-          "phase lag of the forcing in the oscillator's motion after that in the channel, rad"}});
+          "phase lag of the forcing in the oscillator's motion after that in the channel, rad"},
+         {"load", one_of({"measured", "sine"}),
+          "measured: variations and harmonics in the channel are part of the forcing; sine: it "
+          "shows none"}});
     return object_of(
         {{"samples", whole(), "number of samples"},
          {"sampling_rate", number(), "sampling rate, Hz"},

@@ -5,8 +5,9 @@
 #include <Eigen/Core>
 #include <algorithm>
 #include <array>
+#include <optional>
 
-#include "core/measurement/unknowns.hpp"
+#include "core/measurement/measured_load.hpp"
 #include "core/motion/flow.hpp"
 
 namespace vines {
@@ -71,25 +72,45 @@ struct FittedInterval {
     bool sticks = false;  ///< the free mass moves with the oscillator
 };
 
+/// A flow with the response to a load's excess, if there is one.
+struct LoadedFlow {
+    LoadedFlow(
+        double stiffness, double damping, double force, double mass, double Omega,
+        const LoadResponse::Excess* excess);
+    /// Response to the load alone, tabulated from rest before the record; 0 without a load.
+    OscillatorMotion load_at(double sigma, double force_sin, double force_cos) const;
+
+    Flow flow;
+    std::optional<LoadResponse> response;
+};
+
 /// Flows of the oscillator: with the values themselves, and with k and c each slightly increased.
 struct OscillatorFlows {
     /// `oscillator_moves`: whether derivatives by k and c are needed. `mass`: moving mass divided
-    /// by m1.
-    OscillatorFlows(const UnknownValues& values, bool oscillator_moves, double mass = 1);
+    /// by m1. `excess`: of a load; null: none.
+    OscillatorFlows(
+        const UnknownValues& values, bool oscillator_moves, double mass = 1,
+        const LoadResponse::Excess* excess = nullptr);
 
     bool oscillator_moves;
     double force, phase, Omega;  ///< amplitude of the forcing, m, and its phase at tau_m
-    Flow parts, by_stiffness, by_damping;
+    LoadedFlow parts, by_stiffness, by_damping;
 };
 
 /// Flows of both kinds of interval: free, and sticking.
 struct IntervalFlows {
-    IntervalFlows(const UnknownValues& values, bool oscillator_moves, double epsilon)
-        : free(values, oscillator_moves),
-          stuck(values, oscillator_moves, 1 + epsilon) {}
+    /// `load`: null if the forcing is a sine.
+    IntervalFlows(
+        const UnknownValues& values, bool oscillator_moves, double epsilon,
+        const MeasuredLoad* load);
     const OscillatorFlows& of(const FittedInterval& i) const { return i.sticks ? stuck : free; }
 
     OscillatorFlows free, stuck;
+
+private:
+    IntervalFlows(
+        const UnknownValues& values, bool oscillator_moves, double epsilon,
+        const std::optional<LoadResponse::Excess>& excess);
 };
 
 /// A motion with its derivatives.
@@ -106,16 +127,22 @@ public:
         const OscillatorFlows& flows, const UnknownValues& values, double tau_middle,
         const FittedInterval& interval);
 
-    /// Motion at a time s >= 0 after the start; x'' is 0 unless `with_acceleration`.
+    /// Motion at a time s >= 0 after the start; x'' is valid only `with_acceleration`.
     MotionRow at(double s, bool with_acceleration);
 
 private:
+    void add_load(double s, std::array<OscillatorMotion, 4>& parts) const;
+    std::array<Oscillation, 1> whole(const LoadedFlow& flow) const;
+    OscillatorMotion derivative(
+        const LoadedFlow& flow, const OscillatorMotion& moved, double s,
+        const OscillatorMotion& plain) const;
     OscillatorMotion by_frequency(const std::array<OscillatorMotion, 4>& parts, double s) const;
 
     const OscillatorFlows& flows_;
     const double since_middle_;
     const std::array<double, 4> start_;
     FollowedFlow<4> parts_;
+    LoadResponse::Motion load_at_start_;
     FollowedFlow<1> by_stiffness_, by_damping_;
 };
 

@@ -110,7 +110,10 @@ struct JointFitState : JointFitInput {
     JointFit fit = {};
     EffectDerivatives* effects = nullptr;  ///< in the step that tests effects outside the model
 
-    IntervalFlows flows() const { return {fit.values, !fit.fixed.oscillator(), fit.epsilon}; }
+    IntervalFlows flows() const {
+        return {
+            fit.values, !fit.fixed.oscillator() || effects, fit.epsilon, fit.forcing.load.get()};
+    }
     /// Moving mass in an interval, divided by m1.
     double moving_mass(const FittedInterval& i) const { return i.sticks ? 1 + fit.epsilon : 1; }
     /// x'' at the start of an interval.

@@ -207,10 +207,11 @@ void test_effects(JointFitState& state) {
 
 double JointFitState::acceleration_at(const FittedInterval& i) const {
     const UnknownValues& v = fit.values;
-    const double angle = v[Unknown::Omega] * (i.tau - fit.tau_middle);
+    const double sigma = i.tau - fit.tau_middle;
+    std::complex<double> forcing = elementary::phasor(v[Unknown::Omega] * sigma);
+    if (fit.forcing.load) forcing += fit.forcing.load->excess(sigma, v);
     return (-v[Unknown::stiffness] * i.x - v[Unknown::damping] * i.x_dot +
-            v[Unknown::force_sin] * elementary::sin(angle) +
-            v[Unknown::force_cos] * elementary::cos(angle)) /
+            v[Unknown::force_sin] * forcing.imag() + v[Unknown::force_cos] * forcing.real()) /
            moving_mass(i);
 }
 
@@ -267,7 +268,7 @@ bool explains(const JointFit& fit) {
 }
 
 std::vector<OscillatorMotion> motion_at(const JointFit& fit, const std::vector<double>& times) {
-    const IntervalFlows flows(fit.values, false, fit.epsilon);
+    const IntervalFlows flows(fit.values, false, fit.epsilon, fit.forcing.load.get());
     std::vector<OscillatorMotion> motions;
     motions.reserve(times.size());
     each_motion(fit, flows, times, 0, true, [&](std::size_t, std::size_t, const MotionRow& row) {

@@ -20,8 +20,6 @@ constexpr Eigen::Index slow_harmonics = 4, slow_columns = 2 * slow_harmonics + 1
 // standard deviations and this much; it matters if it moves b, R or the forcing by this many
 // standard errors.
 constexpr double sure_deviations = 6, sure = 25, matters = 1;
-// Finite difference of the flows for derivatives by stiffness and damping (interval_motion.cpp).
-constexpr double oscillator_step = 1e-6;
 // Largest phase lead of a high pass, rad.
 constexpr double most_lead = 0.5;
 
@@ -44,7 +42,6 @@ std::array<Oscillation, 2> at_rest(double angle) {
 EffectDerivatives::EffectDerivatives(const JointFitState& state)
     : state_(state),
       interval_(state.fit.intervals.size()),
-      flows_(state.fit.values, true),
       second_(harmonic_flow(state, 2)),
       third_(harmonic_flow(state, 3)) {
     const auto add = [this](Effect effect, Eigen::Index count) {
@@ -95,11 +92,6 @@ const Eigen::VectorXd& EffectDerivatives::motion(
     if (i != interval_) {
         by_second_.emplace(second_, at_rest(angle_of(state_, 2, from.tau)));
         by_third_.emplace(third_, at_rest(angle_of(state_, 3, from.tau)));
-        const double angle = angle_of(state_, 1, from.tau) + flows_.phase;
-        const std::array<Oscillation, 1> start = {
-            {{from.x, from.x_dot, elementary::sin(angle), elementary::cos(angle)}}};
-        by_stiffness_.emplace(flows_.by_stiffness, start);
-        by_damping_.emplace(flows_.by_damping, start);
         interval_ = i;
     }
     row_.setZero();
@@ -123,13 +115,9 @@ const Eigen::VectorXd& EffectDerivatives::motion(
     // -x^3 acts on the fundamental like an additional stiffness 3/4 amplitude^2.
     const double squared =
         from.x * from.x + from.x_dot * from.x_dot / (v[Unknown::Omega] * v[Unknown::Omega]);
-    const auto difference = [&](FollowedFlow<1>& moved) {
-        return (moved.at(s, second_derivative)[0].*member - row.value.*member) / oscillator_step;
-    };
-    const double by_stiffness = difference(*by_stiffness_);
-    row_(first_of(Effect::stiffness_varies)) = 0.75 * squared * by_stiffness;
+    row_(first_of(Effect::stiffness_varies)) = 0.75 * squared * (row.by_stiffness.*member);
     if (const Eigen::Index at = first_of(Effect::given_oscillator); at >= 0)
-        row_(at) = by_stiffness, row_(at + 1) = difference(*by_damping_);
+        row_(at) = row.by_stiffness.*member, row_(at + 1) = row.by_damping.*member;
     if (state_.sides) {
         // The ball pulls with epsilon times its friction: the response to a constant force.
         const OscillatorMotion& p = row.parts[0];
@@ -225,8 +213,37 @@ std::vector<FittedEffect> tested_effects(
     return found;
 }
 
-UnknownValues propagated_uncertainty(const JointFitState& state, const EffectDerivatives& effects) {
+namespace {
+
+/// Standard errors due to the noise of a channel of the forcing: in its harmonics, and in the slow
+/// variations of its fundamental.
+UnknownValues load_uncertainty(const JointFitState& state, const EffectDerivatives& effects) {
     UnknownValues errors{};
+    if (!state.forcing.load) return errors;
+    const UnknownValues& v = state.fit.values;
+    const double amplitude = elementary::hypot(v[Unknown::force_sin], v[Unknown::force_cos]);
+    const Eigen::MatrixXd& by = state.equations.effects.solved;
+    const auto add = [&](Effect effect, Eigen::Index skipped, Eigen::Index count, double error) {
+        for (std::size_t k = 0; k < unknowns; ++k)
+            if (!state.fit.fixed[k])
+                errors[k] = elementary::hypot(
+                    errors[k], error * amplitude *
+                                   by.row(state.equations.unknown_at(k))
+                                       .segment(effects.first_of(effect) + skipped, count)
+                                       .norm());
+    };
+    const MeasuredLoad& load = *state.forcing.load;
+    add(Effect::second_harmonic, 0, 2, load.error_of(2));
+    add(Effect::third_harmonic, 0, 2, load.error_of(3));
+    // The mean square of a slow harmonic is 1/2.
+    add(Effect::forcing_varies, 1, forcing_columns - 1, std::numbers::sqrt2 * load.error_of(1));
+    return errors;
+}
+
+}  // namespace
+
+UnknownValues propagated_uncertainty(const JointFitState& state, const EffectDerivatives& effects) {
+    UnknownValues errors = load_uncertainty(state, effects);
     const Eigen::Index mass = effects.first_of(Effect::given_mass_ratio),
                        oscillator = effects.first_of(Effect::given_oscillator);
     if (mass < 0) return errors;
@@ -242,9 +259,10 @@ UnknownValues propagated_uncertainty(const JointFitState& state, const EffectDer
                      damping = state.fit.fixed[Unknown::damping]
                                    ? v[Unknown::damping] * by(row, oscillator + 1)
                                    : 0;
-        errors[k] = elementary::hypot(
-            elementary::hypot(given.m2 * ratio, given.m1 * (ratio + stiffness + damping)),
-            elementary::hypot(given.k1 * stiffness, given.c1 * damping));
+        for (const double e :
+             {given.m2 * ratio, given.m1 * (ratio + stiffness + damping), given.k1 * stiffness,
+              given.c1 * damping})
+            errors[k] = elementary::hypot(errors[k], e);
     }
     return errors;
 }

@@ -59,10 +59,8 @@ private:
     Eigen::Index size_ = 0;
     double corner_;  ///< of the accelerometer's high pass, where its derivative is taken
     std::size_t interval_;
-    OscillatorFlows flows_;
     Flow second_, third_;
     std::optional<FollowedFlow<2>> by_second_, by_third_;
-    std::optional<FollowedFlow<1>> by_stiffness_, by_damping_;
     Eigen::VectorXd row_;
 };
 
@@ -71,7 +69,8 @@ private:
 std::vector<FittedEffect> tested_effects(
     const JointFitState& state, const EffectDerivatives& effects, double factor);
 
-/// Standard errors that follow from those of the given masses, stiffness and damping.
+/// Standard errors that follow from those of the given masses, stiffness and damping, and from the
+/// noise of a channel of the forcing.
 UnknownValues propagated_uncertainty(const JointFitState& state, const EffectDerivatives& effects);
 
 }  // namespace vines

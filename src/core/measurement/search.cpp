@@ -54,7 +54,8 @@ void find_candidates(ImpactSearch& s, bool events_first) {
 void find_frequency(ImpactSearch& s) {
     std::vector<double> times;
     for (const Candidate& c : s.candidates) times.push_back(c.tau);
-    s.values[Unknown::Omega] = scanned_frequency(fit_input(s), times);
+    const MeasuredLoad* load = s.measurement.forcing.load.get();
+    s.values[Unknown::Omega] = load ? load->Omega : scanned_frequency(fit_input(s), times);
 }
 
 /// Number of impacts without an event in the acceleration.

@@ -134,7 +134,7 @@ std::vector<Candidate> overlooked_pulses(const ImpactSearch& s) {
 void add_overlooked_kinks(const ImpactSearch& s, std::vector<Candidate>& found) {
     const JointFit& fit = s.found.fit;
     const UnknownValues& v = fit.values;
-    const IntervalFlows flows(v, false, fit.epsilon);
+    const IntervalFlows flows(v, false, fit.epsilon, fit.forcing.load.get());
     const double noise = std::max(fit.noise_x, s.statistics.x.noise);
     for (std::size_t i = 0; i < fit.intervals.size(); ++i) {
         s.progress.look();
@@ -144,7 +144,7 @@ void add_overlooked_kinks(const ImpactSearch& s, std::vector<Candidate>& found) 
                           s.spoiled.x;
         const auto missed = find_kink(
             {s.record, fit.x_residual, s.bad.x, noise, v[Unknown::x_delay], from, to},
-            flows.of(fit.intervals[i]).parts, false);
+            flows.of(fit.intervals[i]).parts.flow, false);
         if (missed)
             found.push_back({.tau = missed->tau, .jump = missed->jump / v[Unknown::x_gain]});
     }

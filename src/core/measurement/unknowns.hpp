@@ -2,8 +2,9 @@
 //
 // Between impacts the oscillator follows x'' + c x' + k x = f_s sin(Omega (tau - tau_m)) + f_c
 // cos(Omega (tau - tau_m)), eq. (2), with tau = omega0 t for the given omega0 and tau_m the middle
-// of the record; with exact given values k = 1 and c = 2 zeta. Each interval between two impacts
-// has an initial state (x, x'); each impact has a time.
+// of the record; with exact given values k = 1 and c = 2 zeta. A channel of the forcing can add to
+// the sines what it shows beyond them (measured_load.hpp). Each interval between two impacts has an
+// initial state (x, x'); each impact has a time.
 //
 // The sensors show, for a sample at tau, with u = (tau - tau_m)/(length of the record):
 //
@@ -26,6 +27,7 @@
 
 #include <array>
 #include <cstddef>
+#include <memory>
 #include <optional>
 
 #include "core/motion/parameters.hpp"
@@ -74,10 +76,15 @@ struct FixedUnknowns : ForUnknowns<bool> {
     bool oscillator() const { return (*this)[Unknown::stiffness] && (*this)[Unknown::damping]; }
 };
 
-/// Given parameters of the forcing f sin(Omega tau + phase).
+class MeasuredLoad;
+
+/// What is known of the forcing f sin(Omega tau + phase).
 struct KnownForcing {
     std::optional<double> amplitude = {};  ///< f, m
     std::optional<double> phase = {};
+    /// The forcing beyond its fundamental, from a channel of the record (measured_load.hpp); null:
+    /// it is a sine.
+    std::shared_ptr<const MeasuredLoad> load = {};
 };
 
 /// Values for ideal sensors and the given oscillator.

@@ -26,8 +26,9 @@ bool shows(const MeasurementResult& r, Effect effect) {
     return std::ranges::any_of(all, [effect](const FittedEffect& e) { return e.effect == effect; });
 }
 
-/// Checks that no published value is more than four of its errors off.
-void check_values(const Experiment& e, const MeasurementResult& r) {
+/// Checks that no published value is more than four of its errors off. `mean`: of the forcing's
+/// relative amplitude over the record.
+void check_values(const Experiment& e, const MeasurementResult& r, double mean = 1) {
     constexpr double sigmas = 4;
     const auto check = [](double value, double truth, double error) {
         CAPTURE(value);
@@ -42,7 +43,7 @@ void check_values(const Experiment& e, const MeasurementResult& r) {
     const double sin = v[Unknown::force_sin], cos = v[Unknown::force_cos],
                  amplitude = elementary::hypot(sin, cos);
     check(
-        amplitude, e.true_parameters.epsilon * e.true_parameters.A(),
+        amplitude, mean * e.true_parameters.epsilon * e.true_parameters.A(),
         elementary::hypot(sin * errors[Unknown::force_sin], cos * errors[Unknown::force_cos]) /
             amplitude);
 }
@@ -86,6 +87,69 @@ TEST_CASE(
         const Experiment e = unmodelled_experiment(0.015, c.effects);
         check_values(e, identified_with_mains(e, c.effects.given_m2));
     }
+}
+
+namespace {
+
+/// One and a half cycles have a mean.
+double mean_amplitude(const UnmodelledEffects& o) {
+    return 1 + o.amplitude_modulation * 2 / (3 * std::numbers::pi);
+}
+
+std::shared_ptr<const MeasuredLoad> load_of(const ForcingChannel& channel) {
+    return MeasuredLoad::of(channel, *harmonic_of(channel.tau, channel.values));
+}
+
+}  // namespace
+
+TEST_CASE("a measured forcing is the load: its modulation, harmonics and sweeps change no value") {
+    for (const UnmodelledEffects& effects :
+         {UnmodelledEffects{.amplitude_modulation = 0.03}, UnmodelledEffects{.second = 0.05},
+          UnmodelledEffects{.sweep = 0.005}})
+        for (const bool is_force : {false, true}) {
+            CAPTURE(effects.amplitude_modulation);
+            CAPTURE(effects.second);
+            CAPTURE(is_force);
+            const Experiment e = unmodelled_experiment(0.015, effects);
+            Measurement m = measurement_of(e);
+            m.forcing.load = load_of(unmodelled_channel(e, effects, is_force, 0.02));
+            REQUIRE(m.forcing.load);
+            const MeasurementResult r = evaluate_measurement(m);
+            check_values(e, r, mean_amplitude(effects));
+            CHECK(r.doubts.empty());
+            CHECK(r.refined->fit.fixed.oscillator());
+            CHECK(r.found.b_error < 1e-3 * e.true_parameters.b);
+            CHECK(r.found.plus.error < 2e-3);
+            const auto found = std::ranges::count_if(e.impacts, [&](const Impact& i) {
+                return std::ranges::any_of(r.found.impacts, [&](const IdentifiedImpact& j) {
+                    return std::abs(j.tau - i.tau) < 1.5e-3 * e.omega0;
+                });
+            });
+            CHECK(static_cast<double>(found) >= 0.99 * static_cast<double>(e.impacts.size()));
+        }
+}
+
+TEST_CASE("with a measured forcing zeta is fitted under modulation") {
+    const UnmodelledEffects effects{.amplitude_modulation = 0.03};
+    Experiment e = unmodelled_experiment(0.015, effects);
+    e.parameters.lambda *= 1.3;
+    Measurement m = measurement_of(e);
+    m.forcing.load = load_of(unmodelled_channel(e, effects, false, 0.02));
+    const MeasurementResult r = evaluate_measurement(m);
+    const JointFit& fit = r.refined->fit;
+    CHECK(!fit.fixed[Unknown::damping]);
+    CHECK(
+        std::abs(fit.values[Unknown::damping] - 2 * e.true_parameters.zeta()) <
+        4 * fit.errors[Unknown::damping]);
+    CHECK(fit.errors[Unknown::damping] < 0.2 * e.true_parameters.zeta());
+    check_values(e, r, mean_amplitude(effects));
+}
+
+TEST_CASE("a channel of a clean sine is no load") {
+    const Experiment e = unmodelled_experiment(0.009, {});
+    for (const bool is_force : {false, true})
+        for (const double noise : {0.0, 0.01, 0.1})
+            CHECK(!load_of(unmodelled_channel(e, {}, is_force, noise)));
 }
 
 TEST_CASE("hum of the mains is removed before impacts are searched") {
