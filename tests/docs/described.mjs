@@ -56,6 +56,7 @@ const parts = {
   "continue.end": {of: ["ContinueProgress", "ContinueDone"]},
   "design.start": {of: ["DesignStart"], opaque: ["request"]},
   "design.point": {of: ["DesignPoint"]},
+  "design.sample": {of: ["DesignSample"]},
   "design.progress": {of: ["DesignProgress"]},
   "design.done": {of: ["DesignDone"]},
   provenance: {of: ["Provenance"], opaque: ["request"]},
