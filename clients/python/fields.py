@@ -44,6 +44,7 @@ NESTED = {
     "restitution_plus": "RestitutionTable",
     "restitution_minus": "RestitutionTable",
     "box": "StartBox",
+    "tolerances": "Tolerances",
 }
 
 # Not passed by the user: the client chooses the format, and identify has arguments for the others.
@@ -63,8 +64,11 @@ def main() -> None:
 
 
 def module(schemas: dict[str, Any]) -> str:
-    fields = schemas["SimulateRequest"]["properties"] | schemas["BasinsRequest"]["properties"]
-    objects = {name: fields[field] for field, name in NESTED.items()}
+    fields: dict[str, Any] = {}
+    for name in ("SimulateRequest", "BasinsRequest", "DesignRequest"):
+        fields |= schemas[name]["properties"]
+    objects = {"Distribution": fields["tolerances"]["properties"]["b"]}
+    objects |= {name: fields[field] for field, name in NESTED.items()}
     objects |= {name: schemas[name] for name in OBJECTS}
     parts = [HEAD, number_lists(schemas)]
     parts += [functional(name, schema) for name, schema in objects.items()]
@@ -103,6 +107,8 @@ def typed(key: str, schema: dict[str, Any]) -> str:
         return str(schema["$ref"]).rsplit("/", 1)[1]
     if "anyOf" in schema:
         return " | ".join(typed(key, one) for one in schema["anyOf"])
+    if schema.get("type") == "object":
+        return "Distribution"
     if "enum" in schema:
         return f"Literal[{', '.join(json.dumps(word) for word in schema['enum'])}]"
     if schema["type"] == "array":

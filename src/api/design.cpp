@@ -4,12 +4,16 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
+#include <numeric>
+#include <set>
 
 #include "api/describe.hpp"
 #include "api/json_text.hpp"
 #include "api/schema/enum_names.hpp"
 #include "api/schema/tables.hpp"
 #include "api/version.hpp"
+#include "core/sweep/basins.hpp"
 
 namespace vines::api {
 
@@ -17,6 +21,9 @@ namespace {
 
 constexpr double least_b_of_amplitude = 0.05, most_b_of_amplitude = 1.2;
 constexpr Range amplitude_range{1e-9, 1e6}, f_range{1e-3, 1e5}, b_range{1e-9, 1e3};
+
+// Intervals that can be given as one number.
+constexpr const char* intervals[] = {"f", "acceleration", "F", "b"};
 
 /// Replaces a number by the list that `as` makes of it.
 void list_of_number(Json& given, const char* name, const std::function<Json(const Json&)>& as) {
@@ -84,14 +91,14 @@ Json with_lists(const Json& object) {
     const auto single = [](const Json& v) { return Json::array({v}); };
     for (const char* name : {"R", "m2"}) list_of_number(given, name, single);
     // One number in a query or on the command line is a list of one.
-    for (const char* name : {"f", "acceleration", "F"})
+    for (const char* name : intervals)
         if (given.contains(name) && given[name].is_array() && given[name].size() == 1)
             given[name] = Json(given[name][0]);
     Json checked = given;
-    for (const char* name : {"f", "acceleration", "F"})
+    for (const char* name : intervals)
         if (checked.contains(name) && checked[name].is_number()) checked.erase(name);
     std::vector<FieldError> errors = check(design_fields(), checked);
-    for (const char* name : {"f", "acceleration", "F"}) list_of_number(given, name, pair);
+    for (const char* name : intervals) list_of_number(given, name, pair);
     for (const char* name : {"base", "f"})
         if (!given.contains(name))
             errors.push_back(
@@ -105,6 +112,69 @@ Json with_lists(const Json& object) {
 
 Json designed(const Json& given, const char* name) {
     return value_or_default(design_fields(), given, name);
+}
+
+const char* name_in(const DesignRequest& r, Toleranced what) {
+    return what != Toleranced::amplitude ? enum_name(what)
+           : r.is_acceleration           ? "acceleration"
+                                         : "F";
+}
+
+/// A checked distribution; errors are relative to the tolerances.
+Tolerance read_tolerance(
+    Toleranced what, const std::string& name, const Json& given, std::vector<FieldError>& errors) {
+    const bool is_normal = given.contains("normal"), is_factor = given.value("of", "") == "factor";
+    const Json& pair = given.value(is_normal ? "normal" : "uniform", Json::array());
+    if (is_normal == given.contains("uniform") || pair.size() != 2) {
+        errors.push_back(
+            {"/" + name, given, nullptr,
+             "a distribution is either normal, [mean, standard deviation], or uniform, [from, "
+             "to]"});
+        return {};
+    }
+    const double first = pair[0], second = pair[1],
+                 most = what == Toleranced::R && !is_factor ? 1 : infinity;
+    if (!(first >= 0 && second >= 0 && (is_normal ? first : second) <= most))
+        errors.push_back(
+            {"/" + name, pair, nullptr,
+             "values and standard deviations are not negative, and R is at most 1"});
+    return {what, is_normal, is_factor, first, second};
+}
+
+void read_tolerances(DesignRequest& r, const Json& given, std::vector<FieldError>& errors) {
+    const Json all = given.value("tolerances", Json::object());
+    std::vector<FieldError> faults;
+    for (const auto& [what, text] : enum_names<Toleranced>) {
+        const std::string name = text, own = name_in(r, what);
+        if (!all.contains(name)) continue;
+        Tolerance t = read_tolerance(what, name, all[name], faults);
+        const std::string other = what == Toleranced::f0              ? "k1"
+                                  : what == Toleranced::damping_ratio ? "c1"
+                                                                      : "";
+        if (name != own || all.contains(other))
+            faults.push_back(
+                {"/" + name, all[name], nullptr,
+                 name + " excludes " + (name != own ? own : other)});
+        if (what == Toleranced::amplitude && !t.is_factor)
+            t.first /= r.amplitude, t.second /= r.amplitude;
+        r.plan.tolerances.push_back(t);
+    }
+    add_errors("/tolerances", std::move(faults), errors);
+    if (r.plan.tolerances.empty()) return;
+    const auto count = static_cast<std::size_t>(designed(given, "samples").get<double>());
+    r.plan.seed = static_cast<std::uint64_t>(designed(given, "seed").get<double>());
+    std::vector<std::size_t>& samples = r.plan.samples;
+    if (given.contains("indices")) {
+        const auto wanted = given["indices"].get<std::set<std::size_t>>();
+        samples.assign(wanted.begin(), wanted.end());
+        if (!samples.empty() && samples.back() >= count)
+            errors.push_back(
+                {"/indices", samples.back(), Json::array({0, count - 1}),
+                 fmt::format("there are {} samples, numbered from 0", count)});
+    } else {
+        samples.resize(count);
+        std::iota(samples.begin(), samples.end(), 0);
+    }
 }
 
 // --- The answer ---
@@ -139,8 +209,8 @@ std::string quantity_text(const DesignRequest& r, double value) {
     }
 }
 
-/// The result in words.
-std::string sentence_of(const DesignRequest& r, const Design& d) {
+/// Which absorber to build, in words.
+std::string recommendation_of(const DesignRequest& r, const Design& d) {
     const double value = d.best.objective, without = d.without.value,
                  damper = d.with_tuned_mass_damper.value;
     std::string text = fmt::format(
@@ -163,6 +233,23 @@ std::string sentence_of(const DesignRequest& r, const Design& d) {
                                             : ". Both are equally good over this band.");
 }
 
+/// In ascending order.
+std::vector<double> objectives(const std::vector<ToleranceSample>& samples) {
+    std::vector<double> values;
+    for (const ToleranceSample& s : samples) values.push_back(s.point.objective);
+    std::ranges::sort(values);
+    return values;
+}
+
+/// The result in words.
+std::string sentence_of(const DesignRequest& r, const Design& d) {
+    const std::string text = recommendation_of(r, d);
+    if (d.samples.empty()) return text;
+    return fmt::format(
+        "{} With these tolerances {} stays below {} in 95 % of the samples.", text, r.objective,
+        quantity_text(r, quantile(objectives(d.samples), 0.95)));
+}
+
 Json response_columns(const DesignRequest& r, const Design& d) {
     const auto list = [&](double DesignResponse::* member) {
         return column(d.response, [member](const DesignResponse& at) { return at.*member; });
@@ -176,6 +263,53 @@ Json response_columns(const DesignRequest& r, const Design& d) {
         {"impact_speed_max", list(&DesignResponse::impact_speed)},
         {"impulse_max", list(&DesignResponse::impulse)},
         {"impacts_per_second", list(&DesignResponse::impacts_per_second)}};
+}
+
+Json sample_line(const DesignRequest& r, const ToleranceSample& s) {
+    Json values = Json::object();
+    for (const Tolerance& t : r.plan.tolerances) {
+        const double unit = t.what == Toleranced::amplitude ? r.amplitude : 1;
+        values[name_in(r, t.what)] = unit * value_of(s.built, t.what);
+    }
+    Json line = {{"type", "sample"}, {"index", s.index}, {"values", std::move(values)}};
+    line.update(described(r, s.point));
+    line["regime"] = s.worst ? Json(name_of(s.worst->regime.type)) : Json(nullptr);
+    line["verdict"] = s.worst ? enum_json(s.worst->verdict) : Json(nullptr);
+    return line;
+}
+
+/// The fractions of samples by the value that `of` returns for each, with 95 % intervals.
+template <class Of>
+Json fractions(const std::vector<ToleranceSample>& samples, const char* name, Of of) {
+    std::map<Json, std::size_t> counts;
+    for (const ToleranceSample& s : samples) ++counts[s.worst ? of(*s.worst) : Json(nullptr)];
+    Json list = Json::array();
+    const auto all = static_cast<double>(samples.size());
+    for (const auto& [value, count] : counts) {
+        const auto k = static_cast<double>(count);
+        const Interval interval = binomial_interval(k, all);
+        list.push_back(
+            {{name, value},
+             {"samples", count},
+             {"fraction", k / all},
+             {"interval", {interval.from, interval.to}}});
+    }
+    return list;
+}
+
+Json described(const DesignRequest& r, const std::vector<ToleranceSample>& samples) {
+    constexpr std::array probabilities = {0.05, 0.25, 0.5, 0.75, 0.95};
+    const std::vector<double> values = objectives(samples);
+    return {
+        {"samples", samples.size()},
+        {"probability", column(probabilities)},
+        {r.objective,
+         column(probabilities, [&](double p) { return finite_or_null(quantile(values, p)); })},
+        {"regimes",
+         fractions(
+             samples, "regime", [](const PointResult& p) { return Json(name_of(p.regime.type)); })},
+        {"verdicts",
+         fractions(samples, "verdict", [](const PointResult& p) { return enum_json(p.verdict); })}};
 }
 
 Json described(const DesignRequest& r, const Design& d) {
@@ -200,7 +334,7 @@ Json described(const DesignRequest& r, const Design& d) {
         if (r.plan.objective == Objective::impact_speed_max)
             best[r.objective] = finite_or_null(d.best.objective);
     }
-    return {
+    Json line = {
         {"type", "done"},
         {"complete", d.complete},
         {"best", std::move(best)},
@@ -209,6 +343,8 @@ Json described(const DesignRequest& r, const Design& d) {
         {"den_hartog", described(r, d.den_hartog, d.with_den_hartog)},
         {"response", response_columns(r, d)},
         {"sentence", sentence_of(r, d)}};
+    if (!r.plan.tolerances.empty()) line["tolerances"] = described(r, d.samples);
+    return line;
 }
 
 }  // namespace
@@ -247,12 +383,14 @@ DesignRequest read_design_request(const Json& object) {
                 .value;
         plan.b = {least_b_of_amplitude * most, most_b_of_amplitude * most};
     }
+    read_tolerances(r, given, errors);
     if (!errors.empty()) refuse(std::move(errors));
     r.objective = designed(given, "objective");
     plan.objective = enum_value<Objective>(r.objective);
     plan.mean = designed(given, "over") == "mean";
     plan.default_set = designed(given, "starts") != "one";
-    plan.b_count = static_cast<int>(designed(given, "b_count").get<double>());
+    plan.b_count =
+        plan.b.from < plan.b.to ? static_cast<int>(designed(given, "b_count").get<double>()) : 1;
     plan.f_count = static_cast<int>(designed(given, "f_count").get<double>());
     plan.transient_cycles = designed(given, "transient_cycles").get<double>();
     plan.cycles = designed(given, "cycles").get<double>();
@@ -290,12 +428,15 @@ std::string design_progress(
 bool run_design(
     const DesignRequest& r, int threads, vines::RunControl& control, DesignCount& count,
     const std::function<void(const std::string&)>& take) {
-    const auto design = find_design(r.plan, threads, control, [&](const DesignPoint& p) {
-        Json line = {{"type", "point"}};
-        line.update(described(r, p));
-        take(json_text(std::move(line)));
-        ++count;
-    });
+    const auto design = find_design(
+        r.plan, threads, control,
+        [&](const DesignPoint& p) {
+            Json line = {{"type", "point"}};
+            line.update(described(r, p));
+            take(json_text(std::move(line)));
+            ++count;
+        },
+        [&](const ToleranceSample& s) { take(json_text(sample_line(r, s))); });
     if (design) take(json_text(described(r, *design)));
     return design && design->complete;
 }

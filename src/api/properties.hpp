@@ -357,6 +357,19 @@ inline constexpr Property<MeasuredPoint> point[] = {
     {{"sticks", "number of sticking phases", whole}, result_at<&PointResult::sticks>},
 };
 
+/// If requested.
+inline constexpr Property<Extremes> peaks[] = {
+    {quantity.x_ddot_max, at<&Extremes::x_acceleration>},
+    {{"x_relative_max", "largest distance of the oscillator from the base, m"},
+     at<&Extremes::x_relative>},
+};
+
+inline constexpr Property<Extremes> impact_extremes[] = {
+    {quantity.relative_speed_max, at<&Extremes::impact_speed>},
+    {quantity.impulse_per_m1_max, at<&Extremes::impulse>},
+    {quantity.impact_rate, at<&Extremes::impact_rate>},
+};
+
 /// Quantities that distinguish the motions of a point.
 inline constexpr Property<PointResult> motion[] = {
     {{"x_max", "maximum of |x| over the measured cycles, m"}, at<&PointResult::x_max>},

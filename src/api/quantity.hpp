@@ -41,7 +41,8 @@ struct Quantity {
     ValueType type = ValueType::number;
     const char* si_name = nullptr;  ///< key of the SI counterpart, value * omega0^power
     int power = 0;
-    bool per_m1 = false;  ///< the SI counterpart is also multiplied by m1
+    bool per_m1 = false;   ///< the SI counterpart is also multiplied by m1
+    bool is_rate = false;  ///< the SI counterpart is per second
 
     /// The same quantity with another meaning.
     constexpr Quantity with(const char* own_meaning) const {
@@ -100,6 +101,20 @@ struct Quantities {
     Quantity impulse{"impulse", "impulse on the ball per m1, epsilon (y'+ - y'-)",
                      number,    "impulse_N_s",
                      1,         true};
+    Quantity x_ddot_max{
+        "x_ddot_max", "largest |x''| of the oscillator between impacts", number,
+        "x_acceleration_max", 2};
+    Quantity relative_speed_max{
+        "relative_speed_max", "largest |x' - y'| before an impact", number, "impact_speed_max", 1};
+    Quantity impulse_per_m1_max{
+        "impulse_per_m1_max",
+        "largest impulse of an impact per m1, epsilon |y'+ - y'-|",
+        number,
+        "impulse_max",
+        1,
+        true};
+    Quantity impact_rate{
+        "impact_rate", "impacts per unit of tau", number, "impacts_per_second", 1, false, true};
     Quantity V{"V", "speed of the ball, m per unit of tau", number, "V_velocity", 1};
     Quantity C{"C", "amplitude of the oscillator, m"};
     Quantity x{"x", "displacement of the oscillator, m"};

@@ -18,29 +18,34 @@ namespace vines::api {
 namespace {
 
 /// A section as in a bifurcation diagram, without its times.
-Json describe_section(const SweepRequest& r, const Sections& sections, const Place& place) {
+Json describe_section(const SweepRequest& r, const Sections& sections) {
     Json j = r.plan.options.section == SectionKind::impact
                  ? describe(impact_section_columns, sections.impact)
                  : describe(state_columns, sections.states);
     j.erase("tau");
-    if (const auto si = r.systems->si_at(place)) add_si(j, *si);
     return j;
 }
 
+/// Nulls without extremes.
+void add_extremes(Json& j, const SweepRequest& r, const Extremes* extremes) {
+    if (r.plan.options.peaks) j.update(describe(properties::peaks, extremes));
+    j.update(describe(properties::impact_extremes, extremes));
+}
+
 void add_motion(
-    Json& line, const SweepRequest& r, const Place& place, const PointSystem& system,
-    const PointResult& p) {
+    Json& line, const SweepRequest& r, const PointSystem& system, const PointResult& p) {
     const properties::MeasuredPoint point{p, system.parameters.cycle()};
     line.update(describe(properties::point, p.measured ? &point : nullptr));
+    add_extremes(line, r, p.measured ? &p.extremes : nullptr);
     line["reason"] = !p.measured                        ? "transient_max_impacts"
                      : p.outcome.reason == End::tau_end ? "complete"
                                                         : "max_impacts";
     if (p.measured && r.plan.options.section != SectionKind::none)
-        line["section"] = describe_section(r, p.sections, place);
+        line["section"] = describe_section(r, p.sections);
 }
 
 /// Quantities that distinguish the motions of a point.
-Json describe_motion(const Motion& m) {
+Json describe_motion(const SweepRequest& r, const Motion& m) {
     const PointResult& p = m.result;
     Json j = {{"start", m.start}, {"state", describe(properties::start, m.from)}};
     if (!p.measured) {
@@ -48,10 +53,13 @@ Json describe_motion(const Motion& m) {
         return j;
     }
     j.update(describe(properties::motion, p));
+    add_extremes(j, r, &p.extremes);
     return j;
 }
 
-Json describe_peak(const Axis& axis, const Peak& peak) {
+Json describe_peak(const SweepRequest& r, Place place, const Peak& peak) {
+    const std::size_t reduced = *r.plan.grid.reduced;
+    const Axis& axis = r.axes[reduced];
     if (!peak.motion) return {{"x_peak", nullptr}, {axis.parameter, nullptr}};
     const Motion& m = *peak.motion;
     const PointResult& p = m.result;
@@ -59,6 +67,9 @@ Json describe_peak(const Axis& axis, const Peak& peak) {
     if (!m.start.empty())
         j.update({{"start", m.start}, {"state", describe(properties::start, m.from)}});
     j.update(describe(properties::peak, p));
+    add_extremes(j, r, &p.extremes);
+    place.at[reduced] = peak.at;
+    if (const auto si = r.systems->si_at(place)) add_si(j, *si);
     return j;
 }
 
@@ -168,32 +179,34 @@ Json describe_point(const SweepRequest& r, std::size_t index, const SweepPoint& 
     const Motion& worst = motions.empty() ? point.motions[0] : *motions.back();
     if (r.plan.default_set)
         line.update({{"start", worst.start}, {"state", describe(properties::start, worst.from)}});
-    add_motion(line, r, place, *point.system, worst.result);
+    add_motion(line, r, *point.system, worst.result);
     const std::optional<bool> depends = depends_on_start(point, r.plan.default_set);
     if (r.plan.default_set) {
-        line["worst"] = describe_motion(worst);
-        line["best"] = describe_motion(motions.empty() ? worst : *motions.front());
+        line["worst"] = describe_motion(r, worst);
+        line["best"] = describe_motion(r, motions.empty() ? worst : *motions.front());
         line["starts"] = Json::array();
-        for (const Motion& m : point.motions) line["starts"].push_back(describe_motion(m));
+        for (const Motion& m : point.motions) line["starts"].push_back(describe_motion(r, m));
         line["lifetime"] = describe(properties::lifetime, lifetime_of(point.motions));
     } else if (point.second) {
-        line["second_start"] = describe_motion(*point.second);
+        line["second_start"] = describe_motion(r, *point.second);
     }
     if (depends) line["depends_on_start"] = *depends;
+    if (const auto si = r.systems->si_at(place)) add_si(line, *si);
     return line;
 }
 
 Json describe_row(const SweepRequest& r, std::size_t index, const RowSummary& row) {
-    const Axis& axis = r.axes[*r.plan.grid.reduced];
+    const Place place = r.plan.grid.place_of(index);
     Json line = describe_place(r, index);
-    line["reduce"] = (r.plan.largest ? "max over " : "min over ") + axis.parameter;
-    line.update(describe_peak(axis, row.worst));
+    line["reduce"] =
+        (r.plan.largest ? "max over " : "min over ") + r.axes[*r.plan.grid.reduced].parameter;
+    line.update(describe_peak(r, place, row.worst));
     if (r.plan.default_set) {
-        line["worst"] = describe_peak(axis, row.worst);
-        line["best"] = describe_peak(axis, row.best);
+        line["worst"] = describe_peak(r, place, row.worst);
+        line["best"] = describe_peak(r, place, row.best);
         line["starts"] = Json::array();
         for (const auto& of_start : row.starts)
-            line["starts"].push_back(describe_peak(axis, of_start.peak));
+            line["starts"].push_back(describe_peak(r, place, of_start.peak));
     }
     line["x_free_peak"] = or_null(row.x_free);
     line["points"] = row.points;

@@ -51,7 +51,9 @@ std::optional<PointSystem> SweepSystems::system_of(const SystemFields& fields) c
         const ResolvedSystem system = resolve(fields);
         const State start = start_of(fields, system);
         if (!validate(system.parameters, start).empty()) return std::nullopt;
-        return PointSystem{system.parameters, start, max_impacts_};
+        PointSystem point{system.parameters, start, max_impacts_};
+        if (system.si) point.units = {system.si->omega0(), system.si->m1};
+        return point;
     } catch (const Problem&) {  // no valid load
         return std::nullopt;
     }
@@ -225,7 +227,7 @@ void check_systems(const SweepRequest& r, std::vector<FieldError>& errors) {
     }
 }
 
-/// Reads "max over f": the axis, and whether its largest or smallest peak is wanted.
+/// Reads "max over f": the axis, and whether its largest or smallest objective is wanted.
 void read_reduction(SweepRequest& r, const std::string& text, std::vector<FieldError>& errors) {
     Json known = Json::array();
     for (std::size_t a = 0; a < r.axes.size(); ++a)
@@ -238,7 +240,7 @@ void read_reduction(SweepRequest& r, const std::string& text, std::vector<FieldE
         }
     errors.push_back(
         {"/reduce", text, known,
-         "reduce is the largest or the smallest x_max over one of the axes"});
+         "reduce is the largest or the smallest objective over one of the axes"});
 }
 
 void read_axes(
@@ -295,7 +297,8 @@ void check_overlaps(const SweepRequest& r, std::vector<FieldError>& errors) {
 
 void read_options(SweepRequest& r, const Json& given, std::vector<FieldError>& errors) {
     SweepPlan& plan = r.plan;
-    const std::string section = field(given, "section"), carry = field(given, "carry_state");
+    const std::string section = field(given, "section"), carry = field(given, "carry_state"),
+                      objective = field(given, "objective");
     plan.carry = enum_value<Carry>(carry);
     plan.options = {
         .transient_cycles = field(given, "transient_cycles").get<double>(),
@@ -304,7 +307,9 @@ void read_options(SweepRequest& r, const Json& given, std::vector<FieldError>& e
         .section = enum_value<SectionKind>(section),
         .section_points = static_cast<std::size_t>(field(given, "section_points").get<double>()),
         .section_phase = field(given, "section_phase").get<double>(),
-        .carry = plan.default_set || plan.carry != Carry::none};
+        .carry = plan.default_set || plan.carry != Carry::none,
+        .objective = enum_value<Objective>(objective),
+        .peaks = !field(given, "include").empty() || is_peak(enum_value<Objective>(objective))};
     if (plan.default_set && plan.carry != Carry::none)
         errors.push_back(
             {"/carry_state", carry, Json::array({"none"}),
@@ -390,13 +395,11 @@ SweepRequest read_grid(const Json& given, std::size_t starts, std::size_t most_p
     std::vector<FieldError> errors;
     SweepRequest r;
     r.given = given;
-    r.given.erase("indices");
-    r.given.erase("format");
+    for (const char* name : {"indices", "format"}) r.given.erase(name);
     r.base = field(given, "base");
     read_axes(r, given["axes"], most_points, errors);
     add_errors("/base", check(sweep_base_fields(), r.base), errors);
-    const Json none = Json::array();
-    read_starts(r, given.contains("starts") ? given["starts"] : none, errors);
+    read_starts(r, given.value("starts", Json::array()), errors);
     check_overlaps(r, errors);
     refuse_any(errors);
 

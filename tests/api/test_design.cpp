@@ -43,6 +43,17 @@ TEST_CASE("a design's faults are named at their fields") {
     CHECK(design_faults({{"base", {{"epsilon", 0.1}}}}).front() == "/base/epsilon");
     CHECK(design_faults({{"objective", "x"}}) == Pointers{"/objective"});
     CHECK(design_faults({{"q", 1}}) == Pointers{"/q"});
+    const auto tolerance_faults = [](const Json& t) { return design_faults({{"tolerances", t}}); };
+    const Json normal = {{"normal", {0.5, 0.1}}};
+    CHECK(tolerance_faults({{"R", Json::object()}}) == Pointers{"/tolerances/R"});
+    CHECK(tolerance_faults({{"R", {{"normal", {2, 0.1}}}}}) == Pointers{"/tolerances/R"});
+    CHECK(tolerance_faults({{"b", {{"normal", {1}}}}}) == Pointers{"/tolerances/b"});
+    CHECK(tolerance_faults({{"b", {{"uniform", {2, 1}}}}}).front() == "/tolerances/b/uniform");
+    CHECK(tolerance_faults({{"F", normal}}) == Pointers{"/tolerances/F"});
+    CHECK(tolerance_faults({{"k1", normal}, {"f0", normal}}) == Pointers{"/tolerances/f0"});
+    CHECK(
+        design_faults({{"tolerances", {{"R", normal}}}, {"samples", 5}, {"indices", {5}}}) ==
+        Pointers{"/indices"});
 }
 
 TEST_CASE("a range of amplitudes and lists of R and m2 are read, and b follows from the host") {
@@ -57,4 +68,55 @@ TEST_CASE("a range of amplitudes and lists of R and m2 are read, and b follows f
     // 99 mm without absorber.
     CHECK(r.plan.b.to == doctest::Approx(1.2 * 0.0990).epsilon(1e-3));
     CHECK(r.host.f0() == doctest::Approx(8));
+}
+
+TEST_CASE("tolerances yield a line for each sample, quantiles and probabilities of regimes") {
+    Json request = design_of_machine();
+    request.update(
+        {{"b", 0.05},
+         {"R", 0.2},
+         {"f_count", 3},
+         {"starts", "one"},
+         {"transient_cycles", 10},
+         {"cycles", 30},
+         {"samples", 9},
+         {"tolerances",
+          {{"acceleration", {{"normal", {5, 1}}}},
+           {"m2", {{"uniform", {0.9, 1.1}}, {"of", "factor"}}}}}});
+    const auto lines_of = [](const Json& of) {
+        std::vector<Json> lines;
+        vines::RunControl control;
+        DesignCount count;
+        run_design(read_design_request(of), 2, control, count, [&](const std::string& line) {
+            lines.push_back(Json::parse(line));
+        });
+        return lines;
+    };
+    std::vector<Json> samples(9);
+    const std::vector<Json> all = lines_of(request);
+    std::vector<double> values;
+    for (const Json& line : all)
+        if (line["type"] == "sample") {
+            samples[line["index"].get<std::size_t>()] = line;
+            values.push_back(line["x_max"]);
+            CHECK(is_near(line["m2"], 0.04, 0.1));
+            CHECK(line["m2"] == line["values"]["m2"]);
+            CHECK(is_near(line["acceleration"], line["values"]["acceleration"], 1e-12));
+        }
+    REQUIRE(values.size() == 9);
+    std::ranges::sort(values);
+    const Json& t = all.back()["tolerances"];
+    CHECK(t["samples"] == 9);
+    CHECK(t["x_max"][2] == values[4]);
+    CHECK(t["x_max"][1] == values[2]);
+    std::size_t sum = 0;
+    for (const Json& regime : t["regimes"]) {
+        sum += regime["samples"].get<std::size_t>();
+        CHECK(regime["interval"][0] <= regime["fraction"]);
+        CHECK(regime["interval"][1] >= regime["fraction"]);
+    }
+    CHECK(sum == 9);
+    request["indices"] = {7, 2, 2};
+    for (const Json& line : lines_of(request))
+        if (line["type"] == "sample") CHECK(line == samples[line["index"].get<std::size_t>()]);
 }

@@ -113,7 +113,7 @@ TEST_CASE("a reduction is the peak over the reduced axis") {
         R"("axes":[{"parameter":"b","values":[0.012,0.02]},
             {"parameter":"Omega","from":0.97,"to":1.03,"count":5}],"cycles":50,
             "transient_cycles":20,"base":{"damping":"closed_form"})";
-    const Swept each = swept("{" + axes + "}"),
+    const Swept each = swept("{" + axes + R"(,"include":["peaks"]})"),
                 most = swept("{" + axes + R"(,"reduce":"max over Omega"})"),
                 least = swept("{" + axes + R"(,"reduce":"min over Omega"})");
     REQUIRE(most.lines.size() == 2);
@@ -130,6 +130,16 @@ TEST_CASE("a reduction is the peak over the reduced axis") {
         for (const auto& [index, line] : each.lines)
             if (index % 2 == k && line["Omega"] == most.lines.at(k)["Omega"])
                 CHECK(line["x_max"] == high);
+    }
+    for (const std::string name : {"x_ddot_max", "relative_speed_max"}) {
+        const std::string objective =
+            name == "x_ddot_max" ? "x_acceleration_max" : "impact_speed_max";
+        const Swept by =
+            swept("{" + axes + R"(,"reduce":"max over Omega","objective":")" + objective + "\"}");
+        double high = 0;
+        for (const auto& [index, line] : each.lines)
+            if (index % 2 == 0) high = std::max(high, line[name].get<double>());
+        CHECK(by.lines.at(0)[name] == high);
     }
     CHECK_THROWS_AS(
         read_sweep_request(parse_object("{" + axes + R"(,"reduce":"max over R"})"), 1000), Problem);

@@ -3,6 +3,7 @@
 
 #include <cstdio>
 #include <map>
+#include <numbers>
 #include <numeric>
 #include <set>
 
@@ -92,6 +93,41 @@ TEST_CASE("a point has its axis values, exponents, regime, amplitude, energy and
         CHECK(line.contains(name));
     CHECK(line["section"]["x"].size() == 5);
     CHECK(Json::parse(line.dump()) == line);
+}
+
+TEST_CASE("extremes of a point are those of a simulation's samples and impacts") {
+    std::string fields = platform;
+    fields.replace(fields.find("0.03"), 4, "0.012");
+    const Json line = run(sweep_request(
+                              "{\"base\":{" + fields +
+                              R"(},"axes":[{"parameter":"f","values":[14.1]}],"cycles":40,
+                                  "transient_cycles":0,"include":["peaks"]})"))
+                          .at(0),
+               a = answer(
+                   "{" + fields +
+                   R"(,"f":14.1,"cycles":40,"samples_per_cycle":2000,"include":["series","impacts"],
+                      "max_points":100000})");
+    double x_acceleration = 0, x_relative = 0, speed = 0, impulse = 0;
+    const Json &series = a["series"], &impacts = a["impacts"];
+    for (std::size_t k = 0; k < series["x"].size(); ++k) {
+        const double base =
+            0.0004 * std::sin(2 * std::numbers::pi * 14.1 * series["time_s"][k].get<double>());
+        x_relative = std::max(x_relative, std::abs(series["x"][k].get<double>() - base));
+        x_acceleration =
+            std::max(x_acceleration, std::abs(series["x_acceleration"][k].get<double>()));
+    }
+    for (std::size_t k = 0; k < impacts["tau"].size(); ++k) {
+        speed = std::max(speed, impacts["impact_speed"][k].get<double>());
+        impulse = std::max(impulse, std::abs(impacts["impulse_N_s"][k].get<double>()));
+    }
+    REQUIRE(speed > 0);
+    CHECK(is_near(line["x_acceleration_max"], x_acceleration, 1e-4));
+    CHECK(is_near(line["x_relative_max"], x_relative, 1e-4));
+    CHECK(is_near(line["impact_speed_max"], speed, 1e-9));
+    CHECK(is_near(line["impulse_max"], impulse, 1e-9));
+    CHECK(is_near(
+        line["impacts_per_second"], static_cast<double>(impacts["tau"].size()) * 14.1 / 40, 1e-9));
+    CHECK(is_near(line["impulse_per_m1_max"], impulse / 12 / (2 * std::numbers::pi * 14), 1e-9));
 }
 
 TEST_CASE("continuation follows a branch that a fresh start does not find") {

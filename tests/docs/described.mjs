@@ -56,6 +56,7 @@ const parts = {
   "continue.end": {of: ["ContinueProgress", "ContinueDone"]},
   "design.start": {of: ["DesignStart"], opaque: ["request"]},
   "design.point": {of: ["DesignPoint"]},
+  "design.sample": {of: ["DesignSample"]},
   "design.progress": {of: ["DesignProgress"]},
   "design.done": {of: ["DesignDone"]},
   provenance: {of: ["Provenance"], opaque: ["request"]},
@@ -125,7 +126,7 @@ function distinct(keys) {
   return [...first.values()];
 }
 
-const inSi = /^(\w+) in (?:s|m\/s|m\/s\^2|N s|J), for a system in SI$/;
+const inSi = /^(\w+) in (?:s|1\/s|m\/s|m\/s\^2|N s|J), for a system in SI$/;
 
 /** By part: {path, si, meaning} of each key; si: the path of its SI counterpart, or "". */
 export function describedKeys(openapi) {

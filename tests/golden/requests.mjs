@@ -217,6 +217,18 @@ const sweeps = [
       switch: 1,
     },
   },
+  {
+    name: "design with tolerances",
+    path: "/v1/design",
+    body: {
+      base: {m1: 2, f0: 8, damping_ratio: 0.01, m2: 0.04},
+      f: [7, 9],
+      acceleration: 5,
+      ...{b: 0.05, R: 0.2, f_count: 5, starts: "one", transient_cycles: 20, cycles: 40},
+      tolerances: {f0: {normal: [8, 0.1]}, b: {uniform: [0.9, 1.1], of: "factor"}},
+      samples: 6,
+    },
+  },
   sweep("impact section", {
     axes: [{parameter: "b", values: [0.008, 0.015, 0.022]}],
     cycles: 100,
@@ -273,6 +285,7 @@ const sweeps = [
     base: machine,
     axes: [{parameter: "f", from: 13.6, to: 14.4, count: 5}],
     starts: "default set",
+    include: ["peaks"],
     cycles: 100,
   }),
   sweep("default set without SI", {
@@ -291,6 +304,7 @@ const sweeps = [
       {parameter: "f", from: 13.6, to: 14.4, count: 5},
     ],
     reduce: "max over f",
+    objective: "impact_speed_max",
     cycles: 60,
   }),
   sweep("reduced over the default set", {

@@ -12,18 +12,36 @@ NUMBER_LISTS = frozenset({
     "impact_speed_max_worst_start", "impacts", "impacts_per_second", "impulse",
     "impulse_N_s", "impulse_max", "interval", "lambda", "lambda1", "lambda2", "lambda3",
     "lambda4", "low", "margin_F", "margin_f", "modulus", "momentum_error", "phase",
-    "pulse_spoils_s", "re", "relative_speed", "relative_speed_ratio", "rounding_floor",
-    "side", "speed", "speed_m_s", "standard_error", "tau", "tau_end", "tau_error",
-    "tau_start", "time_difference", "time_difference_s", "time_end_s", "time_error_s",
-    "time_s", "time_start_s", "tuned_mass_damper", "twenty_percent", "uncertain", "values",
-    "window", "window_s", "without", "x", "x_acceleration", "x_acceleration_before",
-    "x_acceleration_max_best_start", "x_acceleration_max_worst_start", "x_ddot",
-    "x_ddot_before", "x_dot", "x_dot_after", "x_dot_before", "x_max_best_start",
-    "x_max_worst_start", "x_relative", "x_relative_max_best_start",
-    "x_relative_max_worst_start", "x_rms_best_start", "x_rms_worst_start", "x_velocity",
-    "x_velocity_after", "x_velocity_before", "y", "y_dot", "y_dot_after", "y_dot_before",
-    "y_velocity", "y_velocity_after", "y_velocity_before", "z",
+    "probability", "pulse_spoils_s", "re", "relative_speed", "relative_speed_ratio",
+    "rounding_floor", "side", "speed", "speed_m_s", "standard_error", "tau", "tau_end",
+    "tau_error", "tau_start", "time_difference", "time_difference_s", "time_end_s",
+    "time_error_s", "time_s", "time_start_s", "tuned_mass_damper", "twenty_percent",
+    "uncertain", "values", "window", "window_s", "without", "x", "x_acceleration",
+    "x_acceleration_before", "x_acceleration_max", "x_acceleration_max_best_start",
+    "x_acceleration_max_worst_start", "x_ddot", "x_ddot_before", "x_dot", "x_dot_after",
+    "x_dot_before", "x_max", "x_max_best_start", "x_max_worst_start", "x_relative",
+    "x_relative_max", "x_relative_max_best_start", "x_relative_max_worst_start", "x_rms",
+    "x_rms_best_start", "x_rms_worst_start", "x_velocity", "x_velocity_after",
+    "x_velocity_before", "y", "y_dot", "y_dot_after", "y_dot_before", "y_velocity",
+    "y_velocity_after", "y_velocity_before", "z",
 })
+
+Distribution = TypedDict(
+    "Distribution",
+    {
+        "normal": Iterable[float],
+        "uniform": Iterable[float],
+        "of": Literal["value", "factor"],
+    },
+    total=False,
+)
+Distribution.__doc__ = """Keys of the object:
+
+normal: [mean, standard deviation]; default: required, or uniform
+uniform: [from, to]; default: required, or normal
+of: value: in its unit; factor: on the value of the best absorber or of the host; default:
+    "value"
+"""
 
 Perturbation = TypedDict(
     "Perturbation",
@@ -126,6 +144,36 @@ x0: range of x0 (m); default: its value in base
 x_dot0: range of x_dot0 (m per unit of tau); default: its value in base
 y0: range of y0 (m); default: its value in base
 y_dot0: range of y_dot0 (m per unit of tau); default: its value in base
+"""
+
+Tolerances = TypedDict(
+    "Tolerances",
+    {
+        "m1": Distribution,
+        "k1": Distribution,
+        "f0": Distribution,
+        "c1": Distribution,
+        "damping_ratio": Distribution,
+        "m2": Distribution,
+        "b": Distribution,
+        "R": Distribution,
+        "acceleration": Distribution,
+        "F": Distribution,
+    },
+    total=False,
+)
+Tolerances.__doc__ = """Keys of the object:
+
+m1: distribution of m1; default: none
+k1: distribution of k1; default: none
+f0: distribution of f0; default: none
+c1: distribution of c1; default: none
+damping_ratio: distribution of damping_ratio; default: none
+m2: distribution of m2; default: none
+b: distribution of b; default: none
+R: distribution of R; default: none
+acceleration: distribution of acceleration; default: none
+F: distribution of F; default: none
 """
 
 SweepBase = TypedDict(
@@ -451,7 +499,7 @@ class SweepFields(TypedDict, total=False):
     starts: initial states {x0, x_dot0, y0, y_dot0}, each run at every point, to find coexisting
         attractors; or "default set": at rest in the middle, at a wall, moving, without contact
         if possible, and the final states of both neighbours on the first axis; lines then give
-        the worst and the best motion by x_max; default: []
+        the worst and the best motion by objective; default: []
     cycles: number of measured forcing cycles at each point (dimensionless); 1 to 1e+06;
         default: 1000
     transient_cycles: number of transient forcing cycles before the measured ones
@@ -468,9 +516,12 @@ class SweepFields(TypedDict, total=False):
         (dimensionless); 1 to 100000; default: 100
     section_phase: value of Omega tau, modulo 2 pi, at which the stroboscopic section samples
         the state (rad); 0 to 6.28319; default: 0
-    reduce: "max over P" or "min over P" for an axis P: one line for all points along P, with
-        the largest or smallest x_max as x_peak and the value of P there; default: none: one
-        line for each point
+    objective: what compares motions: the worst has the largest; x_acceleration_max and
+        x_relative_max include peaks; default: "x_max"
+    include: peaks: also the largest acceleration and distance from the base; a quarter more
+        time; default: []
+    reduce: "max over P" or "min over P" for an axis P: one line for all points along P, at that
+        with the largest or smallest objective; default: none: one line for each point
     indices: zero-based indices of the points to compute, for example those missing from an
         interrupted stream; default: all
     """
@@ -485,6 +536,8 @@ class SweepFields(TypedDict, total=False):
     section: Literal["none", "impact", "stroboscopic"]
     section_points: int
     section_phase: float
+    objective: Literal["x_max", "x_rms", "x_relative_max", "x_acceleration_max", "impact_speed_max", "impulse_max", "impacts_per_second"]
+    include: Iterable[Literal["peaks"]]
     reduce: str
     indices: Iterable[int]
 
@@ -577,8 +630,8 @@ class DesignFields(TypedDict, total=False):
         for all amplitudes in it (m/s^2); default: required, or F
     F: amplitude of the base's displacement instead of acceleration (m); default: required, or
         acceleration
-    b: smallest and largest clearance (m); default: from 5 to 120 % of the largest amplitude
-        without absorber
+    b: smallest and largest clearance, or one (m); default: from 5 to 120 % of the largest
+        amplitude without absorber
     R: restitution coefficients to choose from, or one (dimensionless)
     m2: masses of the ball to choose from, or one (kg); default: that of base
     objective: what shall be small: largest |x| or its rms, largest distance from the base,
@@ -590,13 +643,18 @@ class DesignFields(TypedDict, total=False):
     f_count: frequencies in the first map (dimensionless); 2 to 400; default: 41
     transient_cycles: cycles before each measurement (dimensionless); 0 to 100000; default: 100
     cycles: cycles of each measurement (dimensionless); 20 to 100000; default: 200
+    tolerances: scatter of values, each {"normal": [mean, standard deviation]} or {"uniform":
+        [from, to]}, with "of": "factor" of a factor; default: none
+    samples: samples of the tolerances; 1 to 1e+06; default: 200
+    seed: equal seeds give equal samples; 0 to 1e+09; default: 1
+    indices: zero-based indices of the samples to compute; default: all
     """
 
     base: SweepBase
     f: Iterable[float] | float
     acceleration: Iterable[float] | float
     F: Iterable[float] | float
-    b: Iterable[float]
+    b: Iterable[float] | float
     R: Iterable[float] | float
     m2: Iterable[float] | float
     objective: Literal["x_max", "x_rms", "x_relative_max", "x_acceleration_max", "impact_speed_max"]
@@ -606,6 +664,10 @@ class DesignFields(TypedDict, total=False):
     f_count: int
     transient_cycles: int
     cycles: int
+    tolerances: Tolerances
+    samples: int
+    seed: int
+    indices: Iterable[int]
 
 class IdentifyFields(TypedDict, total=False):
     """Fields of an identification.

@@ -90,19 +90,53 @@ Keys best_keys() {
     return best;
 }
 
+Keys toleranced_keys() {
+    Keys keys;
+    for (const std::string& name : enum_choices<Toleranced>())
+        keys.push_back(optional({name, number(), "in SI"}));
+    return keys;
+}
+
+Json fractions(const Key& value) {
+    return list_of(object_of(
+        {value,
+         {"samples", whole(), "number of samples"},
+         {"fraction", number(), "fraction of the samples"},
+         {"interval", interval(), "95 % interval of its probability"}}));
+}
+
+Keys tolerance_keys() {
+    Keys keys = {
+        {"samples", whole(), "number of samples"},
+        {"probability", numbers(), "probabilities of the quantiles"}};
+    for (Key key : objective_keys()) {
+        key.schema = list_of(std::move(key.schema));
+        key.description = "quantiles of the objective's largest value over band and amplitudes";
+        keys.push_back(std::move(key));
+    }
+    return keys +
+           Keys{
+               {"regimes", fractions({"regime", or_null(regime_name()), "null: not measured"}),
+                "types of the motions in the worst case"},
+               {"verdicts",
+                fractions({"verdict", enum_schema<Verdict>(), "null: no impacts or not measured"}),
+                "verdicts on them"}};
+}
+
 }  // namespace
 
 void add_design_lines(Json& schemas) {
     schemas["DesignLine"] = by_type(
         {{"start", "DesignStart"},
          {"point", "DesignPoint"},
+         {"sample", "DesignSample"},
          {"progress", "DesignProgress"},
          {"done", "DesignDone"},
          {"error", "SweepError"}});
     schemas["DesignStart"] = line_of(
         "start", {{"version", text(), "version of the program"},
                   {"commit", text(), "commit of the program; empty if unknown"},
-                  {"runs_of", whole(), "motions of the first map"},
+                  {"runs_of", whole(), "motions of the first map and of the samples"},
                   {"b_from", number(), "smallest clearance, m"},
                   {"b_to", number(), "largest clearance, m"},
                   {"host",
@@ -115,10 +149,22 @@ void add_design_lines(Json& schemas) {
                    "the machine without absorber"},
                   {"request", reference("DesignRequest"), "the request"}});
     schemas["DesignPoint"] = line_of("point", absorber_keys());
+    schemas["DesignSample"] = line_of(
+        "sample",
+        Keys{
+            {"index", whole(), "number of the sample"},
+            {"values", object_of(toleranced_keys()), "values drawn"}} +
+            absorber_keys() +
+            Keys{
+                {"regime", or_null(regime_name()),
+                 "type of the motion in the worst case; null if it was not measured"},
+                {"verdict", enum_schema<Verdict>(),
+                 "its verdict; null without impacts or if it was not measured"}});
     schemas["DesignProgress"] = line_of(
-        "progress", {{"done", whole(), "absorbers so far"},
-                     {"runs", whole(), "motions so far"},
-                     {"runs_of", whole(), "motions of the first map, or those so far"}});
+        "progress",
+        {{"done", whole(), "absorbers so far"},
+         {"runs", whole(), "motions so far"},
+         {"runs_of", whole(), "those of the first map and of the samples, or those so far"}});
     const Keys ratios = {
         {"frequency_ratio", number(), "its frequency over that of the host"},
         {"damping_ratio", number(), "its damping ratio c2/(2 sqrt(k2 m2))"}};
@@ -130,7 +176,8 @@ void add_design_lines(Json& schemas) {
          {"tuned_mass_damper", linear(ratios), "the best one of the same mass for this band"},
          {"den_hartog", linear(ratios), "the closed-form one of the same mass"},
          {"response", object_of(response_keys()), "over the band, at the largest amplitude"},
-         {"sentence", text(), "the result in words"}});
+         {"sentence", text(), "the result in words"},
+         optional({"tolerances", object_of(tolerance_keys()), "of the samples"})});
 }
 
 }  // namespace vines::api::document

@@ -110,6 +110,7 @@ Json schema_of(ValueType type) {
 
 std::string si_unit_of(const Quantity& q) {
     if (q.per_m1) return q.power == 1 ? "N s" : "J";
+    if (q.is_rate) return "1/s";
     return q.power < 0 ? "s" : q.power == 1 ? "m/s" : "m/s^2";
 }
 

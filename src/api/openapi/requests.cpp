@@ -131,7 +131,7 @@ Json continue_request() {
 
 Json design_request() {
     Json request = request_of(design_fields(), {"base", "f"});
-    for (const char* name : {"f", "acceleration", "F", "R", "m2"}) {
+    for (const char* name : {"f", "acceleration", "F", "b", "R", "m2"}) {
         Json& field = request["properties"][name];
         Json list = field;
         list.erase("description");

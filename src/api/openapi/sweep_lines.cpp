@@ -31,6 +31,10 @@ Key depends() {
     return optional({"depends_on_start", flag(), "true if the starts end in different motions"});
 }
 
+Keys extremes_keys() {
+    return optional(values_of(properties::peaks)) + values_of(properties::impact_extremes);
+}
+
 Json point_section() {
     return {
         {"oneOf",
@@ -39,10 +43,11 @@ Json point_section() {
 
 Json measured_point() {
     const Keys own = index_keys() + Keys{start_of_line()} +
-                     or_null(values_of(properties::point));  // null if the transient did not end
+                     // null if the transient did not end
+                     or_null(values_of(properties::point) + extremes_keys());
     // The key lambda holds the exponents; a swept lambda is in `axes` of the line start.
     const auto is_no_result = [](const Field& f) { return f.name != "lambda"; };
-    return object_of(
+    return with_si(object_of(
         own + swept_keys(number(), "value at this point, if swept", is_no_result) +
         Keys{
             state_key("with the default set: initial state of the worst motion"),
@@ -61,17 +66,17 @@ Json measured_point() {
                  "at about 16 points of a sweep with one start: the motion from a second start"}),
             optional(
                 {"worst", reference("SweepMotion"),
-                 "with the default set: the motion with the largest x_max"}),
+                 "with the default set: the motion with the largest objective"}),
             optional(
                 {"best", reference("SweepMotion"),
-                 "with the default set: the motion with the smallest x_max"}),
+                 "with the default set: the motion with the smallest objective"}),
             optional(
                 {"starts", list_of(reference("SweepMotion")), "with the default set: all motions"}),
             optional(
                 {"lifetime", object_of(values_of(properties::lifetime)),
                  "with the default set: lifetime of chaos in forcing cycles, from all motions, if "
                  "captures occur at a constant rate"}),
-            depends()});
+            depends()}));
 }
 
 Json faulty_point() {
@@ -85,15 +90,15 @@ Json faulty_point() {
 }
 
 Json motion() {
-    return object_of(
+    return with_si(object_of(
         Keys{
             {"start", text(), "name of the start in the default set"},
             {"state", object_of(values_of(properties::start)),
              "initial state, as fields of a simulation"}} +
-        optional(values_of(properties::motion)) +
+        optional(values_of(properties::motion) + extremes_keys()) +
         Keys{optional(
             {"reason", constant("transient_max_impacts"),
-             "instead of the results: the transient did not end"})});
+             "instead of the results: the transient did not end"})}));
 }
 
 Keys peak_keys() {
@@ -102,13 +107,13 @@ Keys peak_keys() {
                "value at this point, if swept; for the reduced axis, the value at x_peak") +
            Keys{
                {"x_peak", or_null(number()),
-                "largest (or smallest) x_max along the reduced axis, m"},
+                "x_max where the objective is largest (or smallest) along the reduced axis, m"},
                state_key("with the default set: initial state of that motion")} +
-           optional(values_of(properties::peak));
+           optional(values_of(properties::peak) + extremes_keys());
 }
 
 Json reduced_point() {
-    return object_of(
+    return with_si(object_of(
         index_keys() + Keys{start_of_line()} + peak_keys() +
         Keys{
             {"reduce", text(), "as requested"},
@@ -119,7 +124,7 @@ Json reduced_point() {
             optional({"worst", reference("SweepPeak"), "peak over the worst motion at each point"}),
             optional({"best", reference("SweepPeak"), "peak over the best motion at each point"}),
             optional({"starts", list_of(reference("SweepPeak")), "peak of each start"}),
-            depends()});
+            depends()}));
 }
 
 /// One of three schemas. Their common keys are repeated at the top level: generators of clients
@@ -250,8 +255,8 @@ void add_sweep_lines(Json& schemas) {
     schemas["SweepFault"] = faulty_point();
     schemas["SweepReduction"] = reduced_point();
     schemas["SweepMotion"] = motion();
-    schemas["SweepPeak"] = object_of(
-        Keys{optional({"start", text(), "name of the start in the default set"})} + peak_keys());
+    schemas["SweepPeak"] = with_si(object_of(
+        Keys{optional({"start", text(), "name of the start in the default set"})} + peak_keys()));
     schemas["SweepProgress"] = progress_line_schema();
     schemas["SweepWarning"] = line_of("warning", {{"message", text(), "a sentence"}});
     schemas["SweepDone"] = line_of("done", {{"points", whole(), "lines sent"}});

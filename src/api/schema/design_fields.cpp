@@ -1,7 +1,36 @@
 // The table of /v1/design.
+#include "api/schema/enum_names.hpp"
 #include "api/schema/tables.hpp"
 
 namespace vines::api {
+
+namespace {
+
+FieldTable tolerance_rows() {
+    const FieldTable distribution = {
+        {.name = "normal",
+         .type = FieldType::numbers,
+         .description = "[mean, standard deviation]",
+         .fallback_note = "required, or uniform"},
+        {.name = "uniform",
+         .type = FieldType::interval,
+         .description = "[from, to]",
+         .fallback_note = "required, or normal"},
+        choice(
+            "of", "value: in its unit; factor: on the value of the best absorber or of the host",
+            {"value", "factor"}, "value")};
+    FieldTable rows;
+    for (const std::string& name : enum_choices<Toleranced>())
+        rows.push_back(
+            {.name = name,
+             .type = FieldType::object,
+             .description = "distribution of " + name,
+             .fallback_note = "none",
+             .fields = distribution});
+    return rows;
+}
+
+}  // namespace
 
 // NOLINTNEXTLINE(readability-function-size): a table
 const FieldTable& design_fields() {
@@ -31,7 +60,7 @@ const FieldTable& design_fields() {
          {.name = "b",
           .type = FieldType::interval,
           .unit = "m",
-          .description = "smallest and largest clearance",
+          .description = "smallest and largest clearance, or one",
           .fallback_note = "from 5 to 120 % of the largest amplitude without absorber"},
          {.name = "R",
           .type = FieldType::numbers,
@@ -61,7 +90,19 @@ const FieldTable& design_fields() {
          integer("f_count", "frequencies in the first map", {2, 400}, 41, dimensionless),
          integer(
              "transient_cycles", "cycles before each measurement", {0, 1e5}, 100, dimensionless),
-         integer("cycles", "cycles of each measurement", {20, 1e5}, 200, dimensionless)});
+         integer("cycles", "cycles of each measurement", {20, 1e5}, 200, dimensionless),
+         {.name = "tolerances",
+          .type = FieldType::object,
+          .description = "scatter of values, each {\"normal\": [mean, standard deviation]} or "
+                         "{\"uniform\": [from, to]}, with \"of\": \"factor\" of a factor",
+          .fallback_note = "none",
+          .fields = tolerance_rows()},
+         integer("samples", "samples of the tolerances", {1, 1e6}, 200),
+         integer("seed", "equal seeds give equal samples", {0, 1e9}, 1),
+         {.name = "indices",
+          .type = FieldType::integers,
+          .description = "zero-based indices of the samples to compute",
+          .fallback_note = "all"}});
     return table;
 }
 

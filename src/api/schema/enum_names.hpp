@@ -63,7 +63,22 @@ inline constexpr EnumName<Objective> enum_names<Objective>[] = {
     {Objective::x_rms, "x_rms"},
     {Objective::x_relative_max, "x_relative_max"},
     {Objective::x_acceleration_max, "x_acceleration_max"},
-    {Objective::impact_speed_max, "impact_speed_max"}};
+    {Objective::impact_speed_max, "impact_speed_max"},
+    {Objective::impulse_max, "impulse_max"},
+    {Objective::impacts_per_second, "impacts_per_second"}};
+
+template <>
+inline constexpr EnumName<Toleranced> enum_names<Toleranced>[] = {
+    {Toleranced::m1, "m1"},
+    {Toleranced::k1, "k1"},
+    {Toleranced::f0, "f0"},
+    {Toleranced::c1, "c1"},
+    {Toleranced::damping_ratio, "damping_ratio"},
+    {Toleranced::m2, "m2"},
+    {Toleranced::b, "b"},
+    {Toleranced::R, "R"},
+    {Toleranced::amplitude, "acceleration"},
+    {Toleranced::amplitude, "F"}};
 
 /// The unknowns of a fit that a request can fix.
 template <>

@@ -25,7 +25,7 @@ FieldTable sweep_rows() {
              "initial states {x0, x_dot0, y0, y_dot0}, each run at every point, to find "
              "coexisting attractors; or \"default set\": at rest in the middle, at a wall, moving, "
              "without contact if possible, and the final states of both neighbours on the first "
-             "axis; lines then give the worst and the best motion by x_max",
+             "axis; lines then give the worst and the best motion by objective",
          .fallback = Json::array(),
          .choices = {default_set_of_starts}},
         integer(
@@ -53,11 +53,24 @@ FieldTable sweep_rows() {
             "largest number of section points of each sweep point; the last ones are kept",
             {1, 100000}, 100, dimensionless),
         section_phase_row(),
+        choice(
+            "objective",
+            "what compares motions: the worst has the largest; x_acceleration_max and "
+            "x_relative_max "
+            "include peaks",
+            enum_choices<Objective>(), enum_json(Objective::x_max)),
+        {.name = "include",
+         .type = FieldType::choices,
+         .description =
+             "peaks: also the largest acceleration and distance from the base; a quarter "
+             "more time",
+         .fallback = Json::array(),
+         .choices = {"peaks"}},
         // The valid values depend on the axes; the reader of the request checks them.
         choice(
             "reduce",
             "\"max over P\" or \"min over P\" for an axis P: one line for all points along P, "
-            "with the largest or smallest x_max as x_peak and the value of P there",
+            "at that with the largest or smallest objective",
             {}, nullptr, "none: one line for each point"),
         {.name = "indices",
          .type = FieldType::integers,

@@ -91,7 +91,7 @@ struct AnalysisObservers {
           at_phase_zero(w.parameters, {.most = kept_states, .until = w.window.to}),
           at_section_phase(w.parameters, 0, w.section_phase),
           cycle_peaks(w.window.from, w.window.to, w.parameters.cycle()),
-          extremes(w.parameters, w.window.from, w.window.to),
+          extremes(w.parameters, w.window.from, w.window.to, w.parts.extremes),
           decay(w.parameters, w.window.from, decay_fractions),
           rhythm(w.parameters, w.window, w.parts.regime ? w.most_points : 0),
           half_cycles(w.parameters, w.window.from, w.window.to, w.most_points) {
@@ -120,7 +120,7 @@ struct AnalysisObservers {
         observe(!w.windows.empty(), windows);
         observe(w.parts.moduli || w.parts.matrices, transfers);
         if (energy) list.push_back(&*energy);
-        observe(w.parts.extremes, extremes);
+        observe(w.parts.extremes != ExtremesWanted::none, extremes);
         observe(w.parts.energy && w.parts.unattached, cycle_peaks);
         observe(w.parts.energy && w.parameters.G == 0, decay);
         observe(w.parts.manifold, half_cycles);
@@ -163,7 +163,7 @@ struct AnalysisConclusion {
         transfers();
         if (w.parts.section) sections();
         if (w.parts.energy) energy();
-        a.extremes = o.extremes.extremes;
+        a.extremes = o.extremes.result(a.reached);
         stationarity();
         if (w.parts.regime) regime();
         if (w.parts.manifold) manifold();

@@ -22,13 +22,13 @@ namespace vines {
 /// phases cost nothing and are always computed.
 struct Parts {
     bool series = false;
-    bool impacts = false;     ///< list of impacts, with grazing contacts
-    bool exponents = false;   ///< of the window, with the verdict
-    bool moduli = false;      ///< moduli of the eigenvalues of J, M, T at each impact
-    bool matrices = false;    ///< the matrices themselves
-    bool section = false;     ///< Poincare sections: at impact and stroboscopic
-    bool energy = false;      ///< balance and amplitudes
-    bool extremes = false;    ///< largest acceleration, distance from the base, impact
+    bool impacts = false;    ///< list of impacts, with grazing contacts
+    bool exponents = false;  ///< of the window, with the verdict
+    bool moduli = false;     ///< moduli of the eigenvalues of J, M, T at each impact
+    bool matrices = false;   ///< the matrices themselves
+    bool section = false;    ///< Poincare sections: at impact and stroboscopic
+    bool energy = false;     ///< balance and amplitudes
+    ExtremesWanted extremes = ExtremesWanted::none;
     bool unattached = false;  ///< with energy: comparison with the oscillator without absorber
     bool regime = false;
     bool before_capture = false;  ///< with regime: exponents before the capture by an orbit

@@ -5,11 +5,12 @@
 //    frequencies is a lower bound, so that the others need not be tried; then more b around the
 //    best one, ever closer;
 // 3. for the best absorber the response over the band, the margins of its values by larger and
-//    larger changes, and the range of amplitudes.
+//    larger changes, the range of amplitudes, and samples of its tolerances.
 #include "core/design/design.hpp"
 
 #include <algorithm>
 #include <cmath>
+#include <mutex>
 
 #include "core/measures/manifold.hpp"
 #include "core/motion/elementary.hpp"
@@ -21,6 +22,8 @@ namespace {
 
 // b of equal value up to rounding of the row.
 constexpr double same_b = 1e-9;
+// Ratio of neighbouring amplitudes with a single b.
+constexpr double amplitude_step = 1.1;
 // Frequencies of step 2 over those of step 1, the most absorbers tried with them, the rounds around
 // the best one, the b tried on each side in each, and the frequencies that step 3 adds around the
 // worst one.
@@ -34,25 +37,12 @@ constexpr double most_amplitude = 4, least_amplitude = 1.0 / 32;
 constexpr int amplitude_count = 36;
 constexpr long most_impacts_per_cycle = 200;
 
-double value_of(const PointResult& r, Objective objective, double omega0) {
-    if (!r.measured) return infinity;
-    switch (objective) {
-        case Objective::x_max: return r.x_max;
-        case Objective::x_rms: return r.x_rms;
-        case Objective::x_relative_max: return r.extremes.x_relative;
-        case Objective::x_acceleration_max: return r.extremes.x_acceleration * omega0 * omega0;
-        case Objective::impact_speed_max: return r.extremes.impact_speed * omega0;
-    }
-    return nan;
-}
-
 /// Objectives of the worst and the best start by position: rows of b, columns of f.
 struct DesignMap {
     std::vector<double> b, f;
     std::vector<double> worst, best;
     std::vector<State> start;       ///< of the worst motion
     std::vector<Extremes> extreme;  ///< impacts of all motions
-    std::vector<double> rate;       ///< most impacts per cycle of all motions
 
     std::size_t at(std::size_t row, std::size_t column) const { return column * b.size() + row; }
     std::size_t row_of(double value) const {
@@ -63,23 +53,18 @@ struct DesignMap {
 
 class MapSink : public SweepSink {
 public:
-    MapSink(DesignMap& map, Objective objective, double omega0, double cycles)
-        : map_(map),
-          objective_(objective),
-          omega0_(omega0),
-          cycles_(cycles) {}
+    explicit MapSink(DesignMap& map) : map_(map) {}
     void point(std::size_t line, const SweepPoint& point) override {
         double worst = -infinity, best = infinity;
         for (const Motion& m : point.motions) {
-            const double value = value_of(m.result, objective_, omega0_);
+            const double value = m.result.measured ? m.result.objective : infinity;
             if (value > worst) worst = value, map_.start[line] = m.from;
             best = std::min(best, value);
             if (!m.result.measured) continue;
             Extremes& e = map_.extreme[line];
-            e.impact_speed = std::max(e.impact_speed, m.result.extremes.impact_speed);
-            e.speed_change = std::max(e.speed_change, m.result.extremes.speed_change);
-            map_.rate[line] =
-                std::max(map_.rate[line], static_cast<double>(m.result.impacts) / cycles_);
+            for (double Extremes::* of :
+                 {&Extremes::impact_speed, &Extremes::impulse, &Extremes::impact_rate})
+                e.*of = std::max(e.*of, m.result.extremes.*of);
         }
         map_.worst[line] = point.motions.empty() ? infinity : worst, map_.best[line] = best;
     }
@@ -87,8 +72,6 @@ public:
 
 private:
     DesignMap& map_;
-    const Objective objective_;
-    const double omega0_, cycles_;
 };
 
 /// `count` values in a geometric row; both ends are exact.
@@ -131,7 +114,9 @@ struct DesignSearch {
             .cycles = plan.cycles,
             .max_impacts = static_cast<long>(plan.cycles) * most_impacts_per_cycle,
             .carry = plan.default_set,
-            .amplitudes_alone = true};
+            .amplitudes_alone = true,
+            .objective = plan.objective,
+            .peaks = is_peak(plan.objective)};
     }
 
     /// The map for all b at all amplitudes (factors) and frequencies; throws Stopped.
@@ -145,7 +130,7 @@ struct DesignSearch {
         sort_unique(m.b);
         const std::size_t size = m.b.size() * m.f.size();
         m.worst.resize(size), m.best.resize(size), m.start.resize(size);
-        m.extreme.resize(size), m.rate.resize(size);
+        m.extreme.resize(size);
         SweepPlan sweep;
         sweep.grid.steps = {m.b.size(), m.f.size()};
         sweep.options = options();
@@ -154,10 +139,10 @@ struct DesignSearch {
             const Parameters p = system(m.b[place.at[0]], R, si, m.f[place.at[1]]);
             const State start = default_state(p);
             if (!validate(p, start).empty()) return std::nullopt;
-            return PointSystem{p, start, options().max_impacts};
+            return PointSystem{p, start, options().max_impacts, nullptr, {si.omega0(), si.m1}};
         };
         for (std::size_t line = 0; line < size; ++line) sweep.lines.push_back(line);
-        MapSink into(m, plan.objective, si.omega0(), plan.cycles);
+        MapSink into(m);
         run_sweep(sweep, threads, control, into);
         poll(control);
         return m;
@@ -181,12 +166,13 @@ struct DesignSearch {
 
     /// Ratio of neighbours in the row of b.
     double row_step() const {
+        if (plan.b_count == 1) return amplitude_step;
         return elementary::pow(plan.b.to / plan.b.from, 1.0 / (plan.b_count - 1));
     }
 
     /// Factors of the amplitudes, which a geometric row of b shares.
     std::vector<double> amplitudes() const {
-        const double step = plan.b_count > 1 ? row_step() : infinity;
+        const double step = row_step();
         std::vector<double> all = {1};
         while (all.back() / step > plan.amplitude_ratio * (1 + same_b))
             all.push_back(all.back() / step);
@@ -332,43 +318,75 @@ struct DesignSearch {
         const DesignPoint& p = d.best;
         const DesignMap m = map({p.b}, {1}, denser_frequencies(p.f), p.R, host_with(p.m2));
         const SiParameters si = host_with(p.m2);
-        const double reduced_mass = si.m1 * si.m2 / (si.m1 + si.m2);
         for (std::size_t j = 0; j < m.f.size(); ++j)
             d.response.push_back(
                 {m.f[j], m.worst[j], m.best[j],
                  linear_response(plan.host, {}, plan.objective, m.f[j]),
                  linear_response(plan.host, d.tuned_mass_damper, plan.objective, m.f[j]),
                  m.extreme[j].impact_speed * si.omega0(),
-                 reduced_mass * m.extreme[j].speed_change * si.omega0(), m.rate[j] * m.f[j]});
+                 si.m1 * m.extreme[j].impulse * si.omega0(),
+                 m.extreme[j].impact_rate * si.omega0()});
     }
 
     /// The motion of the worst case, with its regime, from the start that led to it.
+    PointResult worst_motion(
+        const DesignMap& m, const DesignPoint& p, const SiParameters& si) const {
+        PointOptions whole = options();
+        whole.amplitudes_alone = whole.carry = false;
+        const std::size_t row = m.row_of(p.b / p.amplitude);
+        const auto column = std::ranges::find(m.f, p.f) - m.f.begin();
+        const Parameters system = this->system(m.b[row], p.R, si, p.f);
+        const State& start = m.start[m.at(row, static_cast<std::size_t>(column))];
+        return run_point({system, start, whole.max_impacts}, start, whole, control);
+    }
     void set_worst_motion(Design& d) const {
         const DesignPoint& p = d.best;
         const SiParameters si = host_with(p.m2);
-        const DesignMap m = map({p.b}, {p.amplitude}, {p.f}, p.R, si);
-        PointOptions whole = options();
-        whole.amplitudes_alone = whole.carry = false;
-        const Parameters system = this->system(m.b[0], p.R, si, p.f);
-        const State& start = m.start[0];
-        d.at_worst = run_point({system, start, whole.max_impacts}, start, whole, control);
-        d.omega0 = si.omega0();
+        d.at_worst = worst_motion(map({p.b}, {p.amplitude}, {p.f}, p.R, si), p, si);
+    }
+
+    ToleranceSample sample(const DesignPoint& best, std::size_t index) const {
+        const BuiltAbsorber built =
+            drawn(plan.tolerances, {host_with(best.m2), best.b, best.R}, plan.seed, index);
+        std::vector<double> all = amplitudes();
+        for (double& a : all) a *= built.amplitude;
+        const DesignMap m = map({built.b}, all, frequencies(), built.R, built.si);
+        ToleranceSample s{
+            index, built, judged(m, built.b, all, built.R, built.si.m2), std::nullopt};
+        if (std::isfinite(s.point.objective)) s.worst = worst_motion(m, s.point, built.si);
+        return s;
+    }
+
+    /// Each sample on one thread.
+    void set_samples(Design& d, const SampleSink& sample_sink) const {
+        const DesignSearch alone{plan, 1, control, sink};
+        std::mutex mutex;
+        parallel(plan.samples.size(), threads, [&](std::size_t k) {
+            ToleranceSample s = alone.sample(d.best, plan.samples[k]);
+            const std::lock_guard lock(mutex);
+            if (sample_sink) sample_sink(s);
+            d.samples.push_back(std::move(s));
+        });
     }
 };
 
 }  // namespace
 
 std::size_t design_runs(const DesignPlan& plan) {
-    const double step = plan.b_count > 1
-                            ? elementary::log(plan.b.to / plan.b.from) / (plan.b_count - 1)
-                            : 1,
-                 rows = plan.b_count - elementary::log(plan.amplitude_ratio) / step;
-    return static_cast<std::size_t>(rows) * static_cast<std::size_t>(plan.f_count) * plan.R.size() *
-           plan.m2.size() * (plan.default_set ? most_starts : 1);
+    const double step =
+                     elementary::log(plan.b_count > 1 ? plan.b.to / plan.b.from : amplitude_step) /
+                     std::max(plan.b_count - 1, 1),
+                 amplitudes = 1 - elementary::log(plan.amplitude_ratio) / step;
+    const auto rows = [&](int b_count, std::size_t maps) {
+        return static_cast<std::size_t>(b_count - 1 + amplitudes) * maps;
+    };
+    return (rows(plan.b_count, plan.R.size() * plan.m2.size()) + rows(1, plan.samples.size())) *
+           static_cast<std::size_t>(plan.f_count) * (plan.default_set ? most_starts : 1);
 }
 
 std::optional<Design> find_design(
-    const DesignPlan& plan, int threads, RunControl& control, const DesignSink& sink) {
+    const DesignPlan& plan, int threads, RunControl& control, const DesignSink& sink,
+    const SampleSink& sample_sink) {
     const DesignSearch search{plan, threads, control, sink};
     std::vector<DesignPoint> all;
     std::optional<DesignPoint> best;
@@ -395,6 +413,7 @@ std::optional<Design> find_design(
         search.set_worst_motion(d);
         search.set_amplitudes(d);
         search.set_margins(d);
+        search.set_samples(d, sample_sink);
     } catch (const Stopped&) {
         d.complete = false;
     }

@@ -7,6 +7,7 @@
 // smaller ones, which are those of larger b, scaled.
 #pragma once
 
+#include "core/design/tolerances.hpp"
 #include "core/design/tuned_mass_damper.hpp"
 #include "core/sweep/parallel.hpp"
 #include "core/sweep/point.hpp"
@@ -24,6 +25,9 @@ struct DesignPlan {
     bool default_set = true;  ///< worst of all starts, otherwise of the default start
     int b_count = 40, f_count = 41;
     double transient_cycles = 100, cycles = 200;
+    std::vector<Tolerance> tolerances = {};
+    std::vector<std::size_t> samples = {};  ///< indices; none without tolerances
+    std::uint64_t seed = 1;
 };
 
 /// An absorber and its response, of the worst start, m, s or as the objective.
@@ -48,10 +52,17 @@ struct DesignMargin {
     Interval five_percent, twenty_percent;
 };
 
+/// The best absorber with values drawn from their distributions.
+struct ToleranceSample {
+    std::size_t index;
+    BuiltAbsorber built;
+    DesignPoint point;                 ///< worst case
+    std::optional<PointResult> worst;  ///< its motion; empty if it was not measured
+};
+
 struct Design {
     DesignPoint best;
     PointResult at_worst;  ///< the motion in the worst case, with its regime
-    double omega0;         ///< rad/s, for the units of at_worst
     BandMaximum without;
     LinearAbsorber tuned_mass_damper, den_hartog;
     BandMaximum with_tuned_mass_damper, with_den_hartog;
@@ -61,18 +72,22 @@ struct Design {
     /// from which on the manifold permits impacts (empty if it has no fold).
     Interval works;
     std::optional<double> activation;
-    bool complete = true;  ///< false if stopped: later members are then empty
+    std::vector<ToleranceSample> samples;  ///< in any order
+    bool complete = true;                  ///< false if stopped: later members are then empty
 };
 
 /// Receives each absorber that was tried, on the calling thread.
 using DesignSink = std::function<void(const DesignPoint&)>;
+/// Receives each sample, on any thread, one at a time.
+using SampleSink = std::function<void(const ToleranceSample&)>;
 
-/// Number of motions of the first map; those after it are a few more.
+/// Number of motions of the first map and of the samples; others are a few more.
 std::size_t design_runs(const DesignPlan& plan);
 
 /// Searches on `threads` threads. Stopped by `control`, it returns the best absorber so far, empty
 /// if there is none.
 std::optional<Design> find_design(
-    const DesignPlan& plan, int threads, RunControl& control, const DesignSink& sink);
+    const DesignPlan& plan, int threads, RunControl& control, const DesignSink& sink,
+    const SampleSink& sample_sink = {});
 
 }  // namespace vines

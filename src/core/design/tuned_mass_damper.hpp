@@ -5,19 +5,9 @@
 
 #include <functional>
 
-#include "core/motion/parameters.hpp"
-#include "core/motion/simulate.hpp"
+#include "core/measures/extremes.hpp"
 
 namespace vines {
-
-/// The quantity that a design makes small.
-enum class Objective {
-    x_max,               ///< of |x|, m
-    x_rms,               ///< of x, m
-    x_relative_max,      ///< of the distance from the base, m
-    x_acceleration_max,  ///< of |x''|, m/s^2
-    impact_speed_max     ///< of |x' - y'| before an impact, m/s
-};
 
 /// Steady motion of the host under the base motion F sin(2 pi f t); a tuned mass damper's mass is
 /// m2, without one it is 0.
@@ -34,7 +24,7 @@ struct Host {
     std::function<double(double f)> base_amplitude;  ///< m
 };
 
-/// The objective at a frequency: an amplitude in m or m/s^2; NaN for the speed of impacts.
+/// The objective at a frequency: an amplitude in m or m/s^2; NaN for those of impacts.
 double linear_response(
     const Host& host, const LinearAbsorber& absorber, Objective objective, double f);
 

@@ -22,8 +22,10 @@ double scaled_peak(
 
 }  // namespace
 
-ExtremesRecord::ExtremesRecord(const Parameters& p, double tau_start, double tau_end)
+ExtremesRecord::ExtremesRecord(
+    const Parameters& p, double tau_start, double tau_end, ExtremesWanted wanted)
     : parameters_(p),
+      has_peaks_(wanted == ExtremesWanted::all),
       tau_start_(tau_start),
       tau_end_(tau_end),
       F_(p.load ? 0 : p.epsilon * p.G),
@@ -44,21 +46,21 @@ ExtremesRecord::Relative ExtremesRecord::relative_to_base(const Flow& flow) cons
 void ExtremesRecord::on_stretch(const Stretch& s) {
     const double from = std::max(0.0, tau_start_ - s.tau),
                  to = std::min(s.duration, tau_end_ - s.tau);
-    if (!(from < to)) return;
+    if (!has_peaks_ || !(from < to)) return;
     const Polynomial shift = s.forces ? s.forces->shift : Polynomial{};
     const Oscillation& o = s.start;
     // x''/-Omega^2 follows the same equation as x.
     const double Omega = s.flow.coefficients()[3], size = Omega * Omega;
-    extremes.x_acceleration = scaled_peak(
-        extremes.x_acceleration, size, s.flow,
+    extremes_.x_acceleration = scaled_peak(
+        extremes_.x_acceleration, size, s.flow,
         {-s.flow.acceleration(o) / size, -s.flow.jerk(o) / size, o.sin_theta, o.cos_theta},
         sum({}, shift.derivative().derivative(), -1), from, to);
     const Relative r = relative_to_base(s.flow);
     const double base_sin = o.sin_theta * cos_phi_ - o.cos_theta * sin_phi_,
                  base_cos = o.cos_theta * cos_phi_ + o.sin_theta * sin_phi_;
     const Polynomial base = s.forces && s.forces->loading ? s.forces->loading->base : Polynomial{};
-    extremes.x_relative = scaled_peak(
-        extremes.x_relative, r.size, s.flow,
+    extremes_.x_relative = scaled_peak(
+        extremes_.x_relative, r.size, s.flow,
         {(o.x - F_ * base_sin) / r.size, (o.x_dot - F_ * Omega * base_cos) / r.size,
          o.sin_theta * r.cos + o.cos_theta * r.sin, o.cos_theta * r.cos - o.sin_theta * r.sin},
         sum(shift, base, -1), from, to);
@@ -67,8 +69,17 @@ void ExtremesRecord::on_stretch(const Stretch& s) {
 void ExtremesRecord::on_impact(const Impact& i) {
     if (i.tau < tau_start_ || i.tau > tau_end_) return;
     const double w = std::abs(i.relative_speed_before);
-    extremes.impact_speed = std::max(extremes.impact_speed, w);
-    extremes.speed_change = std::max(extremes.speed_change, w * (1 + i.R));
+    const double epsilon = parameters_.epsilon;
+    extremes_.impact_speed = std::max(extremes_.impact_speed, w);
+    extremes_.impulse = std::max(extremes_.impulse, epsilon / (1 + epsilon) * w * (1 + i.R));
+    ++impacts_;
+}
+
+Extremes ExtremesRecord::result(const Interval& reached) const {
+    Extremes all = extremes_;
+    if (const double length = reached.to - reached.from; length > 0)
+        all.impact_rate = static_cast<double>(impacts_) / length;
+    return all;
 }
 
 }  // namespace vines

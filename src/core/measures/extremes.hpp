@@ -10,20 +10,37 @@ struct Extremes {
     double x_acceleration = 0;  ///< of |x''| between impacts, m per unit of tau squared
     double x_relative = 0;      ///< of |x - x_b|, x_b being the displacement of the base, m
     double impact_speed = 0;    ///< of |x' - y'| before an impact, m per unit of tau
-    /// Impulse of an impact over the reduced mass m1 m2/(m1 + m2): |x' - y'| (1 + R), m per unit of
-    /// tau.
-    double speed_change = 0;
+    double impulse = 0;         ///< of an impact, per m1: epsilon |jump of y'|, m per unit of tau
+    double impact_rate = 0;     ///< impacts per unit of tau
 };
+
+/// A quantity by which motions are compared.
+enum class Objective {
+    x_max,               ///< of |x|, m
+    x_rms,               ///< of x, m
+    x_relative_max,      ///< of the distance from the base, m
+    x_acceleration_max,  ///< of |x''|, m/s^2
+    impact_speed_max,    ///< of |x' - y'| before an impact, m/s
+    impulse_max,         ///< of an impact, N s
+    impacts_per_second
+};
+
+/// Extremes that a run records: those of impacts cost almost nothing, the others a quarter of the
+/// run.
+enum class ExtremesWanted { none, of_impacts, all };
 
 /// Observer of the extremes over [tau_start, tau_end].
 class ExtremesRecord : public Observer {
 public:
-    ExtremesRecord(const Parameters& parameters, double tau_start, double tau_end);
+    ExtremesRecord(
+        const Parameters& parameters, double tau_start, double tau_end,
+        ExtremesWanted wanted = ExtremesWanted::all);
 
     void on_stretch(const Stretch&) override;
     void on_impact(const Impact&) override;
 
-    Extremes extremes;
+    /// The extremes of the part of the window that the run reached.
+    Extremes result(const Interval& reached) const;
 
 private:
     /// x - x_b of a harmonic base is `size` times a motion of the same flow, whose phasor is turned
@@ -34,7 +51,10 @@ private:
     Relative relative_to_base(const Flow& flow) const;
 
     const Parameters parameters_;
+    const bool has_peaks_;
     const double tau_start_, tau_end_, F_, sin_phi_, cos_phi_;
+    Extremes extremes_;
+    long impacts_ = 0;
 };
 
 }  // namespace vines

@@ -8,6 +8,7 @@
 
 #include <cmath>
 #include <complex>
+#include <cstdint>
 #include <limits>
 #include <numbers>
 
@@ -53,7 +54,27 @@ inline double modulus(const std::complex<double>& z) { return hypot(z.real(), z.
 namespace vines {
 
 // Random numbers that are the same everywhere: standard distributions differ between libraries.
-// `engine` returns 64 random bits (std::mt19937_64).
+// `engine` returns 64 random bits (std::mt19937_64, RandomSequence).
+
+/// Random bits (splitmix64), each a function of the seed and its number.
+class RandomSequence {
+public:
+    explicit RandomSequence(std::uint64_t seed) : state_(seed) {}
+    std::uint64_t operator()() {
+        std::uint64_t z = state_ += step;
+        z = (z ^ z >> 30) * 0xbf58476d1ce4e5b9;
+        z = (z ^ z >> 27) * 0x94d049bb133111eb;
+        return z ^ z >> 31;
+    }
+    /// A sequence of its own for each index.
+    RandomSequence part(std::uint64_t index) const {
+        return RandomSequence(RandomSequence(state_ + index * step)());
+    }
+
+private:
+    static constexpr std::uint64_t step = 0x9e3779b97f4a7c15;
+    std::uint64_t state_;
+};
 
 /// Uniform in [from, to).
 template <class Engine>

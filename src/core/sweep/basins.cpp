@@ -36,21 +36,6 @@ constexpr int first_halving = 3, pair_distances = 10;
 constexpr double below_saturation = 0.8;
 constexpr double normal_95 = 1.96;
 
-/// Random numbers in [0, 1) (splitmix64), equal on all machines.
-class RandomSequence {
-public:
-    explicit RandomSequence(std::uint64_t seed) : state_(seed) {}
-    double next() {
-        std::uint64_t z = state_ += 0x9e3779b97f4a7c15;
-        z = (z ^ z >> 30) * 0xbf58476d1ce4e5b9;
-        z = (z ^ z >> 27) * 0x94d049bb133111eb;
-        return static_cast<double>((z ^ z >> 31) >> 11) * 0x1p-53;
-    }
-
-private:
-    std::uint64_t state_;
-};
-
 /// Radius of a neighbourhood from which motions approach the orbit.
 double tested_radius(
     const Parameters& p, const PeriodicOrbit& orbit, const std::vector<State>& centres,
@@ -62,7 +47,7 @@ double tested_radius(
     RandomSequence random(1);
     const auto approaches = [&](const State& centre, double radius) {
         Eigen::Vector4d v;
-        for (double& component : v) component = 2 * random.next() - 1;
+        for (double& component : v) component = uniform(random, -1, 1);
         v *= radius / v.cwiseAbs().maxCoeff();
         const State s = state_of(vector_of(centre) + v.cwiseProduct(vector_of(scale)));
         if (std::abs(s.x - s.y) > p.b) return true;  // no state
@@ -143,7 +128,7 @@ std::vector<State> starts_in(
     std::array<double, 4> at{}, step{};
     double power = 1;
     for (int i = 0; i < 4; ++i) {
-        at[i] = random.next();
+        at[i] = uniform(random, 0, 1);
         if (box[i].from != box[i].to) step[i] = power *= steps[varied - 1];
     }
     std::vector<State> starts;
@@ -225,7 +210,8 @@ void Basins::run_pairs(int threads, const PointOptions& options, RunControl& con
                 for (int k = 0; k < 4; ++k) {
                     const auto& [from, to] = plan_.box[k];
                     v(k) += std::ldexp(
-                        random.next() < 0.5 ? from - to : to - from, -first_halving - distance);
+                        uniform(random, 0, 1) < 0.5 ? from - to : to - from,
+                        -first_halving - distance);
                     inside = inside && v(k) >= from && v(k) <= to;
                 }
                 const State s = state_of(v);
@@ -247,14 +233,13 @@ void Basins::run_pairs(int threads, const PointOptions& options, RunControl& con
     });
 }
 
-namespace {
-
-/// Wilson's interval of a binomial fraction.
 Interval binomial_interval(double k, double n) {
     const double z2 = normal_95 * normal_95, middle = (k + 0.5 * z2) / (n + z2),
                  half = normal_95 / (n + z2) * std::sqrt(k * (n - k) / n + 0.25 * z2);
     return {std::max(0.0, middle - half), std::min(1.0, middle + half)};
 }
+
+namespace {
 
 /// Mean and its standard error; empty without values.
 std::optional<Estimate> mean_of(const std::vector<double>& values) {

@@ -66,6 +66,9 @@ struct Estimate {
     double value, error;
 };
 
+/// Wilson's 95 % interval of the fraction of k among n.
+Interval binomial_interval(double k, double n);
+
 /// The starts that lead to one motion.
 struct Basin {
     PointResult motion;

@@ -53,7 +53,7 @@ AnalysisRequest wanted_of(const Parameters& p, const State& start, const PointOp
         .parts =
             {.section = o.section != SectionKind::none,
              .energy = true,
-             .extremes = o.amplitudes_alone,
+             .extremes = o.peaks ? ExtremesWanted::all : ExtremesWanted::of_impacts,
              .regime = !o.amplitudes_alone},
         .estimators = qr_alone,
         .settle_cycles = o.settle_cycles,
@@ -113,6 +113,21 @@ std::optional<State> last_state(
     return end.reason == End::tau_end ? std::optional(end.state) : std::nullopt;
 }
 
+double objective_of(const PointResult& r, Objective objective, const ObjectiveUnits& units) {
+    const Extremes& e = r.extremes;
+    const auto& [omega0, m1] = units;
+    switch (objective) {
+        case Objective::x_max: return r.x_max;
+        case Objective::x_rms: return r.x_rms;
+        case Objective::x_relative_max: return e.x_relative;
+        case Objective::x_acceleration_max: return e.x_acceleration * omega0 * omega0;
+        case Objective::impact_speed_max: return e.impact_speed * omega0;
+        case Objective::impulse_max: return m1 * e.impulse * omega0;
+        case Objective::impacts_per_second: return e.impact_rate * omega0;
+    }
+    return nan;
+}
+
 /// Exponents, verdict and regime.
 void set_conclusions(PointResult& r, Analysis& a, const PointOptions& options, double cycle) {
     r.lambda = a.exponents->product.qr();
@@ -157,6 +172,7 @@ PointResult measure(
     r.impacts = r.outcome.impacts;
     r.sticks = a.stick_count;
     r.extremes = a.extremes;
+    r.objective = objective_of(r, options.objective, options.units);
     if (a.sections) r.sections = std::move(*a.sections);
     if (options.carry) r.at_end = last_state(p, r.outcome, stop);
     if (options.amplitudes_alone) return r;
@@ -196,7 +212,7 @@ State carried(const State& s, const Parameters& from, const Parameters& to) {
 
 namespace {
 
-double peak_of(const Motion& m) { return m.result.x_max; }
+double peak_of(const Motion& m) { return m.result.objective; }
 
 const Motion* from_start(const SweepPoint& point, const std::string& name) {
     const auto m = std::ranges::find_if(point.motions, [&](const Motion& motion) {

@@ -2,7 +2,7 @@
 // part), and the motions found at the point.
 //
 // Several starts can lead to different steady states. The worst motion of a point is the one with
-// the largest peak; a row of points is summarised by its extreme peaks.
+// the largest objective (peak); a row of points is summarised by its extreme peaks.
 #pragma once
 
 #include <functional>
@@ -14,6 +14,7 @@
 
 #include "core/analysis/analysis.hpp"
 #include "core/measures/attractor.hpp"
+#include "core/measures/extremes.hpp"
 #include "core/motion/parameters.hpp"
 #include "core/sweep/parallel.hpp"
 
@@ -41,6 +42,16 @@ State carried(const State& state, const Parameters& from, const Parameters& to);
 
 class KnownMotions;
 
+/// True for those that need PointOptions::peaks.
+constexpr bool is_peak(Objective o) {
+    return o == Objective::x_relative_max || o == Objective::x_acceleration_max;
+}
+
+/// Units of SI for objectives; both are 1 for a reduced system.
+struct ObjectiveUnits {
+    double omega0 = 1, m1 = 1;  ///< rad/s, kg
+};
+
 /// Section that a sweep keeps for a bifurcation diagram.
 enum class SectionKind { none, impact, stroboscopic };
 
@@ -56,6 +67,9 @@ struct PointOptions {
     /// A neighbour continues from the last state: computes PointResult::at_end.
     bool carry = false;
     bool amplitudes_alone = false;  ///< without exponents, verdict and regime
+    Objective objective = Objective::x_max;
+    bool peaks = false;  ///< Extremes::x_acceleration and x_relative, too
+    ObjectiveUnits units = {};
     /// Ends the transient as soon as it reaches one of these motions, which then is the result.
     const KnownMotions* known = nullptr;
 };
@@ -79,7 +93,8 @@ struct PointResult {
     AttractorName name;
     /// m; m; x_rms over that of the steady motion (free decay: same start) without absorber.
     double x_max, x_rms, x_rms_ratio;
-    Extremes extremes;                        ///< with PointOptions::amplitudes_alone
+    Extremes extremes;                        ///< two of them with PointOptions::peaks
+    double objective;                         ///< by which motions are ranked
     double x_rms_error, share_impacts_error;  ///< standard errors (EnergyBalance)
     /// Steady amplitude without absorber, m; empty at undamped resonance.
     std::optional<double> x_free;
@@ -107,6 +122,7 @@ struct PointSystem {
     State start;
     long max_impacts;
     std::shared_ptr<const KnownMotions> known = nullptr;
+    ObjectiveUnits units = {};
 };
 
 /// A motion and its start, named in the default set of starts, else unnamed.
@@ -134,7 +150,7 @@ struct Lifetime {
 /// there are none.
 Lifetime lifetime_of(std::span<const Motion> motions);
 
-/// Measured motions in ascending order of x_max: the worst is the last.
+/// Measured motions in ascending order of the objective: the worst is the last.
 std::vector<const Motion*> ranked(const SweepPoint& point);
 
 /// True if one of the motions differs from the worst one in its steady state.
@@ -142,7 +158,7 @@ bool depends_on_start(const std::vector<const Motion*>& ranked);
 /// True if the point's steady state depends on the start. Empty if only one start was tried.
 std::optional<bool> depends_on_start(const SweepPoint& point, bool default_set);
 
-/// Highest or lowest x_max along a row.
+/// Highest or lowest objective along a row.
 struct Peak {
     std::size_t at = 0;              ///< index of the point in the row
     const Motion* motion = nullptr;  ///< null if nothing was measured

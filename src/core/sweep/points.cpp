@@ -47,6 +47,7 @@ namespace {
 PointOptions options_of(const PointSystem& system, PointOptions options) {
     options.max_impacts = system.max_impacts;
     options.known = system.known.get();
+    options.units = system.units;
     return options;
 }
 

@@ -284,7 +284,8 @@ struct Sweep {
             }
             const Motion* worst = found[k] && found[k]->result.at_end ? &*found[k] : nullptr;
             for (const Motion& m : points[k].motions)
-                if (m.result.at_end && (!worst || m.result.x_max > worst->result.x_max)) worst = &m;
+                if (m.result.at_end && (!worst || m.result.objective > worst->result.objective))
+                    worst = &m;
             before = worst ? std::optional(Carried{p, *worst->result.at_end}) : std::nullopt;
         }
         return found;

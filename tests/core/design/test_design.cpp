@@ -57,17 +57,25 @@ Extremes sampled(const Parameters& p, const State& start, double tau_end) {
                 found.x_relative = std::max(found.x_relative, std::abs(s.at(at).x - base));
             }
         }
+        void on_impact(const Impact& i) override {
+            found.impact_speed =
+                std::max(found.impact_speed, std::abs(i.x_dot_before - i.y_dot_before));
+            found.impulse =
+                std::max(found.impulse, p.epsilon * std::abs(i.y_dot_after - i.y_dot_before));
+            ++found.impact_rate;
+        }
         const Parameters& p;
         Extremes found;
     } sampler(p);
     Observer* const observers[] = {&sampler};
     simulate(p, start, {.tau_end = tau_end}, observers);
+    sampler.found.impact_rate /= tau_end;
     return sampler.found;
 }
 
 }  // namespace
 
-TEST_CASE("the largest acceleration and distance from the base are those of dense samples") {
+TEST_CASE("extremes are those of dense samples and of all impacts") {
     for (const double Omega : {0.7, 1.0, 1.9})
         for (const bool slides : {false, true}) {
             CAPTURE(Omega);
@@ -81,11 +89,15 @@ TEST_CASE("the largest acceleration and distance from the base are those of dens
             Observer* const observers[] = {&record};
             simulate(p, default_state(p), {.tau_end = 60}, observers);
             const Extremes dense = sampled(p, default_state(p), 60);
-            const Extremes& exact = record.extremes;
+            const Extremes exact = record.result({0, 60});
             CHECK(exact.x_acceleration == doctest::Approx(dense.x_acceleration).epsilon(1e-5));
             CHECK(exact.x_acceleration >= dense.x_acceleration * (1 - 1e-12));
             CHECK(exact.x_relative == doctest::Approx(dense.x_relative).epsilon(1e-5));
             CHECK(exact.x_relative >= dense.x_relative * (1 - 1e-12));
+            CHECK(exact.impact_speed == doctest::Approx(dense.impact_speed).epsilon(1e-12));
+            CHECK(exact.impulse == doctest::Approx(dense.impulse).epsilon(1e-12));
+            CHECK(exact.impact_rate == dense.impact_rate);
+            CHECK((exact.impulse > 0) == slides);
         }
 }
 
@@ -200,4 +212,81 @@ TEST_CASE("a stopped design returns the best absorber so far, or none") {
     REQUIRE(design);
     CHECK_FALSE(design->complete);
     CHECK(design->with_tuned_mass_damper.value == doctest::Approx(0.0177).epsilon(3e-3));
+}
+
+TEST_CASE("a sample depends on the seed and its index alone, and follows its distributions") {
+    const SiParameters si;
+    const BuiltAbsorber nominal{si, 0.02, 0.6};
+    const Tolerance R{Toleranced::R, true, false, 0.6, 0.3},
+        f0{Toleranced::f0, false, true, 0.9, 1.1}, c1{Toleranced::c1, true, true, 1, 0.1};
+    const auto R_of = [&](const std::vector<Tolerance>& tolerances, std::size_t k) {
+        return drawn(tolerances, nominal, 7, k).R;
+    };
+    constexpr std::size_t count = 20000;
+    double sum_f0 = 0, squares_f0 = 0, sum_c1 = 0, squares_c1 = 0;
+    for (std::size_t k = 0; k < count; ++k) {
+        const BuiltAbsorber a = drawn({f0, c1, R}, nominal, 7, k);
+        if (k < 100) CHECK(a.R == R_of({R}, k));
+        CHECK(a.R >= 0);
+        CHECK(a.R <= 1);
+        CHECK(a.b == nominal.b);
+        const double f = a.si.f0() / si.f0() - 1, c = a.si.c1 / si.c1 - 1;
+        CHECK(std::abs(f) <= 0.1 * (1 + 1e-9));
+        sum_f0 += f, squares_f0 += f * f, sum_c1 += c, squares_c1 += c * c;
+    }
+    // Within four standard errors.
+    CHECK(std::abs(sum_f0) / count < 4 * 0.058 / std::sqrt(count));
+    CHECK(squares_f0 / count == doctest::Approx(0.01 / 3).epsilon(0.03));
+    CHECK(std::abs(sum_c1) / count < 4 * 0.1 / std::sqrt(count));
+    CHECK(squares_c1 / count == doctest::Approx(0.01).epsilon(0.04));
+    CHECK(R_of({R}, 3) != R_of({R}, 4));
+    CHECK(drawn({R}, nominal, 8, 3).R != R_of({R}, 3));
+}
+
+TEST_CASE("quantiles lie between the values") {
+    CHECK(quantile({1, 2, 4}, 0.5) == 2);
+    CHECK(quantile({1, 2, 4}, 0.75) == 3);
+    CHECK(quantile({1, 2, infinity}, 0.5) == 2);
+    CHECK(quantile({1, 2, infinity}, 0.75) == infinity);
+    CHECK(quantile({3}, 0.95) == 3);
+}
+
+TEST_CASE("a sample's objective is the worst case of runs with its values, in every part of them") {
+    DesignPlan plan = machine();
+    plan.b = {0.05, 0.05};
+    plan.b_count = 1;
+    plan.default_set = false;
+    plan.tolerances = {
+        {Toleranced::f0, true, true, 1, 0.01},
+        {Toleranced::b, false, false, 0.03, 0.06},
+        {Toleranced::R, true, false, 0.2, 0.05}};
+    plan.samples = {0, 1, 2, 3, 4};
+    const auto samples_of = [](const DesignPlan& some) {
+        RunControl control;
+        auto design = find_design(some, 2, control, [](const DesignPoint&) {});
+        std::ranges::sort(design->samples, {}, &ToleranceSample::index);
+        return design->samples;
+    };
+    const std::vector<ToleranceSample> all = samples_of(plan);
+    REQUIRE(all.size() == 5);
+    PointOptions options{.transient_cycles = 30, .cycles = 40, .max_impacts = 8000};
+    for (const ToleranceSample& s : all) {
+        double worst = 0;
+        for (int j = 0; j < plan.f_count; ++j) {
+            SiParameters si = s.built.si;
+            si.f = 7 + 2.0 * j / (plan.f_count - 1), si.F = plan.host.base_amplitude(si.f);
+            Parameters p;
+            p.epsilon = si.epsilon(), p.lambda = si.lambda(), p.G = si.G(), p.Omega = si.Omega();
+            p.R_plus = p.R_minus = s.built.R, p.b = s.built.b;
+            worst = std::max(worst, measure(p, default_state(p), options, {}).x_max);
+        }
+        CHECK(s.point.objective == worst);
+        REQUIRE(s.worst);
+        CHECK(s.worst->x_max == worst);
+    }
+    plan.samples = {1, 4};
+    const std::vector<ToleranceSample> part = samples_of(plan);
+    REQUIRE(part.size() == 2);
+    CHECK(part[0].point.objective == all[1].point.objective);
+    CHECK(part[1].point.objective == all[4].point.objective);
 }

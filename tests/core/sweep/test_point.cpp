@@ -67,7 +67,7 @@ namespace {
 Motion motion(const std::string& start, double x_max) {
     Motion m{start, {}, {}};
     m.result.measured = true;
-    m.result.x_max = m.result.x_rms = x_max;
+    m.result.x_max = m.result.x_rms = m.result.objective = x_max;
     m.result.regime.type = RegimeType::III;
     m.result.regime.orbit.emplace();
     m.result.regime.orbit->cycles = 1;
