@@ -234,7 +234,12 @@ TEST_CASE("an axis over a preset changes only its field, reduced, SI or of one w
     // Each point equals that of a sweep whose base states all values of the preset.
     const std::string rest = R"(,"cycles":60,"transient_cycles":0})";
     const auto point = [&](const std::string& base, const std::string& axis) {
-        return run(sweep_request(R"({"base":)" + base + R"(,"axes":[)" + axis + "]" + rest)).at(0);
+        Json line =
+            run(sweep_request(R"({"base":)" + base + R"(,"axes":[)" + axis + "]" + rest)).at(0);
+        // Reduced systems have no counterparts in SI.
+        for (const char* name : {"impact_speed_max", "impulse_max", "impacts_per_second"})
+            for (Json* motion : {&line, &line["second_start"]}) motion->erase(name);
+        return line;
     };
     const SiParameters table4{4.168, 3.02, 11.47e3, 0.032, 0.01 * 0.032 / 4.168, 0};
     char reduced[200];

@@ -492,8 +492,8 @@ class SimulateFields(TypedDict, total=False):
 class SweepFields(TypedDict, total=False):
     """Fields of a sweep.
 
-    base: fields of /v1/simulate that all points share: system, reduced or SI, start, preset,
-        max_impacts; default: {}
+    base: fields of /v1/simulate that all points share: system, reduced or SI, laws, load,
+        start, preset, max_impacts; default: {}
     axes: one to three axes: {parameter, from, to, count, scale} or {parameter, values}; the
         point index varies fastest along the first axis; default: required
     starts: initial states {x0, x_dot0, y0, y_dot0}, each run at every point, to find coexisting

@@ -85,7 +85,8 @@ void replay(
     double tau, Observer& observer) {
     const auto flow = Flow::shared_free(p);
     const ImpactSequence& sequence = equations.sequence();
-    const Forces gravity{.y_ddot = p.gravity};
+    Forces gravity;
+    gravity.y_ddot = p.gravity;
     for (const int sign : {1, -1}) {
         if (sign < 0 && !sequence.mirrored) return;
         for (std::size_t k = 0; k < sequence.size(); ++k) {
