@@ -243,7 +243,7 @@ std::vector<double> objectives(const std::vector<ToleranceSample>& samples) {
 
 /// The result in words.
 std::string sentence_of(const DesignRequest& r, const Design& d) {
-    const std::string text = recommendation_of(r, d);
+    std::string text = recommendation_of(r, d);
     if (d.samples.empty()) return text;
     return fmt::format(
         "{} With these tolerances {} stays below {} in 95 % of the samples.", text, r.objective,

@@ -150,7 +150,8 @@ struct LineWork {
     /// Line of progress after `done` lines; empty function for a table.
     std::function<std::string(std::size_t done, const api::RunControl& control, double seconds)>
         progress;
-    std::function<std::string(std::size_t done)> complete;  ///< last lines
+    /// Last lines after progress; empty function if the computation sends them.
+    std::function<std::string(std::size_t done)> complete;
     const char* how_to_go_on = "";  ///< after an early end; null for a table, which is then cut off
 };
 
@@ -175,7 +176,9 @@ public:
             end = is_complete_         ? SweepEnd::complete
                   : control_.is_late() ? SweepEnd::deadline
                                        : SweepEnd::stopping;
-            last = is_complete_ ? work_.complete(done) : line_of_end(end, done);
+            last = !is_complete_    ? line_of_end(end, done)
+                   : work_.complete ? work_.complete(done)
+                                    : "";
         } catch (...) {
             log_failure(work_.path, id_, std::current_exception());
             end = SweepEnd::failed;
@@ -225,7 +228,9 @@ private:
         do {
             taken = lines_.take(client_check_interval);
             const auto now = Clock::now();
-            if (work_.progress && (now - reported >= report_interval || taken.finished)) {
+            const bool at_end = taken.finished && work_.complete;
+            const bool due = !taken.finished && now - reported >= report_interval;
+            if (work_.progress && (due || at_end)) {
                 const std::chrono::duration<double> seconds = now - started_;
                 taken.text += work_.progress(taken.count, control_, seconds.count());
                 reported = now;
@@ -356,7 +361,8 @@ Response stream_design(
     const auto shared = std::make_shared<const api::DesignRequest>(std::move(request));
     const auto count = std::make_shared<api::DesignCount>();
     return stream_lines(
-        {"/v1/design", api::json_text(api::design_start(*shared)) + '\n',
+        {"/v1/design",
+         api::json_text(api::design_start(*shared)) + '\n',
          [shared, count, threads = admission.threads()](
              api::RunControl& control, const LineWork::Push& push) {
              return api::run_design(
@@ -366,7 +372,8 @@ Response stream_design(
          [=](std::size_t, const api::RunControl& control, double) {
              return api::design_progress(*shared, *count, control);
          },
-         [](std::size_t) { return std::string(); }, "request fewer R, b_count, f_count or cycles"},
+         {},
+         "request fewer R, b_count, f_count or cycles"},
         deadline, asked, admission, metrics);
 }
 

@@ -173,6 +173,15 @@ test("points arrive while the sweep runs, and it stops when its client leaves", 
   await one.stop();
 });
 
+test("the last line of a design is its result, after the progress", async () => {
+  const base = {m1: 2, f0: 8, damping_ratio: 0.01};
+  const search = {b_count: 2, f_count: 2, R: 0.2, starts: "one", cycles: 20, transient_cycles: 0};
+  const body = JSON.stringify({base, m2: 0.04, f: [7.9, 8.1], acceleration: 5, ...search});
+  const lines = await linesOf(await fetch(`${service.url}/v1/design`, {method: "POST", body}));
+  assert.equal(lines.at(-1).type, "done");
+  assert.ok(lines.at(-1).complete);
+});
+
 test("a sweep takes 201 x 201 starts", async () => {
   const values = Array.from({length: 201}, (_, k) => (k - 100.123456789) * 2.7e-5);
   const starts = values.flatMap((x0) => values.map((y_dot0) => ({x0, y_dot0, y0: 0})));

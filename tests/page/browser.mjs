@@ -13,7 +13,7 @@ const {chromium} = require("playwright-core");
  * as it shows. Chromium sometimes also reports a fully read stream as aborted.
  */
 const brokenOff = (request) =>
-  /\/(v1\/(simulate|sweep|continue|identify)|healthz)\b/.test(request.url()) &&
+  /\/(v1\/(simulate|sweep|continue|design|identify)|healthz)\b/.test(request.url()) &&
   request.failure().errorText === "net::ERR_ABORTED";
 
 /**
