@@ -228,11 +228,11 @@ private:
         do {
             taken = lines_.take(client_check_interval);
             const auto now = Clock::now();
-            const bool at_end = taken.finished && work_.complete;
-            const bool due = !taken.finished && now - reported >= report_interval;
-            if (work_.progress && (due || at_end)) {
+            if (work_.progress && (now - reported >= report_interval || taken.finished)) {
                 const std::chrono::duration<double> seconds = now - started_;
-                taken.text += work_.progress(taken.count, control_, seconds.count());
+                const std::string line = work_.progress(taken.count, control_, seconds.count());
+                // The last line can be among them.
+                taken.text.insert(work_.complete ? taken.text.size() : 0, line);
                 reported = now;
             }
             connected_ = connected_ && out_.connected() && out_.write(taken.text);

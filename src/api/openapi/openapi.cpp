@@ -156,6 +156,7 @@ Json metrics_path() {
               nullptr, "text/plain; version=0.0.4; charset=utf-8"})}};
 }
 
+// NOLINTNEXTLINE(readability-function-size): a table
 Json paths() {
     return {
         {"/v1/simulate",
