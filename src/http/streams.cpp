@@ -228,7 +228,9 @@ private:
         do {
             taken = lines_.take(client_check_interval);
             const auto now = Clock::now();
-            if (work_.progress && (now - reported >= report_interval || taken.finished)) {
+            const bool due =
+                taken.finished ? bool(work_.complete) : now - reported >= report_interval;
+            if (work_.progress && due) {
                 const std::chrono::duration<double> seconds = now - started_;
                 const std::string line = work_.progress(taken.count, control_, seconds.count());
                 // The last line can be among them.
