@@ -91,8 +91,9 @@ Recorded table1_by_b(int switches = 0) {
 void check_points(const Recorded& r, const std::function<Parameters(double)>& system_at) {
     CHECK(r.points.size() > 20);
     for (const auto& [branch, orbit] : r.points) {
-        const Parameters p = system_at(orbit.parameters[0]);
-        CAPTURE(orbit.parameters[0]);
+        const double value = orbit.parameters[0];
+        CAPTURE(value);
+        const Parameters p = system_at(value);
         if (elementary::modulus(orbit.multipliers[0]) > 1e4) continue;
         const State& s = orbit.measures.at_whole_cycle;
         const auto found =
