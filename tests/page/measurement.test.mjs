@@ -365,7 +365,7 @@ function agrees(summary, name, truth) {
 }
 
 test("Measurement identifies the restitution and clearance of a simulated run", async () => {
-  const page = await visit("?preset=fig3&R=0.65");
+  const page = await visit("?preset=fig3&R=0.65&tau_end=600");
   await page.click("#measure-this");
   await identified(page, 1);
   assert.equal(await page.inputValue("#measure-preset"), "");
