@@ -40,7 +40,7 @@ Json describe_perturbation(Perturbation&& perturbation);
 /// Type, impacts per cycle, periodic orbit and capture; null where a part does not exist.
 Json describe_regime(const Regime& regime);
 
-/// By descending modulus.
+/// Floquet multipliers, by descending modulus.
 Json describe_multipliers(const std::array<std::complex<double>, 4>& multipliers);
 
 }  // namespace vines::api

@@ -94,7 +94,7 @@ const FlagUsage* flag_with_value(const CommandUsage& command, const std::string&
     return found == command.flags.end() ? nullptr : &*found;
 }
 
-/// What can stand in place of the last word.
+/// Candidates for the last word.
 std::string candidates(const ProgramUsage& usage, std::vector<std::string> words) {
     // bash passes --flag=value as three words.
     if (words.back() == "=") words.back().clear();

@@ -93,6 +93,14 @@ function showRegimes({points}) {
   }
 }
 
+/** Legend entry with a mark, in the colour of that name; `more` follows it. */
+function legendEntry(text, mark, colour, ...more) {
+  const key = dom.element("span", {className: "key"}, text);
+  key.dataset.mark = mark;
+  key.style.color = `var(--${colour})`;
+  return dom.element("li", {}, key, ...more);
+}
+
 /** Shows the legend of a map of attractors, the most frequent first; empty for other plots. */
 function showAttractors({choice, plots: [map]}) {
   const counts = choice.map === "attractor" ? [...map.attractors()] : [];
@@ -100,10 +108,8 @@ function showAttractors({choice, plots: [map]}) {
   const items = counts
     .sort(([, n], [, m]) => m - n)
     .map(([name, n]) => {
-      const key = dom.element("span", {className: "key"}, name.replace("_", " "));
-      key.dataset.mark = "■";
-      key.style.color = `var(--${map.colourOf(name)})`;
-      return dom.element("li", {}, key, dom.element("small", {}, percent(n / all)));
+      const share = dom.element("small", {}, percent(n / all));
+      return legendEntry(name.replace("_", " "), "■", map.colourOf(name), share);
     });
   $("sweep-attractors").replaceChildren(...items);
 }
@@ -112,10 +118,8 @@ const startMarks = ["●", "■", "▲", "◆", "▼"]; // as the shapes of the 
 
 /** Legend entry of a start: its symbol and state. */
 function startKey(state, s) {
-  const key = dom.element("span", {className: "key"}, `${s + 1}: ${labels.fields(state)}`);
-  key.dataset.mark = startMarks[s % startMarks.length];
-  key.style.color = `var(--${startColour(s)})`;
-  return dom.element("li", {}, key);
+  const mark = startMarks[s % startMarks.length];
+  return legendEntry(`${s + 1}: ${labels.fields(state)}`, mark, startColour(s));
 }
 
 export class SweepTab extends RequestTab {

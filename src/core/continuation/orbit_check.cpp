@@ -122,14 +122,14 @@ State state_after(
     return {sign * o.x_dot, sign * o.x, sign * ball.y_dot, sign * ball.y};
 }
 
-/// True if the systems of the family next to these values have equal walls and no gravity.
+/// True if the systems of the family next to these values are symmetric.
 bool is_symmetric(const ParameterFamily& family, const std::vector<double>& values) {
     for (std::size_t i = 0; i < values.size(); ++i)
         for (const double side : {1.0, -1.0}) {
             std::vector<double> beside = values;
             beside[i] += side * near_value * family.unit[i];
             const auto p = family.system_at(beside);
-            if (p && !(p->has_equal_walls() && p->gravity == 0)) return false;
+            if (p && !p->is_symmetric()) return false;
         }
     return true;
 }

@@ -40,7 +40,9 @@ double linear_response(const Host& host, const LinearAbsorber& t, Objective obje
         case Objective::x_rms: return elementary::modulus(x) / std::numbers::sqrt2;
         case Objective::x_relative_max: return elementary::modulus(x - F);
         case Objective::x_acceleration_max: return square * elementary::modulus(x);
-        default: break;
+        case Objective::impact_speed_max:
+        case Objective::impulse_max:
+        case Objective::impacts_per_second: break;
     }
     return std::numeric_limits<double>::quiet_NaN();
 }

@@ -83,7 +83,7 @@ public:
         double begin, step;  ///< sigma; step of a cell
         std::vector<std::complex<double>> at;
     };
-    /// Of x'' + damping x' + stiffness x = by_force times the excess.
+    /// The response of x'' + damping x' + stiffness x = by_force times the excess.
     LoadResponse(const Excess& excess, double stiffness, double damping, double by_force);
 
     /// The real part is the response to f_c = 1, the imaginary part that to f_s = 1.

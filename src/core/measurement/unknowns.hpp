@@ -78,7 +78,7 @@ struct FixedUnknowns : ForUnknowns<bool> {
 
 class MeasuredLoad;
 
-/// What is known of the forcing f sin(Omega tau + phase).
+/// Given parameters of the forcing f sin(Omega tau + phase), and its measured load.
 struct KnownForcing {
     std::optional<double> amplitude = {};  ///< f, m
     std::optional<double> phase = {};

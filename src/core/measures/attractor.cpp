@@ -108,7 +108,7 @@ std::string rounded_text(const char* format, double value) {
 AttractorName name_of(
     const Parameters& p, const PeriodicOrbit& orbit, const std::function<bool()>& stop) {
     AttractorName name{orbit_name(p, orbit, stop), std::nullopt};
-    if (!p.has_equal_walls() || p.gravity != 0) return name;
+    if (!p.is_symmetric()) return name;
     const auto half = follow(p, orbit.state, orbit.tau, 0.5 * p.cycle(), stop);
     if (!half) return name;
     PeriodicOrbit twin = orbit;

@@ -94,6 +94,9 @@ struct Parameters {
     bool has_straight_flights() const { return gravity == 0 && friction == 0 && !load; }
     /// True if both walls obey the same law.
     bool has_equal_walls() const;
+    /// True if the mirror image of a motion under harmonic forcing, half a cycle later, is a
+    /// motion.
+    bool is_symmetric() const { return has_equal_walls() && gravity == 0; }
 };
 
 /// The same system in SI units, for an oscillator with mass m1 and stiffness k1.
