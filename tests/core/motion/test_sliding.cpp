@@ -239,6 +239,26 @@ TEST_CASE("without forcing a ball stays on an incline if and only if gravity is 
     CHECK(impacts.entries[0].side == -1);
 }
 
+TEST_CASE(
+    "a ball that rests at a wall far from the oscillator's rest stays there in a second run") {
+    // The static deflection, epsilon gravity = 1e-6, is 1000 b: x and y round more than their
+    // values say.
+    Parameters p;
+    p.epsilon = p.b = 1e-9, p.lambda = p.Omega = 1, p.G = 0.01, p.gravity = 1000;
+    p.R_plus = 0.1, p.R_minus = 0;
+    StroboscopicRecord at_cycles(p);
+    simulate(p, {}, {.tau_end = 100}, std::vector<Observer*>{&at_cycles});
+    for (const State& s : at_cycles.states) {
+        if (&s == at_cycles.states.data()) continue;
+        ImpactRecord impacts;
+        StickRecord sticks;
+        simulate(p, s, {.tau_end = p.cycle()}, std::vector<Observer*>{&impacts, &sticks});
+        CHECK(impacts.entries.empty());
+        REQUIRE(sticks.entries.size() == 1);
+        CHECK(sticks.entries[0].start.tau == 0);
+    }
+}
+
 TEST_CASE("a bouncing ball on a heavy oscillator has the times of the closed form") {
     Parameters p;
     p.epsilon = 1e-9, p.lambda = 0, p.G = 0, p.b = 1, p.gravity = 0.5, p.R_minus = 0.8;
