@@ -45,18 +45,16 @@ Run::Run(
       longest_bounce_(p.faster_half_cycle()) {
     const double theta = p.Omega * limits.tau_start + p.phi();
     lo_ = {start.x, start.x_dot, elementary::sin(theta), elementary::cos(theta)};
-    const double apart = start.x - start.y;
+    // Positions far from the oscillator's rest round more than the values of x and y say.
+    const double apart = start.x - start.y,
+                 rounding = position_rounding(
+                     free_.bounds(lo_), std::abs(start.y) + p.epsilon * std::abs(p.gravity), p.b);
     side_ = wall_of(start, p.b);
-    // The rounding of a position far from the oscillator's rest can exceed that of x and y.
-    if (side_ == 0 && std::abs(apart) > p.b) side_ = sign_of(apart);
+    if (side_ == 0 && std::abs(apart) >= p.b - rounding) side_ = sign_of(apart);
     end_rounding_ = 0.5 * (limits.tau_end - std::nextafter(limits.tau_end, 0));
     relative_speed_ = start.x_dot - start.y_dot;
     assert(is_physical(p));
-    assert(
-        p.load ||
-        std::abs(apart) <=
-            p.b + position_rounding(
-                      free_.bounds(lo_), std::abs(start.y) + p.epsilon * std::abs(p.gravity), p.b));
+    assert(p.load || std::abs(apart) <= p.b + rounding);
     if (p.load) interval_ = p.load->interval_at(limits.tau_start);
     begin_sliding(sign_of(relative_speed_));
     if (side_ != 0) meet_wall_at_start();
