@@ -175,6 +175,7 @@ void Run::fly_to(const std::optional<Contact>& contact) {
         // Rounding has reduced the approach speed to zero: a grazing contact.
         graze(clock_.tau(), side_);
         relative_speed_ = 0;
+        if (forces_) y_dot_ = lo_.x_dot;
         return leave_or_stick();
     }
     const double rest = clock_.until(limits_.tau_end), limit = until_boundary(rest, free_);

@@ -239,6 +239,22 @@ TEST_CASE("without forcing a ball stays on an incline if and only if gravity is 
     CHECK(impacts.entries[0].side == -1);
 }
 
+TEST_CASE("a ball that just reaches the upper wall without speed falls from rest") {
+    Parameters p;
+    p.epsilon = p.b = 1e-9, p.Omega = 0.001, p.G = 0.1, p.gravity = 5, p.R_minus = 1;
+    ImpactRecord impacts;
+    simulate(p, {0, 0, 0, -p.b}, {.tau_end = 0.01}, std::vector<Observer*>{&impacts});
+    // At the upper wall rounding decides whether it is an impact.
+    std::erase_if(impacts.entries, [](const Impact& impact) { return impact.side > 0; });
+    const double fall = 2 * std::sqrt(p.b / p.gravity);
+    REQUIRE(impacts.entries.size() > 100);
+    double due = fall;
+    for (const Impact& impact : impacts.entries) {
+        CHECK(impact.tau == doctest::Approx(due).epsilon(1e-6));
+        due += 2 * fall;
+    }
+}
+
 TEST_CASE(
     "a ball that rests at a wall far from the oscillator's rest stays there in a second run") {
     // The static deflection, epsilon gravity = 1e-6, is 1000 b: x and y round more than their
