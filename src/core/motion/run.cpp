@@ -309,6 +309,7 @@ void Run::stick(double chatter_left, int zeros) {
 void Run::rest_inside() {
     ++others_;
     side_ = 0;
+    bounce_limit_ = 0;  // ends a chatter
     follow_joint_motion(0);
     begin_sliding(sign_of(pull_together()));
     slip_zeros_ = 2;

@@ -311,6 +311,26 @@ TEST_CASE("a rest inside the cavity has one exponent of minus infinity") {
     }
 }
 
+TEST_CASE("an impact after a rest inside the cavity begins a new chatter") {
+    Parameters p;
+    p.epsilon = 0.0084, p.lambda = 1.4, p.Omega = 4.5, p.G = 56, p.b = 0.1;
+    p.R_plus = 0, p.R_minus = 0.5, p.gravity = 0.1, p.friction = 0.2;
+    struct Chatters : Observer {
+        void on_impact(const Impact&) override { ++since_rest; }
+        void on_slip(const Slip& slip) override {
+            if (slip.ratio == 0) since_rest = 0, ++rests;
+        }
+        void on_stick(const StickStart& start) override {
+            CHECK(start.impacts <= since_rest);
+            ++sticks;
+        }
+        int since_rest = 0, rests = 0, sticks = 0;
+    } chatters;
+    simulate(p, {0, 0, 17.5, -p.b}, {.tau_end = 2000}, std::vector<Observer*>{&chatters});
+    CHECK(chatters.rests > 10);
+    CHECK(chatters.sticks > 10);
+}
+
 TEST_CASE("slips change the sum of the exponents by the logarithms of their ratios") {
     Parameters p = machine(0, 0.0005);
     p.R_plus = p.R_minus = 0.95;
