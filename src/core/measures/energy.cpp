@@ -221,9 +221,10 @@ EnergyBalance Energy::balance(const Interval& window) const {
         .share_impacts = ratio(impacts_, total),
         .rms = rms,
         .peak = peak_,
-        .rms_error = error_of_sum(squares) / observed / (2 * rms),
-        .share_impacts_error = error_of_sum(excess) / (before.impacts + before.friction +
-                                                       2 * p.zeta() * before.x_dot_squared),
+        .rms_error = error_of_modulated_sum(squares) / observed / (2 * rms),
+        .share_impacts_error =
+            error_of_modulated_sum(excess) /
+            (before.impacts + before.friction + 2 * p.zeta() * before.x_dot_squared),
         .difference_of_halves = difference_of_halves(squares)};
 }
 

@@ -161,7 +161,8 @@ double Rhythm::z_error() const {
     // A run that ends within the window has only counted whole steps.
     const auto steps = std::span(in_steps_).first(
         std::min(in_steps_.size(), static_cast<std::size_t>(std::max(0.0, reached + 1e-9))));
-    return error_of_sum(steps) * cycle_ / (static_cast<double>(steps.size()) * steps_.duration());
+    return error_of_modulated_sum(steps) * cycle_ /
+           (static_cast<double>(steps.size()) * steps_.duration());
 }
 
 std::vector<SynchronyStretch> Rhythm::last_stretches() {

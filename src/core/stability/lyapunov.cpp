@@ -123,8 +123,8 @@ struct TransferProduct::Qr {
     double log_det = 0;                      // exact value for the flights: -2 zeta s
     // Product of the determinants of the impacts, and the logarithm extracted from it.
     double determinant_product = 1, log_determinants = 0;
-    /// Bound of the rounding error in the logarithms of length, area and volume.
-    std::array<double, 3> rounding_bounds{};
+    /// Variances of the rounding errors in the logarithms of length, area and volume.
+    std::array<double, 3> rounding_variances{};
     int since_rescale = 0;  // impacts since the last rescaling
     ThinnedHistory thinned;
 
@@ -144,24 +144,26 @@ struct TransferProduct::Qr {
         // Within these limits an impact and a flight of one part let no size grow by more than 1e17
         // (for a flight of duration 1e10) or shrink by more than 1e10.
         flag.strike(M);
-        for (double& bound : rounding_bounds) bound += rounding;
+        for (double& variance : rounding_variances) variance += rounding * rounding;
         determinant_product *= M.determinant();
         if (++since_rescale == 4) rescale();
     }
 
     /// Impact with large entries of M, or with a tiny R. x - y and x' - y' of a deviation are
     /// accurate to an ulp of x and x', and areas and volumes likewise. M magnifies this error by
-    /// its entries; the bounds grow by the magnified error relative to the sizes after the impact.
+    /// its entries; it counts relative to the sizes after the impact. Errors of different chatters
+    /// are independent.
     void strike_magnified(const Saltation& M, double steepness) {
         rescale();
         const auto before = flag.squares();
         flag.strike(M);
         const auto after = flag.squares();
-        for (int k = 0; k < 3; ++k)
-            rounding_bounds[k] +=
-                before[k] > 0
-                    ? typical_rounding * (1 + (1 + steepness) * std::sqrt(before[k] / after[k]))
-                    : 0;
+        for (int k = 0; k < 3; ++k) {
+            if (!(before[k] > 0)) continue;
+            const double error =
+                typical_rounding * (1 + (1 + steepness) * std::sqrt(before[k] / after[k]));
+            rounding_variances[k] += error * error;
+        }
         log_determinants += elementary::log(std::abs(M.R)) + elementary::log(std::abs(M.R_speed));
         rescale();
     }
@@ -210,14 +212,15 @@ struct TransferProduct::Qr {
     }
 
     /// Errors of the four cumulative sums of logarithms (dimensionless). Length, area and volume:
-    /// the larger of the angles to their neighbours, and the rounding bound if that exceeds `most`;
+    /// the larger of the angles to their neighbours, and the rounding if that exceeds `most`;
     /// infinity if unknown. Determinant: deviation of its logarithm from the exact value.
     std::array<double, 4> errors(int rank, double most) const {
         const auto squares = flag.squares();
         const auto separations = flag.separations();
         std::array<double, 4> errors{};
         for (int k = 0; k < std::min(rank, 3); ++k) {
-            if (!(rounding_bounds[k] <= most)) errors[k] = rounding_bounds[k];
+            const double rounded = std::sqrt(rounding_variances[k]);
+            if (!(rounded <= most)) errors[k] = rounded;
             if (!(squares[k] > 0)) errors[k] = infinity;
         }
         for (int k = 1; k < std::min(rank, 3); ++k) {

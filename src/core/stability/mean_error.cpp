@@ -11,7 +11,7 @@ namespace vines {
 
 namespace {
 
-constexpr int error_tapers = 8, tapers_of_half = 4;
+constexpr int error_tapers = 8, few_tapers = 4;
 
 double sum_of(std::span<const double> steps) {
     return std::accumulate(steps.begin(), steps.end(), 0.0);
@@ -51,19 +51,34 @@ struct Tapers {
 
 }  // namespace
 
-double error_of_sum(std::span<const double> steps) {
+namespace {
+
+/// NaN for fewer than fewest_error_steps or non-finite steps.
+template <int count>
+double variance_of_sum(std::span<const double> steps) {
     if (steps.size() < fewest_error_steps) return nan;
-    using Eight = Tapers<error_tapers>;
-    static const Eight complete(error_steps);
-    const double variance = steps.size() == error_steps ? complete.variance(steps)
-                                                        : Eight(steps.size()).variance(steps);
-    return std::isfinite(variance) ? std::sqrt(variance) : nan;
+    static const Tapers<count> complete(error_steps);
+    const double variance = steps.size() == error_steps
+                                ? complete.variance(steps)
+                                : Tapers<count>(steps.size()).variance(steps);
+    return std::isfinite(variance) ? variance : nan;
+}
+
+}  // namespace
+
+double error_of_sum(std::span<const double> steps) {
+    return std::sqrt(variance_of_sum<error_tapers>(steps));
+}
+
+double error_of_modulated_sum(std::span<const double> steps) {
+    return std::sqrt(
+        std::max(variance_of_sum<error_tapers>(steps), variance_of_sum<few_tapers>(steps)));
 }
 
 double difference_of_halves(std::span<const double> steps) {
     const std::size_t half = steps.size() / 2;
     if (steps.size() < fewest_error_steps) return nan;
-    using Four = Tapers<tapers_of_half>;
+    using Four = Tapers<few_tapers>;
     static const Four complete(error_steps / 2);
     const auto first = steps.first(half), second = steps.last(half);
     const auto difference = [&](const Four& tapers) {

@@ -56,6 +56,10 @@ private:
 /// Standard error of the sum of the steps; their mean is removed here. NaN for fewer than
 /// fewest_error_steps or non-finite steps.
 double error_of_sum(std::span<const double> steps);
+/// The same for quantities that slow modulations of the amplitude dominate: the larger of the
+/// errors by eight and by four tapers, since eight average over too wide a band where the density
+/// rises towards frequency zero.
+double error_of_modulated_sum(std::span<const double> steps);
 
 /// Difference of the means of both halves over its standard error, by four tapers in each half: six
 /// degrees of freedom.

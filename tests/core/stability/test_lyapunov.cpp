@@ -431,6 +431,32 @@ TEST_CASE("the exponents of a sticking motion exist wherever in its chatter the 
     }
 }
 
+TEST_CASE("the exponents of a sticking motion exist in windows of any length") {
+    struct Sticking {
+        double epsilon, Omega, R, lambda, b;
+    };
+    for (const Sticking& s :
+         {Sticking{0.121984693, 0.957746029, 0.849820454, 0.568043085, 0.000126880746},
+          Sticking{0.128932037, 0.907642031, 0.861796350, 0.190270287, 0.000326024514},
+          Sticking{0.123298169, 0.937840662, 0.896354367, 0.127458243, 0.000487547751}}) {
+        Parameters p;
+        p.epsilon = s.epsilon, p.Omega = s.Omega, p.lambda = s.lambda, p.b = s.b;
+        p.R_plus = p.R_minus = s.R;
+        WindowedExponents windows(p, {.qr = true});
+        const int lengths[] = {20, 25, 40, 100, 200};
+        for (const int cycles : lengths) windows.add(0, cycles * p.cycle());
+        simulate(
+            p, default_state(p), {.tau_end = 200 * p.cycle()}, std::vector<Observer*>{&windows});
+        double lambda1 = 0;
+        for (std::size_t i = 0; i < windows.size(); ++i) {
+            CAPTURE(lengths[i]);
+            lambda1 = windows.product(i).qr()[0];
+            CHECK(std::isfinite(lambda1));
+        }
+        CHECK(lambda1 == doctest::Approx(-p.zeta()).epsilon(0.1));
+    }
+}
+
 TEST_CASE("the exponents obey the sum rule with a restitution that depends on the speed") {
     std::mt19937_64 engine(12);
     for (int n = 0; n < 10; ++n) {
