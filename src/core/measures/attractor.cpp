@@ -46,7 +46,9 @@ std::optional<StateCell> next_cell(
     const Parameters& p, const StateCell& cell, int cycles, const std::function<bool()>& stop) {
     Eigen::Vector4d v;
     for (int i = 0; i < 4; ++i) v(i) = static_cast<double>(cell[i]) * p.b * cell_width;
-    const State middle = state_of(v);
+    State middle = state_of(v);
+    // Of a cell across the wall.
+    middle.y = std::clamp(middle.y, middle.x - p.b, middle.x + p.b);
     const auto orbit =
         find_orbit(p, middle, cycles, scale_of(p, {&middle, 1}), reach_from_cell, stop);
     if (!orbit) return std::nullopt;
