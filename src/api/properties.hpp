@@ -104,8 +104,8 @@ inline constexpr Property<EnergyBalance> balance[] = {
      at<&EnergyBalance::share_impacts_error>},
     {{"rms", "rms of x, m"}, at<&EnergyBalance::rms>},
     {{"rms_standard_error",
-      "standard error of rms as an estimate for an infinite run, m; null for windows of fewer "
-      "than 32 cycles",
+      "standard error of rms as an estimate for an infinite run, m, with four degrees of freedom: "
+      "95 % intervals are 2.776 errors on both sides; null for windows of fewer than 32 cycles",
       number_or_null},
      at<&EnergyBalance::rms_error>},
     {{"peak", "maximum of |x| in the window, m; that of an irregular motion grows with the window"},
@@ -299,7 +299,10 @@ inline constexpr Property<MeasuredPoint> point[] = {
     {{"lambda", "four exponents by qr", exponents}, result_at<&PointResult::lambda>},
     {{"status", "status of each exponent", statuses},
      [](const MeasuredPoint& p) { return statuses_of(p.result.lambda); }},
-    {{"standard_error", "standard error of each exponent", exponents},
+    {{"standard_error",
+      "standard error of each exponent, with seven degrees of freedom: 95 % intervals are 2.365 "
+      "errors on both sides; 2.776 for the other standard errors, which have four",
+      exponents},
      result_at<&PointResult::standard_error>},
     {{"verdict",
       "regular if a periodic orbit captures the motion, otherwise the verdict on the measured "
@@ -355,10 +358,19 @@ inline constexpr Property<MeasuredPoint> point[] = {
      result_at<&PointResult::share_impacts_error>},
     {{"impacts", "number of impacts", whole}, result_at<&PointResult::impacts>},
     {{"sticks", "number of sticking phases", whole}, result_at<&PointResult::sticks>},
+    {{"stationary",
+      "false if lambda1 or x_rms differs between the halves of the measured cycles by more than "
+      "chance permits, or if nothing dissipates (zeta = 0, R = 1): then the standard errors do not "
+      "cover",
+      flag},
+     result_at<&PointResult::stationary>},
 };
 
 /// If requested.
 inline constexpr Property<Extremes> peaks[] = {
+    {{"x_max_least", "smallest maximum of |x| in a forcing cycle, m; x_max is the largest",
+      number_or_null},
+     at<&Extremes::x_max_least>},
     {quantity.x_ddot_max, at<&Extremes::x_acceleration>},
     {{"x_relative_max", "largest distance of the oscillator from the base, m"},
      at<&Extremes::x_relative>},

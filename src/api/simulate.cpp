@@ -206,12 +206,12 @@ void add_manifold_warnings(
         warnings.push_back(
             "no b is recommended: no tried value reduces the motion at this frequency from every "
             "start");
-    if (r.best && r.robust && r.best->b > near_free_amplitude * *free)
+    if (r.best && free && r.best->b > near_free_amplitude * *free)
         warnings.push_back(fmt::format(
             "the recommended b lies {:.2g} % below the amplitude without the absorber: with an F "
-            "smaller by that, or another f, a ball at rest is never met; robust is the b for an F "
-            "and f that are not exact",
-            100 * (1 - r.best->b / *free)));
+            "smaller by that, or another f, a ball at rest is never met{}",
+            100 * (1 - r.best->b / *free),
+            r.robust ? "; robust is the b for an F and f that are not exact" : ""));
     if (free && *free < m.fold.C)
         warnings.push_back(fmt::format(
             "without the absorber the oscillator reaches {:.4g} m, less than the activation "

@@ -84,9 +84,11 @@ struct Sentence {
     std::string operator()(const CapturedTransient& w) const {
         return fmt::format(
             "a chaotic transient (lambda1 = {:.3g}) was captured by a periodic orbit {} (lambda1 = "
-            "{:.3g}): exponents of a window that contains the capture average both",
+            "{:.3g}): {}",
             w.before, w.tau ? fmt::format("at tau = {:.1f}", *w.tau) : "after the run's end",
-            w.after);
+            w.after,
+            w.in_run ? "exponents of a window that contains the capture average both"
+                     : "the run is a part of the transient");
     }
     std::string operator()(const NotStationary& w) const {
         std::string text = "standard errors do not cover: ";

@@ -369,3 +369,24 @@ TEST_CASE("a window after the end of a run by max_impacts reports that the run h
     CHECK(a["windows"][1]["verdict_reason"] == "the run had ended before this window began");
     CHECK(a["windows"][0]["verdict_reason"] != a["windows"][1]["verdict_reason"]);
 }
+
+TEST_CASE("a chaotic run is continued on request, and the warning says where it is captured") {
+    const std::string run =
+        R"({"b":0.021734177215189873,"damping":"closed_form","include":["regime","exponents"],"tau_end":1709)";
+    const Json chaotic = answer(run + "}");
+    CHECK(chaotic["exponents"]["verdict"] == "chaotic");
+    const Json settled = answer(run + R"(,"settle_cycles":20000})");
+    CHECK(settled["regime"]["period_cycles"] == 3);
+    CHECK(settled["regime"]["capture"]["tau"] > 1709);
+    CHECK(warns(settled, "the run is a part of the transient"));
+}
+
+TEST_CASE("a quasi-periodic motion is regular, with its rotation number and impacts per cycle") {
+    const Json a = answer(
+        R"({"b":0.019898,"include":["regime","exponents"],"cycles":20000,"max_impacts":100000})");
+    CHECK(a["exponents"]["verdict"] == "regular");
+    CHECK(a["regime"]["description"].get<std::string>().starts_with("quasi-periodic"));
+    CHECK(
+        std::abs(a["regime"]["quasi_periodic"]["rotation_number"].get<double>() - 0.0555158) <
+        1e-6);
+}

@@ -413,6 +413,10 @@ TEST_CASE("lengths scale together, and a map over b and G says that it repeats i
     CHECK(warned(map + R"(,"starts":[{},{"y0":0}]})"));
     CHECK_FALSE(warned(map + R"(,"starts":[{},{"x_dot0":0.01}]})"));
     CHECK_FALSE(warned(R"({"axes":[{"parameter":"b","values":[0.011,0.022]}]})"));
+    for (const char* law :
+         {R"({"gravity":0.01})", R"({"friction":0.001})",
+          R"({"restitution":{"speed":[0,0.01],"R":[0.8,0.6]}})"})
+        CHECK_FALSE(warned(map + R"(,"base":)" + law + "}"));
     CHECK(warned(
         R"({"base":{"m1":12,"f0":14,"damping_ratio":0.006,"mass_ratio":0.01,"f":14,"R":0.4},
             "axes":[{"parameter":"F","values":[0.0002,0.0004]},{"parameter":"b","values":[0.01]}]})"));

@@ -18,9 +18,10 @@ namespace {
 
 constexpr const char* quantities[] = {"lambda1", "lambda2", "x_rms", "z", "share_impacts"};
 constexpr std::size_t quantity_count = std::size(quantities);
-// Quantiles of Student's distribution with seven degrees of freedom for the two-sided probabilities
-// of one, two and three standard deviations.
-constexpr std::array<double, 3> quantiles = {1.0767, 2.4288, student_three_sigma};
+// Quantiles of Student's distribution with seven (exponents) and four degrees of freedom for the
+// two-sided probabilities of one, two and three standard deviations.
+constexpr std::array<double, 3> of_exponents = {1.0767, 2.4288, student_three_sigma},
+                                of_others = {1.1416, 2.8693, 6.6202};
 
 struct WithError {
     double value, error;
@@ -113,6 +114,7 @@ std::array<double, 3> outside(const std::vector<Estimates>& windows, std::size_t
     double mean = 0;
     for (const WithError& e : finite) mean += e.value / static_cast<double>(finite.size());
     std::array<double, 3> share{};
+    const auto& quantiles = quantity < 2 ? of_exponents : of_others;
     for (std::size_t k = 0; k < share.size(); ++k)
         share[k] = 100.0 *
                    static_cast<double>(std::ranges::count_if(

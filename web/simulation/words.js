@@ -23,7 +23,8 @@ function motionText({regime, exponents, energy}, units) {
   }
   if (regime.quasi_periodic) return regime.description;
   const {verdict} = exponents;
-  return verdict && verdict !== "not_decided" ? `${name}, ${verdict}` : name;
+  const window = verdict === "chaotic" ? " in this window" : "";
+  return verdict && verdict !== "not_decided" ? `${name}, ${verdict}${window}` : name;
 }
 
 /** The exponent of the orbit that the run converges to, from its largest multiplier. */

@@ -179,7 +179,7 @@ class LambdaDiagram extends Diagram {
     const values = points.map(lambda(0)).filter((v) => v !== null);
     const [least, most] = [Math.min(...values), Math.max(...values)].map(short);
     const ends = values.length ? `λ₁ from ${least} to ${most}; ` : "";
-    const summary = `${ends}chaotic at ${chaotic} of ${points.length} points`;
+    const summary = `${ends}chaotic over the measured cycles at ${chaotic} of ${points.length} points`;
     return {title: "Largest exponent λ₁", summary};
   }
 }

@@ -121,7 +121,9 @@ struct AnalysisObservers {
         observe(w.parts.moduli || w.parts.matrices, transfers);
         if (energy) list.push_back(&*energy);
         observe(w.parts.extremes != ExtremesWanted::none, extremes);
-        observe(w.parts.energy && w.parts.unattached, cycle_peaks);
+        observe(
+            w.parts.energy && (w.parts.unattached || w.parts.extremes == ExtremesWanted::all),
+            cycle_peaks);
         observe(w.parts.energy && w.parameters.G == 0, decay);
         observe(w.parts.manifold, half_cycles);
         if (compared) list.push_back(&*compared);
@@ -164,6 +166,7 @@ struct AnalysisConclusion {
         if (w.parts.section) sections();
         if (w.parts.energy) energy();
         a.extremes = o.extremes.result(a.reached);
+        a.extremes.x_max_least = o.cycle_peaks.least();
         stationarity();
         if (w.parts.regime) regime();
         if (w.parts.manifold) manifold();
@@ -362,7 +365,8 @@ struct AnalysisConclusion {
         if (r.search_stopped) warn(warning::OrbitSearchStopped{});
         if (r.capture && r.capture->chaotic_before == true)
             warn(warning::CapturedTransient{
-                r.capture->before[0], r.capture->after[0], r.capture->tau});
+                r.capture->before[0], r.capture->after[0], r.capture->tau,
+                r.capture->tau.value_or(infinity) <= a.outcome.tau});
     }
 
     void manifold() {

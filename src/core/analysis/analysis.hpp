@@ -193,11 +193,12 @@ struct StretchesCut {
     std::size_t seen, most;
 };
 struct OrbitSearchStopped {};  ///< the search for a periodic orbit was interrupted
-/// A chaotic transient captured by an orbit: lambda1 before and after; the time of capture if it
-/// lies in the run.
+/// A chaotic transient captured by an orbit: lambda1 before and after; the time of capture, and
+/// whether the run includes it.
 struct CapturedTransient {
     double before, after;
     std::optional<double> tau;
+    bool in_run;
 };
 /// The means of a window differ between its halves by more than chance permits, so that standard
 /// errors do not cover: lambda1, x_rms, or both. `conservative`: without dissipation (zeta = 0,

@@ -8,6 +8,7 @@ namespace vines {
 
 struct Extremes {
     double x_acceleration = 0;  ///< of |x''| between impacts, m per unit of tau squared
+    double x_max_least = 0;     ///< smallest maximum of |x| in a forcing cycle, m
     double x_relative = 0;      ///< of |x - x_b|, x_b being the displacement of the base, m
     double impact_speed = 0;    ///< of |x' - y'| before an impact, m per unit of tau
     double impulse = 0;         ///< of an impact, per m1: epsilon |jump of y'|, m per unit of tau

@@ -328,7 +328,10 @@ void settle_later(
         s = on.states.back();
         bool tried = false;
         r.orbit = orbit_at_end(p, on.states, scale, near_return_if_chaotic, e.stop, tried);
-        if (!r.orbit) continue;
+        if (!r.orbit) {
+            r.followed += round;
+            continue;
+        }
         const OrbitComparison comparison(p, *r.orbit, scale, round, s);
         long from = round;
         while (from > 0 && comparison.is_near(from - 1, on.states[from - 1])) --from;

@@ -69,7 +69,8 @@ struct Regime {
         std::optional<double> next_contact;  ///< tau; empty if it is later than 10,000 cycles
     };
     std::optional<Untouched> untouched;  ///< end of a run without contacts in its window
-    bool search_stopped = false;         ///< RegimeEvidence::stop ended the search for an orbit
+    long followed = 0;  ///< cycles by which a chaotic run was continued without being captured
+    bool search_stopped = false;  ///< RegimeEvidence::stop ended the search for an orbit
 };
 
 // Longest period that is searched for, cycles.

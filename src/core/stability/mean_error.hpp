@@ -25,7 +25,7 @@ inline constexpr int error_steps = 128;
 /// error_steps.
 inline constexpr std::size_t fewest_error_steps = 32;
 
-/// Degrees of freedom of all standard errors.
+/// Degrees of freedom of the standard errors of exponents.
 inline constexpr int degrees_of_freedom = 7;
 /// Probability of an interval of mean +- student_95 standard errors, and the quantile.
 inline constexpr double interval_level = 0.95, student_95 = 2.364624251010299;
@@ -58,7 +58,7 @@ private:
 double error_of_sum(std::span<const double> steps);
 /// The same for quantities that slow modulations of the amplitude dominate: the larger of the
 /// errors by eight and by four tapers, since eight average over too wide a band where the density
-/// rises towards frequency zero.
+/// rises towards frequency zero. Four degrees of freedom.
 double error_of_modulated_sum(std::span<const double> steps);
 
 /// Difference of the means of both halves over its standard error, by four tapers in each half: six

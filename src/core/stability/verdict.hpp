@@ -50,8 +50,8 @@ Growth growth_of(const TransferProduct& product);
 /// Returns chaotic or not_decided.
 Verdict verdict_by_exponents(const Growth& growth);
 
-/// True if the exponents are those of a motion on a torus: the first one is zero within its error
-/// and without growth or decay in the second half of the window, where the second one is negative.
+/// True if the exponents are those of a motion on a torus: deviations neither grow nor shrink by
+/// e^2.77 in the second half of the window, and the second exponent is negative there.
 bool can_be_quasi_periodic(const Growth& growth);
 
 /// Least growth, as a logarithm, that shows a chaotic transient.

@@ -84,7 +84,7 @@ double lambda1_until(const TransferProduct& product, double tau) {
 }
 
 /// PointResult::chaotic_cycles.
-std::optional<double> chaotic_cycles_of(const Analysis& a, double settle_cycles, double cycle) {
+std::optional<double> chaotic_cycles_of(const Analysis& a, double cycle) {
     const auto& capture = a.regime->capture;
     const TransferProduct& product = a.exponents->product;
     const bool is_chaotic = a.exponents->judgement.verdict == Verdict::chaotic;
@@ -92,7 +92,7 @@ std::optional<double> chaotic_cycles_of(const Analysis& a, double settle_cycles,
         !(capture && chaotic_transient_end(product.qr_history(), product.start_tau())))
         return std::nullopt;
     if (capture && capture->tau) return *capture->tau / cycle;
-    return a.reached.to / cycle + (is_chaotic && !capture ? settle_cycles : 0);
+    return a.reached.to / cycle + static_cast<double>(a.regime->followed);
 }
 
 /// Rms of the steady motion without absorber, or, if none exists, from the same start.
@@ -129,11 +129,14 @@ double objective_of(const PointResult& r, Objective objective, const ObjectiveUn
 }
 
 /// Exponents, verdict and regime.
-void set_conclusions(PointResult& r, Analysis& a, const PointOptions& options, double cycle) {
+void set_conclusions(PointResult& r, Analysis& a, double cycle) {
     r.lambda = a.exponents->product.qr();
     r.standard_error = a.exponents->growth.standard_error;
     r.verdict = final_verdict(a.exponents->judgement.verdict, *a.regime);
-    r.chaotic_cycles = chaotic_cycles_of(a, options.settle_cycles, cycle);
+    r.stationary = std::ranges::none_of(a.warnings, [](const Warning& w) {
+        return std::holds_alternative<warning::NotStationary>(w);
+    });
+    r.chaotic_cycles = chaotic_cycles_of(a, cycle);
     if (const auto& capture = a.regime->capture) {
         r.lambda1_before = lambda1_until(a.exponents->product, capture->tau.value_or(infinity));
         r.lambda1_after = capture->after[0];
@@ -161,7 +164,7 @@ PointResult measure(
     const EnergyBalance& energy = a.energy->balance;
     r.outcome = a.outcome;
     r.measured = true;
-    if (!options.amplitudes_alone) set_conclusions(r, a, options, p.cycle());
+    if (!options.amplitudes_alone) set_conclusions(r, a, p.cycle());
     r.x_max = energy.peak;
     r.x_rms = energy.rms;
     r.x_rms_error = energy.rms_error;

@@ -82,6 +82,7 @@ struct PointResult {
     /// With PointOptions::carry: state at the first whole cycle at or after the measured part.
     std::optional<State> at_end;
     Exponents lambda, standard_error;  ///< qr
+    bool stationary = true;  ///< false: standard errors do not cover (warning::NotStationary)
     /// On the orbit that captures the motion, if one does; otherwise on the measured part.
     Verdict verdict;
     /// lambda1 up to the capture and of the orbit; empty without a capture.

@@ -235,6 +235,18 @@ TEST_CASE("a captured chaotic transient is reported with lambda1 before and afte
     CHECK(warning->tau.has_value());
 }
 
+TEST_CASE("standard errors are not said to cover where the energy drifts for ever") {
+    Parameters conservative = table1(0.022, Damping::closed_form);
+    conservative.lambda = 0, conservative.R_plus = conservative.R_minus = 1;
+    const Analysis drift = analyse(request(conservative, 1709, {.exponents = true}));
+    REQUIRE(only<warning::NotStationary>(drift.warnings));
+    CHECK(only<warning::NotStationary>(drift.warnings)->conservative);
+
+    const Analysis steady =
+        analyse(request(table1(0.025, Damping::closed_form), 5000, {.exponents = true}));
+    CHECK_FALSE(only<warning::NotStationary>(steady.warnings));
+}
+
 TEST_CASE("walls with different R have no manifold") {
     Parameters p = table1(0.022, Damping::closed_form);
     p.R_minus = 0.5;

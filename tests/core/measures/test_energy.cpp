@@ -1,7 +1,9 @@
 #include <doctest/doctest.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <vector>
 
 #include "../support.hpp"
 #include "core/measures/energy.hpp"
@@ -163,7 +165,11 @@ TEST_CASE("the standard errors of x_rms, the fraction of impacts and z are those
     constexpr int windows = 200;
     struct Sum {
         double value = 0, square = 0, variance = 0;
-        void add(double v, double error) { value += v, square += v * v, variance += error * error; }
+        std::vector<std::array<double, 2>> all{};  // values and errors
+        void add(double v, double error) {
+            value += v, square += v * v, variance += error * error;
+            all.push_back({v, error});
+        }
         /// Stated error over the standard deviation.
         double ratio() const { return std::sqrt(variance / (square - value * value / windows)); }
     } rms, share, z;
@@ -182,6 +188,11 @@ TEST_CASE("the standard errors of x_rms, the fraction of impacts and z are those
     for (const Sum& s : {rms, share, z}) {
         CHECK(s.ratio() > 0.75);
         CHECK(s.ratio() < 1.25);
+        // Nominally 10 of 200 lie outside their 95 % intervals.
+        const auto outside = std::ranges::count_if(s.all, [&](const auto& window) {
+            return std::abs(window[0] - s.value / windows) > 2.776 * window[1];
+        });
+        CHECK(outside < 20);
     }
 }
 
