@@ -254,7 +254,11 @@ SystemFields read_family(ContinueRequest& r, const Json& given) {
     const auto at = value_in(fields, r.parameter);
     if (!at)
         refuse(
-            "/base", r.parameter + " is a parameter of a system in SI: the base must be one, too");
+            "/base",
+            r.parameter == "inclination" && fields.gravity
+                ? "the base states its gravity: continue along gravity, or state the "
+                  "inclination instead"
+                : r.parameter + " is a parameter of a system in SI: the base must be one, too");
     r.at = *at;
     Json whole = base;
     whole[r.parameter] = r.at;

@@ -20,10 +20,12 @@ namespace vines::api {
 namespace {
 
 constexpr double least_b_of_amplitude = 0.05, most_b_of_amplitude = 1.2;
+/// Names of the amplitude of a load.
+constexpr const char* amplitudes[] = {"acceleration", "F", "initial_velocity"};
 constexpr Range amplitude_range{1e-9, 1e6}, f_range{1e-3, 1e5}, b_range{1e-9, 1e3};
 
 // Intervals that can be given as one number.
-constexpr const char* intervals[] = {"f", "acceleration", "F", "b"};
+constexpr const char* intervals[] = {"f", "acceleration", "F", "initial_velocity", "b"};
 
 /// Replaces a number by the list that `as` makes of it.
 void list_of_number(Json& given, const char* name, const std::function<Json(const Json&)>& as) {
@@ -67,21 +69,48 @@ void read_host(DesignRequest& r, const Json& given, std::vector<FieldError>& err
             errors.push_back(
                 {std::string("/base/") + name, base[name], nullptr,
                  std::string(name) + " is no field of a host: a design chooses b and R, and gives "
-                                     "f and acceleration or F beside base"});
+                                     "f and acceleration or F, or forcing, beside base"});
     if (!errors.empty()) return;
     Json whole = base;
-    whole.update({{"f", given["f"][0]}, {"F", 1e-3}});
+    if (given.contains("forcing")) whole["forcing"] = given["forcing"];
+    else whole.update({{"f", given.contains("f") ? given["f"][0] : Json(1)}, {"F", 1e-3}});
     // The masses to choose from stand for that of the base.
     if (given.contains("m2") && !given["m2"].empty())
         whole.erase("mass_ratio"), whole["m2"] = given["m2"][0];
+    const auto take = [&](const std::vector<FieldError>& found) {
+        for (const FieldError& e : found)
+            add_errors(e.pointer.starts_with("/forcing") ? "" : "/base", {e}, errors);
+    };
     try {
         const StartedSystem host = read_started_system(whole);
-        add_errors("/base", host.errors, errors);
+        take(host.errors);
         r.host = *host.system.si;
         r.plan.host.damping = host.system.parameters.damping;
+        if (given.contains("forcing"))
+            r.plan.host.load = [field = std::make_shared<ForcingField>(given["forcing"])](
+                                   const SiParameters& si) { return field->load(si); };
     } catch (const Problem& problem) {
-        add_errors("/base", problem.errors, errors);
+        take(problem.errors);
     }
+}
+
+/// A design has one kind of load: f with acceleration or F, forcing, or initial_velocity.
+void add_load_errors(const Json& given, std::vector<FieldError>& errors) {
+    for (const char* own : {"forcing", "initial_velocity"}) {
+        if (!given.contains(own)) continue;
+        for (const char* name : {"f", "acceleration", "F", "starts", "initial_velocity"})
+            if (given.contains(name) && name != std::string_view(own))
+                errors.push_back(
+                    {std::string("/") + name, given[name], nullptr,
+                     fmt::format("{} must not be given together with {}", name, own)});
+        return;
+    }
+    if (!given.contains("f"))
+        errors.push_back(
+            {"/f", nullptr, nullptr, "a design needs f, or forcing or initial_velocity"});
+    if (given.contains("acceleration") == given.contains("F"))
+        errors.push_back(
+            {"/acceleration", nullptr, nullptr, "a design needs either acceleration or F"});
 }
 
 /// The checked request without what was given as a number in place of a list.
@@ -99,13 +128,9 @@ Json with_lists(const Json& object) {
         if (checked.contains(name) && checked[name].is_number()) checked.erase(name);
     std::vector<FieldError> errors = check(design_fields(), checked);
     for (const char* name : intervals) list_of_number(given, name, pair);
-    for (const char* name : {"base", "f"})
-        if (!given.contains(name))
-            errors.push_back(
-                {std::string("/") + name, nullptr, nullptr, "a design needs base and f"});
-    if (given.contains("acceleration") == given.contains("F"))
-        errors.push_back(
-            {"/acceleration", nullptr, nullptr, "a design needs either acceleration or F"});
+    if (!given.contains("base"))
+        errors.push_back({"/base", nullptr, nullptr, "a design needs a base"});
+    add_load_errors(given, errors);
     if (!errors.empty()) refuse(std::move(errors));
     return given;
 }
@@ -115,9 +140,7 @@ Json designed(const Json& given, const char* name) {
 }
 
 const char* name_in(const DesignRequest& r, Toleranced what) {
-    return what != Toleranced::amplitude ? enum_name(what)
-           : r.is_acceleration           ? "acceleration"
-                                         : "F";
+    return what == Toleranced::amplitude ? r.amplitude_name.c_str() : enum_name(what);
 }
 
 /// A checked distribution; errors are relative to the tolerances.
@@ -179,14 +202,23 @@ void read_tolerances(DesignRequest& r, const Json& given, std::vector<FieldError
 
 // --- The answer ---
 
+/// Null without a band.
+Json frequency(const DesignRequest& r, double f) {
+    return r.plan.host.is_harmonic() ? Json(f) : Json(nullptr);
+}
+
 Json described(const DesignRequest& r, const DesignPoint& p) {
-    return {{"b", p.b},   {"R", p.R},
-            {"m2", p.m2}, {r.objective, finite_or_null(p.objective)},
-            {"f", p.f},   {r.is_acceleration ? "acceleration" : "F", p.amplitude * r.amplitude}};
+    return {
+        {"b", p.b},
+        {"R", p.R},
+        {"m2", p.m2},
+        {r.objective, finite_or_null(p.objective)},
+        {"f", frequency(r, p.f)},
+        {r.amplitude_name, p.amplitude * r.amplitude}};
 }
 
 Json described(const DesignRequest& r, const BandMaximum& m) {
-    return {{r.objective, finite_or_null(m.value)}, {"f", m.f}};
+    return {{r.objective, finite_or_null(m.value)}, {"f", frequency(r, m.f)}};
 }
 
 Json described(const DesignRequest& r, const LinearAbsorber& t, const BandMaximum& m) {
@@ -205,6 +237,7 @@ std::string quantity_text(const DesignRequest& r, double value) {
     switch (r.plan.objective) {
         case Objective::x_acceleration_max: return fmt::format("{:.3g} m/s^2", value);
         case Objective::impact_speed_max: return fmt::format("{:.3g} m/s", value);
+        case Objective::decay_time: return fmt::format("{:.3g} s", value);
         default: return fmt::format("{:.3g} mm", 1000 * value);
     }
 }
@@ -214,9 +247,11 @@ std::string recommendation_of(const DesignRequest& r, const Design& d) {
     const double value = d.best.objective, without = d.without.value,
                  damper = d.with_tuned_mass_damper.value;
     std::string text = fmt::format(
-        "A cavity with b = {:.3g} mm and R = {:.2g} for a ball of {:.3g} g keeps {} at {} over the "
-        "band",
-        1000 * d.best.b, d.best.R, 1000 * d.best.m2, r.objective, quantity_text(r, value));
+        "A cavity with b = {:.3g} mm and R = {:.2g} for a ball of {:.3g} g keeps {} at {} {}",
+        1000 * d.best.b, d.best.R, 1000 * d.best.m2, r.objective, quantity_text(r, value),
+        r.plan.host.load                   ? "under this load"
+        : r.plan.host.initial_velocity > 0 ? "after this impulse"
+                                           : "over the band");
     if (r.plan.objective == Objective::impact_speed_max) return text + ".";
     text += fmt::format(
         "; without absorber it is {}, with a tuned mass damper of the same mass (frequency ratio "
@@ -229,8 +264,7 @@ std::string recommendation_of(const DesignRequest& r, const Design& d) {
     if (!(value < clearly * without))
         return text + ". The cavity does not help: build the tuned mass damper.";
     if (damper < clearly * value) return text + ". Build the tuned mass damper.";
-    return text + (value < clearly * damper ? ". Build the cavity."
-                                            : ". Both are equally good over this band.");
+    return text + (value < clearly * damper ? ". Build the cavity." : ". Both are equally good.");
 }
 
 /// In ascending order.
@@ -255,7 +289,7 @@ Json response_columns(const DesignRequest& r, const Design& d) {
         return column(d.response, [member](const DesignResponse& at) { return at.*member; });
     };
     return {
-        {"f", list(&DesignResponse::f)},
+        {"f", column(d.response, [&](const DesignResponse& at) { return frequency(r, at.f); })},
         {r.objective + "_worst_start", list(&DesignResponse::worst)},
         {r.objective + "_best_start", list(&DesignResponse::best)},
         {"without", list(&DesignResponse::without)},
@@ -355,13 +389,21 @@ DesignRequest read_design_request(const Json& object) {
     r.given = object;
     std::vector<FieldError> errors;
     DesignPlan& plan = r.plan;
-    plan.f = interval_of(given["f"], "f", f_range, errors);
-    r.is_acceleration = given.contains("acceleration");
-    const char* amplitude_name = r.is_acceleration ? "acceleration" : "F";
-    const Interval amplitude =
-        interval_of(given[amplitude_name], amplitude_name, amplitude_range, errors);
-    r.amplitude = amplitude.to;
-    plan.amplitude_ratio = amplitude.from / amplitude.to;
+    r.amplitude_name = "load_factor";
+    for (const char* name : amplitudes)
+        if (given.contains(name)) {
+            const Interval i = interval_of(given[name], name, amplitude_range, errors);
+            r.amplitude_name = name, r.amplitude = i.to, plan.amplitude_ratio = i.from / i.to;
+        }
+    const bool harmonic = given.contains("f");
+    if (harmonic) {
+        plan.f = interval_of(given["f"], "f", f_range, errors);
+        plan.host.base_amplitude = [a = r.amplitude,
+                                    is = given.contains("acceleration")](double f) {
+            const double omega = 2 * std::numbers::pi * f;
+            return is ? a / (omega * omega) : a;
+        };
+    } else if (given.contains("initial_velocity")) plan.host.initial_velocity = r.amplitude;
     plan.R = numbers_within(designed(given, "R"), "R", {0, 1}, errors);
     if (errors.empty()) read_host(r, given, errors);
     if (!errors.empty()) refuse(std::move(errors));
@@ -370,30 +412,30 @@ DesignRequest read_design_request(const Json& object) {
                   : std::vector{r.host.m2};
     if (!errors.empty()) refuse(std::move(errors));
     plan.host.si = r.host;
-    plan.host.base_amplitude = [a = r.amplitude, is = r.is_acceleration](double f) {
-        const double omega = 2 * std::numbers::pi * f;
-        return is ? a / (omega * omega) : a;
-    };
+    plan.transient_cycles = designed(given, "transient_cycles").get<double>();
+    plan.cycles = designed(given, "cycles").get<double>();
     if (given.contains("b")) plan.b = interval_of(given["b"], "b", b_range, errors);
     else {
         const double most =
             band_maximum(
-                [&](double f) { return linear_response(plan.host, {}, Objective::x_max, f); },
-                plan.f)
+                [&](double f) { return linear_response(plan, {}, Objective::x_max, f); }, plan.f)
                 .value;
         plan.b = {least_b_of_amplitude * most, most_b_of_amplitude * most};
     }
     read_tolerances(r, given, errors);
     if (!errors.empty()) refuse(std::move(errors));
-    r.objective = designed(given, "objective");
+    r.objective = given.value(
+        "objective", plan.host.load                   ? "x_relative_max"
+                     : plan.host.initial_velocity > 0 ? "decay_time"
+                                                      : "x_max");
     plan.objective = enum_value<Objective>(r.objective);
     plan.mean = designed(given, "over") == "mean";
-    plan.default_set = designed(given, "starts") != "one";
+    if (r.objective == "decay_time" && plan.host.initial_velocity == 0)
+        refuse("/objective", "decay_time needs initial_velocity");
+    plan.default_set = harmonic && designed(given, "starts") != "one";
     plan.b_count =
         plan.b.from < plan.b.to ? static_cast<int>(designed(given, "b_count").get<double>()) : 1;
-    plan.f_count = static_cast<int>(designed(given, "f_count").get<double>());
-    plan.transient_cycles = designed(given, "transient_cycles").get<double>();
-    plan.cycles = designed(given, "cycles").get<double>();
+    plan.f_count = !harmonic ? 1 : static_cast<int>(designed(given, "f_count").get<double>());
     return r;
 }
 

@@ -12,8 +12,9 @@ namespace vines::api {
 struct DesignRequest {
     Json given;  ///< as requested
     DesignPlan plan;
-    double amplitude;       ///< the largest, m/s^2 or m
-    bool is_acceleration;   ///< of `amplitude`
+    /// The largest amplitude, and its name: acceleration, m/s^2; F, m; 1 under a load.
+    double amplitude = 1;
+    std::string amplitude_name;
     std::string objective;  ///< its name
     SiParameters host;
 };

@@ -158,4 +158,12 @@ TEST_CASE("invalid continuations are refused by field") {
         read_continue_request(
             parse_object(R"({"parameter":"b","from":0.01,"to":0.04,"switch":true})"))
             .plan.switches == 2);
+    try {
+        read_continue_request(parse_object(
+            R"({"base":{"m1":12,"f0":14,"damping_ratio":0.006,"mass_ratio":0.01,"F":0.0004,"f":14,
+                "gravity":1e-4},"parameter":"inclination","from":-0.1,"to":0.1})"));
+        FAIL("accepted");
+    } catch (const Problem& problem) {
+        CHECK(problem.errors.front().detail.starts_with("the base states its gravity"));
+    }
 }

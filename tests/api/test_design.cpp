@@ -56,6 +56,41 @@ TEST_CASE("a design's faults are named at their fields") {
         Pointers{"/indices"});
 }
 
+TEST_CASE("under a load a design has neither frequency nor amplitude") {
+    Json request = {
+        {"base", design_of_machine()["base"]},
+        {"forcing", {{"kind", "half_sine"}, {"acceleration_m_s2", 30}, {"duration_s", 0.03}}},
+        {"R", {0.2, 0.6}},
+        {"b_count", 6},
+        {"cycles", 30}};
+    const DesignRequest r = read_design_request(request);
+    CHECK(r.objective == "x_relative_max");
+    vines::RunControl control;
+    DesignCount count = 0;
+    Json last;
+    CHECK(run_design(
+        r, 2, control, count, [&](const std::string& line) { last = Json::parse(line); }));
+    CHECK(last["best"]["f"].is_null());
+    CHECK(last["best"]["load_factor"] == 1);
+    CHECK(last["best"]["activation"].is_null());
+    CHECK(last["response"]["f"] == Json::array({nullptr}));
+    CHECK(
+        last["tuned_mass_damper"]["x_relative_max"] <
+        1.001 * last["without"]["x_relative_max"].get<double>());
+    CHECK(last["sentence"].get<std::string>().find("under this load") != std::string::npos);
+    for (const char* harmonic : {"f", "acceleration", "starts"}) {
+        Json both = request;
+        both[harmonic] = harmonic == std::string("starts") ? Json("one") : Json(8);
+        CHECK(
+            problem_of([&] { read_design_request(both); }).errors.front().pointer ==
+            std::string("/") + harmonic);
+    }
+    request["forcing"]["duration_s"] = -1;
+    CHECK(
+        problem_of([&] { read_design_request(request); }).errors.front().pointer ==
+        "/forcing/duration_s");
+}
+
 TEST_CASE("a range of amplitudes and lists of R and m2 are read, and b follows from the host") {
     Json request = design_of_machine();
     request["acceleration"] = {2, 5};

@@ -202,6 +202,12 @@ const designs = ["x_max", "x_rms", "x_relative_max", "x_acceleration_max", "impa
   }),
 );
 
+designs.push_back({
+  base: designs[0].base,
+  forcing: {kind: "half_sine", acceleration_m_s2: 30, duration_s: 0.03},
+  ...{R: 0.4, b_count: 3, cycles: 20},
+});
+
 /** The lines of a stream. */
 async function linesOf(url, request) {
   const response = await fetch(url, {method: "POST", body: JSON.stringify(request)});

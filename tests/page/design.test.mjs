@@ -65,3 +65,18 @@ test("the design fits a narrow screen", async () => {
   assert.deepEqual(await beyond(page, "#panel-design :is(canvas, select, figure, button)"), []);
   await page.close();
 });
+
+test("under a shock the absorbers are compared without a band, and the best one opens under it", async () => {
+  const shock = encodeURIComponent("kind=half_sine; acceleration_m_s2=30; duration_s=0.03");
+  const page = await visit(
+    `?tab=design&${machine}&m2=0.04&R=0.2&forcing=${shock}&b_count=6&cycles=40`,
+  );
+  assert.match(await page.textContent("#design-sentence"), /under this load/);
+  assert.equal(await page.isVisible("#figure-design-response"), false);
+  assert.match(await page.textContent("#design-walls"), /of the load\.$/);
+  await page.click("#design-simulate");
+  await drawn(page, 1);
+  assert.match(page.url(), /forcing=/);
+  assert.deepEqual(browser.complaints, []);
+  await page.close();
+});

@@ -338,8 +338,11 @@ test("the default set of starts shows the worst motion, the best as rings, the a
     await tip(page),
     /Click to simulate this point, from its start: (middle|no contact|previous point|next point)$/,
   );
-  await page.selectOption("#sweep-quantity", "z");
+  await page.selectOption("#sweep-quantity", "impact_speed");
   assert.equal(await page.isVisible("#sweep-free"), false);
+  const speeds = await hash(page, "#plot-sweep-other canvas");
+  await page.selectOption("#sweep-quantity", "z");
+  assert.notEqual(await hash(page, "#plot-sweep-other canvas"), speeds);
   assert.equal(await pixels(page, "#plot-sweep-other canvas", "wall"), 0);
   const {middle, "at the wall": wall, "without the absorber": free} = await peaks(page);
   assert.ok(Number(middle[0]) > 1.3 * Number(wall[0]), `${middle[0]} beside ${wall[0]} mm`);

@@ -56,7 +56,8 @@ export class DesignTab extends RequestTab {
   }
 
   get name() {
-    return this.asking?.objective ?? "x_max";
+    const {objective, forcing} = this.asking ?? {};
+    return objective ?? (forcing ? "x_relative_max" : "x_max");
   }
 
   /** {base, f, ...} of the form. */
@@ -137,7 +138,8 @@ export class DesignTab extends RequestTab {
     const {sentence} = this.done;
     setTexts({"design-sentence": sentence});
     this.showCards();
-    this.drawResponse();
+    $("figure-design-response").hidden = !!this.asking.forcing;
+    if (!this.asking.forcing) this.drawResponse();
     this.showTolerances();
   }
 
@@ -228,16 +230,21 @@ export class DesignTab extends RequestTab {
     $("design-margins").replaceChildren(...tableOf(head, rows));
     const {impact_speed_max: speed, impulse_max: impulse, impacts_per_second: rate} = best;
     const works = [best.works_from, best.works_to].map((v) => (v == null ? "?" : round(v)));
+    const {F, forcing} = this.asking;
+    const unit = forcing ? "of the load" : `${F ? "m" : "m/s²"} at the base`;
     setTexts({
-      "design-walls": `The walls must stand ${round(rate)} impacts per second, of up to ${round(speed)} m/s and ${round(impulse)} N s. At least half of the reduction remains from ${works[0]} to ${works[1]} ${this.asking.F ? "m" : "m/s²"} at the base.`,
+      "design-walls": `The walls must stand ${round(rate)} impacts per second, of up to ${round(speed)} m/s and ${round(impulse)} N s. At least half of the reduction remains from ${works[0]} to ${works[1]} ${unit}.`,
     });
   }
 
   /** The simulation of the best absorber where it is worst. */
   worstCase() {
     const {b, R, m2, f, acceleration, F} = this.done.best;
+    const {base, forcing} = this.asking;
+    const absorber = {...base, b, R, m2};
+    if (forcing) return {...absorber, forcing};
     const load = acceleration == null ? {F} : {acceleration};
-    return {...this.asking.base, b, R, m2, f, ...load, cycles: cyclesOfWorst};
+    return {...absorber, f, ...load, cycles: cyclesOfWorst};
   }
 
   about(plot) {

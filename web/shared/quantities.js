@@ -27,7 +27,7 @@ const mm = (metres) => (metres == null ? null : metres * 1000);
 /**
  * of: the value at a point, by default the field of the same name; levels: horizontal lines; free:
  * the value without the absorber; diverging: the colour scale is centred on 0; categories: the
- * values are names.
+ * values are names; si: what differs for a system in SI.
  */
 export const quantities = {
   lambda1: {
@@ -62,9 +62,28 @@ export const quantities = {
     title: "fraction of contacts synchronised",
     levels: [1],
   },
+  impact_speed: {
+    label: "fastest impact (mm per unit of τ)",
+    title: "fastest impact",
+    of: (p) => mm(p.relative_speed_max),
+    si: {label: "fastest impact (mm/s)", of: (p) => mm(p.impact_speed_max)},
+  },
+  impact_rate: {
+    label: "impacts per unit of τ",
+    title: "rate of impacts",
+    si: {label: "impacts per second", of: (p) => p.impacts_per_second ?? null},
+  },
 };
 // Quantities of the lowest diagram over one axis; their axis starts at 0.
-const oneAxisQuantities = ["z", "x_rms_ratio", "share_impacts", "x_max", "synchronised"];
+const oneAxisQuantities = [
+  "z",
+  "x_rms_ratio",
+  "share_impacts",
+  "x_max",
+  "synchronised",
+  "impact_speed",
+  "impact_rate",
+];
 for (const name of oneAxisQuantities) quantities[name].from0 = true;
 for (const [name, quantity] of Object.entries(quantities)) quantity.of ??= (p) => p[name] ?? null;
 
@@ -72,7 +91,10 @@ const reducedTo = ["x_max", "where", "z"];
 
 /** A quantity of a sweep's points; `where` is a value of the axis removed by a reduction. */
 export function quantityOf(name, data) {
-  if (name !== "where") return quantities[name];
+  if (name !== "where") {
+    const {si, ...quantity} = quantities[name];
+    return data.parameters?.si ? {...quantity, ...si} : quantity;
+  }
   const {symbol, unit, factor} = data.folded;
   const title = `${symbol} of the peak`;
   const of = ({where}) => (where == null ? null : where * factor);

@@ -15,7 +15,7 @@ Keys objective_keys() {
     for (const std::string& name : objectives())
         keys.push_back(optional(
             {name, or_null(number()),
-             "largest value over the band, m, m/s or m/s^2; null if a motion has too many "
+             "largest value over the band, m, m/s, m/s^2 or s; null if a motion has too many "
              "impacts"}));
     return keys;
 }
@@ -27,9 +27,11 @@ Keys absorber_keys() {
                {"m2", number(), "mass of the ball, kg"}} +
            objective_keys() +
            Keys{
-               {"f", number(), "frequency of the worst case, Hz"},
+               {"f", or_null(number()), "frequency of the worst case, Hz; null without a band"},
                optional({"acceleration", number(), "amplitude of the base there, m/s^2"}),
-               optional({"F", number(), "the same as a displacement, m"})};
+               optional({"F", number(), "the same as a displacement, m"}),
+               optional({"load_factor", number(), "with forcing: factor on the load"}),
+               optional({"initial_velocity", number(), "that of m1, m/s"})};
 }
 
 Json margin() {
@@ -43,12 +45,14 @@ Json margin() {
 
 Json linear(const Keys& more) {
     return object_of(
-        objective_keys() + Keys{{"f", number(), "frequency of the largest value, Hz"}} + more);
+        objective_keys() +
+        Keys{{"f", or_null(number()), "frequency of the largest value, Hz; null without a band"}} +
+        more);
 }
 
 Keys response_keys() {
     const Json columns = list_of(or_null(number()));
-    Keys response = {{"f", columns, "frequencies, Hz"}};
+    Keys response = {{"f", columns, "frequencies, Hz; one null without a band"}};
     for (const std::string& name : objectives())
         for (const std::string start : {"worst", "best"})
             response.push_back(optional(

@@ -34,6 +34,12 @@ FieldTable tolerance_rows() {
 
 // NOLINTNEXTLINE(readability-function-size): a table
 const FieldTable& design_fields() {
+    Field forcing = *find(simulate_fields(), "forcing");
+    forcing.description =
+        "load instead of f and acceleration or F: a record or a formula, as of a run. The absorber "
+        "is judged from rest over the length of the load, or over transient_cycles and cycles of "
+        "the host for one without end or a shock";
+    forcing.fallback_note = "none";
     static const FieldTable table = grouped(
         "design",
         {{.name = "base",
@@ -45,7 +51,7 @@ const FieldTable& design_fields() {
           .type = FieldType::interval,
           .unit = "Hz",
           .description = "band of the forcing, or one frequency",
-          .fallback_note = "required"},
+          .fallback_note = "required, or forcing or initial_velocity"},
          {.name = "acceleration",
           .type = FieldType::interval,
           .unit = "m/s^2",
@@ -57,6 +63,13 @@ const FieldTable& design_fields() {
           .unit = "m",
           .description = "amplitude of the base's displacement instead of acceleration",
           .fallback_note = "required, or acceleration"},
+         forcing,
+         {.name = "initial_velocity",
+          .type = FieldType::interval,
+          .unit = "m/s",
+          .description = "velocity of m1 after an impulse, instead of a load; a range stands for "
+                         "all in it. The absorber is judged from there on over cycles of the host",
+          .fallback_note = "none"},
          {.name = "b",
           .type = FieldType::interval,
           .unit = "m",
@@ -75,8 +88,11 @@ const FieldTable& design_fields() {
          choice(
              "objective",
              "what shall be small: largest |x| or its rms, largest distance from the base, largest "
-             "|x''| of m1, or the fastest impact",
-             {"x_max", "x_rms", "x_relative_max", "x_acceleration_max", "impact_speed_max"},
+             "|x''| of m1, the fastest impact, or, with initial_velocity, the time in which the "
+             "energy falls to a tenth; the default with forcing is x_relative_max, with "
+             "initial_velocity decay_time",
+             {"x_max", "x_rms", "x_relative_max", "x_acceleration_max", "impact_speed_max",
+              "decay_time"},
              "x_max"),
          choice(
              "over", "worst: its largest value over band and amplitudes; mean: its mean",

@@ -65,7 +65,8 @@ inline constexpr EnumName<Objective> enum_names<Objective>[] = {
     {Objective::x_acceleration_max, "x_acceleration_max"},
     {Objective::impact_speed_max, "impact_speed_max"},
     {Objective::impulse_max, "impulse_max"},
-    {Objective::impacts_per_second, "impacts_per_second"}};
+    {Objective::impacts_per_second, "impacts_per_second"},
+    {Objective::decay_time, "decay_time"}};
 
 template <>
 inline constexpr EnumName<Toleranced> enum_names<Toleranced>[] = {
@@ -78,7 +79,9 @@ inline constexpr EnumName<Toleranced> enum_names<Toleranced>[] = {
     {Toleranced::b, "b"},
     {Toleranced::R, "R"},
     {Toleranced::amplitude, "acceleration"},
-    {Toleranced::amplitude, "F"}};
+    {Toleranced::amplitude, "F"},
+    {Toleranced::amplitude, "initial_velocity"},
+    {Toleranced::amplitude, "load_factor"}};
 
 /// The unknowns of a fit that a request can fix.
 template <>

@@ -334,15 +334,16 @@ struct AnalysisConclusion {
         const Parameters& p = w.parameters;
         EnergyResult& e = a.energy.emplace();
         e.balance = o.energy->balance(a.reached);
+        if (p.G == 0) {
+            const auto alone = unattached_decay(p, w.start, a.reached.from, decay_fractions);
+            e.decay = {
+                .with_absorber = {o.decay.tau[0], o.decay.tau[1]}, .without = {alone[0], alone[1]}};
+        }
         if (!w.parts.unattached) return;
         e.peak_least = o.cycle_peaks.least();
         e.unattached = unattached(p, w.start, a.reached.from, a.reached.to);
         e.rms_ratio = ratio(e.balance.rms, e.unattached->rms);
         e.peak_ratio = ratio(e.balance.peak, e.unattached->peak);
-        if (p.G != 0) return;
-        const auto alone = unattached_decay(p, w.start, a.reached.from, decay_fractions);
-        e.decay = {
-            .with_absorber = {o.decay.tau[0], o.decay.tau[1]}, .without = {alone[0], alone[1]}};
     }
 
     /// A motion that settles on a periodic orbit is not stationary either, but its capture is

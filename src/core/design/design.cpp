@@ -96,12 +96,22 @@ struct DesignSearch {
     RunControl& control;
     const DesignSink& sink;
 
-    Parameters system(double b, double R, SiParameters si, double f) const {
-        si.f = f, si.F = plan.host.base_amplitude(f);
+    Parameters system(
+        double b, double R, SiParameters si, double f,
+        const std::shared_ptr<const Load>& load) const {
         Parameters p;
-        p.epsilon = si.epsilon(), p.lambda = si.lambda(), p.G = si.G(), p.Omega = si.Omega();
+        p.load = load;
+        p.G = 0, p.Omega = 1;
+        if (plan.host.is_harmonic()) {
+            si.f = f, si.F = plan.host.base_amplitude(f);
+            p.G = si.G(), p.Omega = si.Omega();
+        }
+        p.epsilon = si.epsilon(), p.lambda = si.lambda();
         p.R_plus = p.R_minus = R, p.b = b, p.damping = plan.host.damping;
         return p;
+    }
+    std::shared_ptr<const Load> load_on(const SiParameters& si) const {
+        return plan.host.load ? plan.host.load(si) : nullptr;
     }
     SiParameters host_with(double m2) const {
         SiParameters si = plan.host.si;
@@ -110,7 +120,7 @@ struct DesignSearch {
     }
     PointOptions options() const {
         return {
-            .transient_cycles = plan.transient_cycles,
+            .transient_cycles = plan.host.initial_velocity > 0 ? 0 : plan.transient_cycles,
             .cycles = plan.cycles,
             .max_impacts = static_cast<long>(plan.cycles) * most_impacts_per_cycle,
             .carry = plan.default_set,
@@ -131,13 +141,15 @@ struct DesignSearch {
         const std::size_t size = m.b.size() * m.f.size();
         m.worst.resize(size), m.best.resize(size), m.start.resize(size);
         m.extreme.resize(size);
+        const auto load = load_on(si);
         SweepPlan sweep;
         sweep.grid.steps = {m.b.size(), m.f.size()};
         sweep.options = options();
         sweep.default_set = plan.default_set;
         sweep.system_at = [&](const Place& place) -> std::optional<PointSystem> {
-            const Parameters p = system(m.b[place.at[0]], R, si, m.f[place.at[1]]);
-            const State start = default_state(p);
+            const Parameters p = system(m.b[place.at[0]], R, si, m.f[place.at[1]], load);
+            State start = default_state(p);
+            start.x_dot = plan.host.initial_velocity / si.omega0();
             if (!validate(p, start).empty()) return std::nullopt;
             return PointSystem{p, start, options().max_impacts, nullptr, {si.omega0(), si.m1}};
         };
@@ -156,7 +168,8 @@ struct DesignSearch {
         double most = -infinity, sum = 0;
         for (const double a : amplitudes)
             for (std::size_t j = 0; j < m.f.size(); ++j) {
-                const double value = a * m.worst[m.at(m.row_of(b / a), j)];
+                const double value = (plan.objective == Objective::decay_time ? 1 : a) *
+                                     m.worst[m.at(m.row_of(b / a), j)];
                 sum += value;
                 if (value > most) most = value, p.f = m.f[j], p.amplitude = a;
             }
@@ -299,7 +312,8 @@ struct DesignSearch {
         sort_unique(with_one);
         const DesignMap m = map({p.b}, with_one, frequencies(), p.R, si);
         const auto ratio = [&](double a) {
-            return judged(m, p.b, {a}, p.R, p.m2).objective / a / d.without.value;
+            const double size = plan.objective == Objective::decay_time ? 1 : a;
+            return judged(m, p.b, {a}, p.R, p.m2).objective / size / d.without.value;
         };
         const double limit = 0.5 * (1 + ratio(1));
         const auto here = std::ranges::find(with_one, 1.0);
@@ -307,8 +321,8 @@ struct DesignSearch {
         while (low != with_one.begin() && ratio(low[-1]) <= limit) --low;
         while (high + 1 != with_one.end() && ratio(high[1]) <= limit) ++high;
         d.works = {*low, *high};
-        if (p.R < 1) {
-            const Parameters system = this->system(p.b, p.R, si, d.without.f);
+        if (p.R < 1 && plan.host.is_harmonic()) {
+            const Parameters system = this->system(p.b, p.R, si, d.without.f, nullptr);
             const double amplitude = linear_response(plan.host, {}, Objective::x_max, d.without.f);
             d.activation = manifold_fold(p.R, system.Omega, p.b).C / amplitude;
         }
@@ -320,9 +334,8 @@ struct DesignSearch {
         const SiParameters si = host_with(p.m2);
         for (std::size_t j = 0; j < m.f.size(); ++j)
             d.response.push_back(
-                {m.f[j], m.worst[j], m.best[j],
-                 linear_response(plan.host, {}, plan.objective, m.f[j]),
-                 linear_response(plan.host, d.tuned_mass_damper, plan.objective, m.f[j]),
+                {m.f[j], m.worst[j], m.best[j], linear_response(plan, {}, plan.objective, m.f[j]),
+                 linear_response(plan, d.tuned_mass_damper, plan.objective, m.f[j]),
                  m.extreme[j].impact_speed * si.omega0(),
                  si.m1 * m.extreme[j].impulse * si.omega0(),
                  m.extreme[j].impact_rate * si.omega0()});
@@ -335,7 +348,7 @@ struct DesignSearch {
         whole.amplitudes_alone = whole.carry = false;
         const std::size_t row = m.row_of(p.b / p.amplitude);
         const auto column = std::ranges::find(m.f, p.f) - m.f.begin();
-        const Parameters system = this->system(m.b[row], p.R, si, p.f);
+        const Parameters system = this->system(m.b[row], p.R, si, p.f, load_on(si));
         const State& start = m.start[m.at(row, static_cast<std::size_t>(column))];
         return run_point({system, start, whole.max_impacts}, start, whole, control);
     }
@@ -372,6 +385,17 @@ struct DesignSearch {
 
 }  // namespace
 
+double linear_response(
+    const DesignPlan& plan, const LinearAbsorber& absorber, Objective objective, double f) {
+    if (plan.host.is_harmonic()) return linear_response(plan.host, absorber, objective, f);
+    Parameters p;
+    p.Omega = 1;
+    if (plan.host.load) p.load = plan.host.load(plan.host.si);
+    const Interval measured =
+        measured_part(p, {.transient_cycles = plan.transient_cycles, .cycles = plan.cycles});
+    return linear_response(plan.host, absorber, objective, measured);
+}
+
 std::size_t design_runs(const DesignPlan& plan) {
     const double step =
                      elementary::log(plan.b_count > 1 ? plan.b.to / plan.b.from : amplitude_step) /
@@ -401,10 +425,12 @@ std::optional<Design> find_design(
     d.best = *best;
     const auto response = [&](const LinearAbsorber& t) {
         return band_maximum(
-            [&](double f) { return linear_response(plan.host, t, plan.objective, f); }, plan.f);
+            [&](double f) { return linear_response(plan, t, plan.objective, f); }, plan.f);
     };
     d.without = response({});
-    d.tuned_mass_damper = best_tuned_mass_damper(plan.host, best->m2, plan.objective, plan.f);
+    d.tuned_mass_damper = best_tuned_mass_damper(
+        plan.host.si.m1, best->m2, [&](const LinearAbsorber& t) { return response(t).value; },
+        threads);
     d.with_tuned_mass_damper = response(d.tuned_mass_damper);
     d.den_hartog = den_hartog(plan.host.si.m1, best->m2);
     d.with_den_hartog = response(d.den_hartog);

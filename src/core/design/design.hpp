@@ -1,6 +1,6 @@
 // Which absorber to build: the clearance b, the restitution coefficient R and the mass m2 with the
 // smallest response over a band of frequencies and a range of amplitudes of the base, over the
-// worst of all starts.
+// worst of all starts; or from rest, under a load or after an impulse.
 //
 // The motion depends on the amplitude of the base and on b by their ratio alone, a scale of all
 // lengths. One map over (b, f) at the largest amplitude therefore holds the responses at all
@@ -16,7 +16,7 @@ namespace vines {
 
 struct DesignPlan {
     Host host;                   ///< its base amplitude is the largest
-    Interval f;                  ///< band, Hz
+    Interval f = {};             ///< band of a harmonic host, Hz
     double amplitude_ratio = 1;  ///< smallest amplitude over the largest
     Interval b;                  ///< m
     std::vector<double> R, m2;
@@ -80,6 +80,10 @@ struct Design {
 using DesignSink = std::function<void(const DesignPoint&)>;
 /// Receives each sample, on any thread, one at a time.
 using SampleSink = std::function<void(const ToleranceSample&)>;
+
+/// The objective with a linear absorber, at a frequency if the host is harmonic.
+double linear_response(
+    const DesignPlan& plan, const LinearAbsorber& absorber, Objective objective, double f);
 
 /// Number of motions of the first map and of the samples; others are a few more.
 std::size_t design_runs(const DesignPlan& plan);

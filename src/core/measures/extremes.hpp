@@ -23,7 +23,8 @@ enum class Objective {
     x_acceleration_max,  ///< of |x''|, m/s^2
     impact_speed_max,    ///< of |x' - y'| before an impact, m/s
     impulse_max,         ///< of an impact, N s
-    impacts_per_second
+    impacts_per_second,
+    decay_time  ///< in which the energy of a free decay falls to a tenth, s
 };
 
 /// Extremes that a run records: those of impacts cost almost nothing, the others a quarter of the

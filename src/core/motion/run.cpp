@@ -45,12 +45,12 @@ Run::Run(
       longest_bounce_(p.faster_half_cycle()) {
     const double theta = p.Omega * limits.tau_start + p.phi();
     lo_ = {start.x, start.x_dot, elementary::sin(theta), elementary::cos(theta)};
-    // Positions far from the oscillator's rest round more than the values of x and y say.
-    const double apart = start.x - start.y,
-                 rounding = position_rounding(
-                     free_.bounds(lo_), std::abs(start.y) + p.epsilon * std::abs(p.gravity), p.b);
+    // Far from the oscillator's rest, where gravity holds it, positions round more than x and y
+    // say.
+    const double apart = start.x - start.y, sag = p.epsilon * std::abs(p.gravity),
+                 rounding = position_rounding(free_.bounds(lo_), std::abs(start.y) + sag, p.b);
     side_ = wall_of(start, p.b);
-    if (side_ == 0 && std::abs(apart) >= p.b - rounding) side_ = sign_of(apart);
+    if (side_ == 0 && sag > 0 && std::abs(apart) >= p.b - rounding) side_ = sign_of(apart);
     end_rounding_ = 0.5 * (limits.tau_end - std::nextafter(limits.tau_end, 0));
     relative_speed_ = start.x_dot - start.y_dot;
     assert(is_physical(p));
@@ -103,11 +103,6 @@ double Run::until_next_interval() const {
 double Run::until_boundary(double rest, const Flow& flow) const {
     const double limit = std::min(rest, flow.reach());
     return p_.load ? std::min(limit, until_next_interval()) : limit;
-}
-
-void Run::begin_next_interval() {
-    ++interval_;
-    begin_sliding(direction_);
 }
 
 Outcome Run::run_to_end() {
@@ -188,7 +183,9 @@ void Run::fly_to(const std::optional<Contact>& contact) {
     slip_zeros_ = 0;
     side_ = 0;
     bounce_limit_ -= limit;
-    if (ends_interval && !end_) begin_next_interval();
+    if (!p_.load || end_) return;
+    if (ends_interval) ++interval_;
+    begin_sliding(direction_);  // the load from here on
 }
 
 /// Sets the state after a free flight of duration s, given the flow's.

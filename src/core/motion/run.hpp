@@ -73,7 +73,6 @@ private:
     Polynomial joint_shift() const;
     double until_next_interval() const;  ///< of the load
     double until_boundary(double rest, const Flow& flow) const;
-    void begin_next_interval();
     void move_freely(double s, const Oscillation& flow_after);
     void stop_sliding(double s);
     double pull_together() const;

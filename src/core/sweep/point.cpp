@@ -31,17 +31,6 @@ Outcome cycles_from(
          .tau_start = tau});
 }
 
-/// A load begins at tau = 0 and is measured as a whole; if it has no end or is a shock, for the
-/// measured cycles. The transient of a harmonic forcing is a run of its own.
-Interval measured_part(const Parameters& p, const PointOptions& o) {
-    const double cycles = std::round(o.cycles) * p.cycle();
-    if (!p.load) return {0, cycles};
-    if (p.load->sets_length()) return {0, p.load->length()};
-    const double from =
-        std::isfinite(p.load->length()) ? 0 : std::round(o.transient_cycles) * p.cycle();
-    return {from, from + cycles};
-}
-
 AnalysisRequest wanted_of(const Parameters& p, const State& start, const PointOptions& o) {
     const Interval window = measured_part(p, o);
     return {
@@ -124,6 +113,7 @@ double objective_of(const PointResult& r, Objective objective, const ObjectiveUn
         case Objective::impact_speed_max: return e.impact_speed * omega0;
         case Objective::impulse_max: return m1 * e.impulse * omega0;
         case Objective::impacts_per_second: return e.impact_rate * omega0;
+        case Objective::decay_time: return r.decay_tenth / omega0;
     }
     return nan;
 }
@@ -145,6 +135,15 @@ void set_conclusions(PointResult& r, Analysis& a, double cycle) {
 }
 
 }  // namespace
+
+Interval measured_part(const Parameters& p, const PointOptions& o) {
+    const double cycles = std::round(o.cycles) * p.cycle();
+    if (!p.load) return {0, cycles};
+    if (p.load->sets_length()) return {0, p.load->length()};
+    const double from =
+        std::isfinite(p.load->length()) ? 0 : std::round(o.transient_cycles) * p.cycle();
+    return {from, from + cycles};
+}
 
 PointResult measure(
     const Parameters& p, const State& start, const PointOptions& options,
@@ -175,6 +174,7 @@ PointResult measure(
     r.impacts = r.outcome.impacts;
     r.sticks = a.stick_count;
     r.extremes = a.extremes;
+    if (a.energy->decay) r.decay_tenth = a.energy->decay->with_absorber.tenth.value_or(infinity);
     r.objective = objective_of(r, options.objective, options.units);
     if (a.sections) r.sections = std::move(*a.sections);
     if (options.carry) r.at_end = last_state(p, r.outcome, stop);

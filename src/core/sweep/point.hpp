@@ -95,6 +95,7 @@ struct PointResult {
     /// m; m; x_rms over that of the steady motion (free decay: same start) without absorber.
     double x_max, x_rms, x_rms_ratio;
     Extremes extremes;                        ///< two of them with PointOptions::peaks
+    double decay_tenth = nan;                 ///< DecayTimes::tenth; infinity after the run's end
     double objective;                         ///< by which motions are ranked
     double x_rms_error, share_impacts_error;  ///< standard errors (EnergyBalance)
     /// Steady amplitude without absorber, m; empty at undamped resonance.
@@ -112,6 +113,10 @@ inline constexpr long transient_impacts_per_cycle = 1000;
 PointResult measure(
     const Parameters& parameters, const State& start, const PointOptions& options,
     const std::function<bool()>& stop);
+
+/// The measured part of a run from tau = 0. A load is measured as a whole; if it has no end or is a
+/// shock, for the measured cycles. The transient of a harmonic forcing is a run of its own.
+Interval measured_part(const Parameters& parameters, const PointOptions& options);
 
 /// True if two runs of the same point clearly end in different motions: only one has impacts, or
 /// the periods or the impacts per period differ, or the rms of x differs by 1 % between periodic

@@ -85,6 +85,26 @@ TEST_CASE("a motion under a recorded load satisfies the equation of motion betwe
     }
 }
 
+TEST_CASE("a long interval of a load is that of many short ones, with and without contacts") {
+    const auto record = [](int parts) {
+        std::vector<double> tau, values;
+        for (int k = 0; k <= parts; ++k)
+            tau.push_back(60.0 * k / parts), values.push_back(0.001 * k / parts);
+        return std::make_shared<const Load>(LoadKind::base_acceleration, tau, values);
+    };
+    for (const double b : {100.0, 0.02})
+        for (const double friction : {0.0, 1e-4}) {
+            Parameters p;
+            p.epsilon = 0.05, p.lambda = 0.4, p.G = 0, p.Omega = 1, p.b = b, p.friction = friction;
+            p.load = record(1);
+            const State one = simulate(p, {0.01, 0, 0, 0}, {.tau_end = 90}).state;
+            p.load = record(600);
+            const State many = simulate(p, {0.01, 0, 0, 0}, {.tau_end = 90}).state;
+            CHECK(std::abs(one.x - many.x) < 1e-9);
+            CHECK(std::abs(one.y - many.y) < 1e-9);
+        }
+}
+
 TEST_CASE("a recorded sine is the harmonic forcing within its interpolation error") {
     Parameters p;
     p.epsilon = 0.05, p.lambda = 0.4, p.G = 0.4, p.b = 0.04;
