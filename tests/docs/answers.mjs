@@ -202,10 +202,15 @@ const designs = ["x_max", "x_rms", "x_relative_max", "x_acceleration_max", "impa
   }),
 );
 
-designs.push_back({
+designs.push({
   base: designs[0].base,
   forcing: {kind: "half_sine", acceleration_m_s2: 30, duration_s: 0.03},
-  ...{R: 0.4, b_count: 3, cycles: 20},
+  ...{R: 0.4, b_count: 3, cycles: 20, samples: 2, tolerances: {load_factor: spread}},
+});
+designs.push({
+  base: designs[0].base,
+  initial_velocity: 0.3,
+  ...{R: 0.4, b_count: 3, samples: 2, tolerances: {initial_velocity: spread}},
 });
 
 /** The lines of a stream. */

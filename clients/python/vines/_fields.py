@@ -7,8 +7,9 @@ from typing import Literal, TypedDict
 
 NUMBER_LISTS = frozenset({
     "C", "F", "J", "M", "M_condition", "R", "T", "V", "V_velocity", "asked", "asked_s",
-    "contacts", "cycles_with", "distance", "distances", "f", "final", "five_percent",
-    "high", "im", "impact_speed", "impact_speed_max", "impact_speed_max_best_start",
+    "contacts", "cycles_with", "decay_time", "decay_time_best_start",
+    "decay_time_worst_start", "distance", "distances", "f", "final", "five_percent", "high",
+    "im", "impact_speed", "impact_speed_max", "impact_speed_max_best_start",
     "impact_speed_max_worst_start", "impacts", "impacts_per_second", "impulse",
     "impulse_N_s", "impulse_max", "interval", "lambda", "lambda1", "lambda2", "lambda3",
     "lambda4", "low", "margin_F", "margin_f", "modulus", "momentum_error", "phase",
@@ -159,6 +160,8 @@ Tolerances = TypedDict(
         "R": Distribution,
         "acceleration": Distribution,
         "F": Distribution,
+        "initial_velocity": Distribution,
+        "load_factor": Distribution,
     },
     total=False,
 )
@@ -174,6 +177,8 @@ b: distribution of b; default: none
 R: distribution of R; default: none
 acceleration: distribution of acceleration; default: none
 F: distribution of F; default: none
+initial_velocity: distribution of initial_velocity; default: none
+load_factor: distribution of load_factor; default: none
 """
 
 SweepBase = TypedDict(
@@ -625,17 +630,25 @@ class DesignFields(TypedDict, total=False):
 
     base: the host in SI: m1, k1 or f0, c1 or damping_ratio, m2 or mass_ratio, damping; without
         f, F, b and R; default: required
-    f: band of the forcing, or one frequency (Hz); default: required
+    f: band of the forcing, or one frequency (Hz); default: required, or forcing or
+        initial_velocity
     acceleration: amplitude of the base's acceleration, constant over the band; a range stands
         for all amplitudes in it (m/s^2); default: required, or F
     F: amplitude of the base's displacement instead of acceleration (m); default: required, or
         acceleration
+    forcing: load instead of f and acceleration or F: a record or a formula, as of a run. The
+        absorber is judged from rest over the length of the load, or over transient_cycles and
+        cycles of the host for one without end or a shock; default: none
+    initial_velocity: velocity of m1 after an impulse, instead of a load; a range stands for all
+        in it. The absorber is judged from there on over cycles of the host (m/s); default: none
     b: smallest and largest clearance, or one (m); default: from 5 to 120 % of the largest
         amplitude without absorber
     R: restitution coefficients to choose from, or one (dimensionless)
     m2: masses of the ball to choose from, or one (kg); default: that of base
     objective: what shall be small: largest |x| or its rms, largest distance from the base,
-        largest |x''| of m1, or the fastest impact; default: "x_max"
+        largest |x''| of m1, the fastest impact, or, with initial_velocity, the time in which
+        the energy falls to a tenth; the default with forcing is x_relative_max, with
+        initial_velocity decay_time; default: "x_max"
     over: worst: its largest value over band and amplitudes; mean: its mean; default: "worst"
     starts: default set: the worst of four starts and of motions continued from neighbours; one:
         the default start; default: "default set"
@@ -654,10 +667,12 @@ class DesignFields(TypedDict, total=False):
     f: Iterable[float] | float
     acceleration: Iterable[float] | float
     F: Iterable[float] | float
+    forcing: Forcing
+    initial_velocity: Iterable[float]
     b: Iterable[float] | float
     R: Iterable[float] | float
     m2: Iterable[float] | float
-    objective: Literal["x_max", "x_rms", "x_relative_max", "x_acceleration_max", "impact_speed_max"]
+    objective: Literal["x_max", "x_rms", "x_relative_max", "x_acceleration_max", "impact_speed_max", "decay_time"]
     over: Literal["worst", "mean"]
     starts: Literal["default set", "one"]
     b_count: int

@@ -20,9 +20,9 @@ using Complex = std::complex<double>;
 // Points of the band in which local maxima are bracketed, and the tolerance relative to a bracket.
 constexpr int band_points = 200;
 constexpr double bracket_tolerance = 1e-5;
-// The search refines a square of ratios around the best: points per side in the first and in later
-// rounds, the first range as a factor up and down, and the rounds that each narrow it.
-constexpr int first_points = 15, side_points = 7, tuning_rounds = 12;
+// The search refines a square of ratios around the best: points per side, the first range as a
+// factor up and down, and the rounds that each narrow it.
+constexpr int side_points = 15, tuning_rounds = 12;
 constexpr double frequency_range = 1.6, damping_range = 12, narrowing = 0.45;
 
 // Step of the Runge-Kutta method in tau, and over the damper's own frequency: peaks are exact to
@@ -186,11 +186,10 @@ LinearAbsorber best_tuned_mass_damper(
     double least = objective(best), frequency_factor = frequency_range,
            damping_factor = damping_range;
     for (int round = 0; round < tuning_rounds; ++round) {
-        const int side = round == 0 ? first_points : side_points;
-        const auto place = [side](int n) { return 2.0 * n / (side - 1) - 1; };
+        const auto place = [](int n) { return 2.0 * n / (side_points - 1) - 1; };
         std::vector<LinearAbsorber> tries;
-        for (int i = 0; i < side; ++i)
-            for (int k = 0; k < side; ++k)
+        for (int i = 0; i < side_points; ++i)
+            for (int k = 0; k < side_points; ++k)
                 tries.push_back(
                     {m2, best.frequency_ratio * elementary::pow(frequency_factor, place(i)),
                      best.damping_ratio * elementary::pow(damping_factor, place(k))});
