@@ -416,10 +416,9 @@ DesignRequest read_design_request(const Json& object) {
     plan.cycles = designed(given, "cycles").get<double>();
     if (given.contains("b")) plan.b = interval_of(given["b"], "b", b_range, errors);
     else {
-        // A load can move the base far away.
-        const Objective size = harmonic ? Objective::x_max : Objective::x_relative_max;
         const double most =
-            band_maximum([&](double f) { return linear_response(plan, {}, size, f); }, plan.f)
+            band_maximum(
+                [&](double f) { return linear_response(plan, {}, Objective::x_max, f); }, plan.f)
                 .value;
         plan.b = {least_b_of_amplitude * most, most_b_of_amplitude * most};
     }

@@ -29,7 +29,7 @@ constexpr double frequency_range = 1.6, damping_range = 12, narrowing = 0.45;
 // 3e-4.
 constexpr double linear_step = 0.05;
 
-/// Host and tuned mass damper under a load, in tau; x and x_b in m.
+/// Host and tuned mass damper under a load, in tau and m.
 class LinearMotion {
 public:
     LinearMotion(const Host& host, const LinearAbsorber& t)
@@ -42,8 +42,8 @@ public:
           load_(host.load ? host.load(host.si) : nullptr) {}
 
     struct Seen {
-        double tau, x, relative, x_ddot;  ///< `relative` to the base
-        double energy;                    ///< per m1, in m^2
+        double tau, x, x_ddot;  ///< x relative to the base, which a load can move far away
+        double energy;          ///< per m1, in m^2
     };
     /// Calls see(Seen) at the ends of all steps.
     template <class See>
@@ -62,7 +62,7 @@ public:
             for (int k = 0; k < steps; ++k) {
                 z = after(z, force, k * h, h);
                 const double s = (k + 1) * h;
-                see(Seen{tau + s, z[0], z[0] - base.at(s), rates(z, force.at(s))[1], energy_of(z)});
+                see(Seen{tau + s, z[0] - base.at(s), rates(z, force.at(s))[1], energy_of(z)});
             }
             tau = end;
         }
@@ -102,13 +102,12 @@ private:
 double linear_response(
     const Host& host, const LinearAbsorber& t, Objective objective, const Interval& measured) {
     const double omega0 = host.si.omega0(), x_dot = host.initial_velocity / omega0;
-    double most = 0, most_relative = 0, most_acceleration = 0, squares = 0, last = measured.from,
+    double most = 0, most_acceleration = 0, squares = 0, last = measured.from,
            level = elementary::log(0.05 * x_dot * x_dot),
            before = elementary::log(0.5 * x_dot * x_dot), tenth = infinity;
     LinearMotion(host, t).run(measured.to, [&](const LinearMotion::Seen& at) {
         if (at.tau < measured.from) return;
         most = std::max(most, std::abs(at.x));
-        most_relative = std::max(most_relative, std::abs(at.relative));
         most_acceleration = std::max(most_acceleration, std::abs(at.x_ddot));
         squares += at.x * at.x * (at.tau - last);
         const double now = elementary::log(at.energy);
@@ -117,9 +116,9 @@ double linear_response(
         before = now, last = at.tau;
     });
     switch (objective) {
-        case Objective::x_max: return most;
+        case Objective::x_max:
+        case Objective::x_relative_max: return most;
         case Objective::x_rms: return std::sqrt(squares / (measured.to - measured.from));
-        case Objective::x_relative_max: return most_relative;
         case Objective::x_acceleration_max: return most_acceleration * omega0 * omega0;
         case Objective::decay_time: return tenth / omega0;
         case Objective::impact_speed_max:
