@@ -267,6 +267,20 @@ std::string recommendation_of(const DesignRequest& r, const Design& d) {
     return text + (value < clearly * damper ? ". Build the cavity." : ". Both are equally good.");
 }
 
+/// What limits the best absorber, in words.
+std::string limit_of(const DesignRequest& r, const Design& d) {
+    if (!d.complete || r.plan.mean || r.plan.host.load) return "";
+    const char* unit = r.amplitude_name == "acceleration" ? "m/s^2"
+                       : r.amplitude_name == "F"          ? "m"
+                                                          : "m/s";
+    const RegimeType type = d.at_worst.regime.type;
+    return fmt::format(
+        " The worst case of the cavity is at {}{:.3g} {}{}.",
+        r.plan.host.is_harmonic() ? fmt::format("{:.4g} Hz and ", d.best.f) : "",
+        d.best.amplitude * r.amplitude, unit,
+        type == RegimeType::none ? "" : fmt::format(", in a motion of type {}", name_of(type)));
+}
+
 /// In ascending order.
 std::vector<double> objectives(const std::vector<ToleranceSample>& samples) {
     std::vector<double> values;
@@ -277,7 +291,7 @@ std::vector<double> objectives(const std::vector<ToleranceSample>& samples) {
 
 /// The result in words.
 std::string sentence_of(const DesignRequest& r, const Design& d) {
-    std::string text = recommendation_of(r, d);
+    std::string text = recommendation_of(r, d) + limit_of(r, d);
     if (d.samples.empty()) return text;
     return fmt::format(
         "{} With these tolerances {} stays below {} in 95 % of the samples.", text, r.objective,
@@ -353,7 +367,8 @@ Json described(const DesignRequest& r, const Design& d) {
             return std::ranges::max(d.response, {}, member).*member;
         };
         best.update(
-            {{"regime", name_of(d.at_worst.regime.type)},
+            {{"regime",
+              r.plan.host.is_harmonic() ? Json(name_of(d.at_worst.regime.type)) : Json(nullptr)},
              {"impact_speed_max", most(&DesignResponse::impact_speed)},
              {"impulse_max", most(&DesignResponse::impulse)},
              {"impacts_per_second", most(&DesignResponse::impacts_per_second)},
@@ -420,6 +435,7 @@ DesignRequest read_design_request(const Json& object) {
             band_maximum(
                 [&](double f) { return linear_response(plan, {}, Objective::x_max, f); }, plan.f)
                 .value;
+        if (!(most > 0)) refuse(harmonic ? "/base" : "/forcing", "nothing moves the host");
         plan.b = {least_b_of_amplitude * most, most_b_of_amplitude * most};
     }
     read_tolerances(r, given, errors);

@@ -85,6 +85,8 @@ TEST_CASE("under a load a design has neither frequency nor amplitude") {
             problem_of([&] { read_design_request(both); }).errors.front().pointer ==
             std::string("/") + harmonic);
     }
+    request["forcing"]["acceleration_m_s2"] = 0;
+    CHECK(problem_of([&] { read_design_request(request); }).errors.front().pointer == "/forcing");
     request["forcing"]["duration_s"] = -1;
     CHECK(
         problem_of([&] { read_design_request(request); }).errors.front().pointer ==
@@ -140,6 +142,9 @@ TEST_CASE("tolerances yield a line for each sample, quantiles and probabilities 
         }
     REQUIRE(values.size() == 9);
     std::ranges::sort(values);
+    CHECK(
+        all.back()["sentence"].get<std::string>().find(" Hz and 5 m/s^2, in a motion of type ") !=
+        std::string::npos);
     const Json& t = all.back()["tolerances"];
     CHECK(t["samples"] == 9);
     CHECK(t["x_max"][2] == values[4]);

@@ -69,7 +69,9 @@ Keys response_keys() {
 /// The keys of the best absorber, with the details that follow the search.
 Keys best_keys() {
     const Keys details = {
-        optional({"regime", or_null(text()), "type of the motion in the worst case"}),
+        optional(
+            {"regime", or_null(text()),
+             "type of the motion in the worst case; null without a band"}),
         optional({"impact_speed_max", number(), "largest |x' - y'| before an impact, m/s"}),
         optional({"impulse_max", number(), "largest impulse of an impact, N s"}),
         optional({"impacts_per_second", number(), "most impacts per second"}),

@@ -14,8 +14,8 @@ namespace {
 
 /// Length of a piece of a formula in units of 1/Omega, or of tau if Omega < 1: the Taylor
 /// polynomials of force and response, with their 14 coefficients, are exact to 1e-17 of the
-/// amplitude. The last piece is up to half longer.
-constexpr double formula_step = 0.3;
+/// amplitude, if the damping is not larger. The last piece is up to half longer.
+constexpr double formula_step = 0.3, longest_formula_step = 1.5 * formula_step;
 
 /// Taylor polynomial of amplitude sin(theta): z = exp(i theta) has z' = i theta' z.
 Polynomial sine(double amplitude, const Polynomial& theta) {
@@ -105,6 +105,11 @@ Load::Load(
         duration, kind == LoadKind::base_acceleration ? motion.coasting()
                   : kind == LoadKind::force           ? Polynomial{0}
                                                       : value);
+}
+
+double Load::response_reach(double damping) const {
+    const bool is_formula = !harmonics_.empty() || width_ == Polynomial::most;
+    return is_formula ? longest_formula_step / std::max(1.0, damping) : infinity;
 }
 
 /// The acceleration is the real part of the sum of C_k exp(i w_k tau), w_k = 2 pi k/duration. The

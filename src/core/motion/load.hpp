@@ -57,6 +57,9 @@ public:
     /// lambda), or the force.
     Polynomial force(std::size_t interval, double from, double damping) const;
 
+    /// Longest time over which response() to a piece is exact to rounding, by the flow's damping.
+    double response_reach(double damping) const;
+
     bool moves_base() const { return kind_ != LoadKind::force; }
     double length() const { return tau_.empty() ? infinity : tau_.back(); }
     /// True if a run is as long as the load by default: not where it has no end, nor after a shock,

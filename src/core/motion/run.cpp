@@ -102,7 +102,8 @@ double Run::until_next_interval() const {
 /// The shortest of `rest`, the flow's reach and the time until the load's law changes.
 double Run::until_boundary(double rest, const Flow& flow) const {
     const double limit = std::min(rest, flow.reach());
-    return p_.load ? std::min(limit, until_next_interval()) : limit;
+    if (!p_.load) return limit;
+    return std::min({limit, until_next_interval(), p_.load->response_reach(flow.damping())});
 }
 
 Outcome Run::run_to_end() {
@@ -297,8 +298,8 @@ void Run::stick(double chatter_left, int zeros) {
     y_ = lo_.x - side_ * p_.b;
     follow_joint_motion(zeros);
     begin_sliding(-side_);
-    zeros_ = 3;  // x'' = y'' at the release as well
-    slip_zeros_ = 2;
+    slip_zeros_ = jumps_apart() ? 1 : 2;
+    zeros_ = slip_zeros_ + 1;
     notify(&Observer::on_release, clock_.tau());
 }
 
@@ -309,7 +310,17 @@ void Run::rest_inside() {
     bounce_limit_ = 0;  // ends a chatter
     follow_joint_motion(0);
     begin_sliding(sign_of(pull_together()));
-    slip_zeros_ = 2;
+    slip_zeros_ = jumps_apart() ? 1 : 2;
+}
+
+/// At the end of a joint motion the relative acceleration begins at zero, unless the load jumps
+/// there.
+bool Run::jumps_apart() const {
+    constexpr double rounding = 1e-12;
+    if (!p_.load) return false;
+    const Oscillation o = of_flow();
+    return std::abs(relative_acceleration(o, 0)) >
+           rounding * (free_.bounds(o).x_ddot + std::abs(y_ddot()));
 }
 
 /// Both masses as one, until the wall side_ or, inside the cavity, friction no longer holds the

@@ -76,6 +76,7 @@ private:
     void move_freely(double s, const Oscillation& flow_after);
     void stop_sliding(double s);
     double pull_together() const;
+    bool jumps_apart() const;
     void rest_inside();
     void follow_joint_motion(int zeros);
     void graze(double tau, int side);

@@ -238,6 +238,47 @@ TEST_CASE("one of harmonics is the harmonic forcing") {
     }
 }
 
+TEST_CASE("one of harmonics is the harmonic forcing under any damping") {
+    for (const double damping_ratio : {0.0, 0.7, 1.2, 3.0, 10.0}) {
+        Parameters p;
+        p.epsilon = 0.01, p.lambda = 2 * damping_ratio / p.epsilon, p.Omega = 1, p.G = 1;
+        p.b = 100;
+        const State harmonic = simulate(p, {}, {.tau_end = 30}).state;
+        p.load =
+            std::make_shared<const Load>(std::vector<LoadHarmonic>{{p.epsilon * p.G, p.Omega, 0}});
+        p.G = 0;
+        const State loaded = simulate(p, {}, {.tau_end = 30}).state;
+        CAPTURE(damping_ratio);
+        CHECK(std::abs(loaded.x - harmonic.x) < 1e-14);
+        CHECK(std::abs(loaded.x_dot - harmonic.x_dot) < 1e-14);
+    }
+}
+
+TEST_CASE("a ball that a jump of the load releases leaves with the difference of accelerations") {
+    const double k1 = 4 * std::numbers::pi * std::numbers::pi;
+    const auto force = [&](double newton, double seconds) {
+        const double end = 2 * std::numbers::pi * seconds;
+        return std::make_shared<const Load>(
+            LoadKind::force, std::vector{0.0, end}, std::vector{newton / k1, newton / k1});
+    };
+    Parameters p;  // values of an independent integrator
+    p.epsilon = 0.13, p.lambda = 0.1 / 0.13, p.G = 0, p.Omega = 1, p.b = 0.005;
+    p.R_plus = p.R_minus = 0;
+    p.load = force(-0.4, 0.05);
+    ImpactRecord impacts;
+    const State released =
+        simulate(p, {0, -0.007, 0, -0.002}, {.tau_end = 1.0799}, std::vector<Observer*>{&impacts})
+            .state;
+    CHECK(impacts.entries.empty());
+    CHECK(released.y_dot == doctest::Approx(-0.00084634).epsilon(1e-4));
+    CHECK(released.x - released.y == doctest::Approx(-0.0029744).epsilon(1e-3));
+
+    p.epsilon = 0.1, p.lambda = 1, p.b = 0.1, p.R_plus = p.R_minus = 0.5, p.friction = 0.004;
+    p.load = force(-0.3, 0.1);
+    const State sliding = simulate(p, {-0.001, -0.007, -0.001, 0}, {.tau_end = 0.7854}).state;
+    CHECK(sliding.y_dot == doctest::Approx(-4.616e-4).epsilon(1e-3));
+}
+
 TEST_CASE("gravity, friction, R of the speed and a load follow the reference in 60 digits") {
     for (const LawCase& law : law_cases()) {
         CAPTURE(law.name);
