@@ -80,3 +80,21 @@ test("under a shock the absorbers are compared without a band, and the best one 
   assert.deepEqual(browser.complaints, []);
   await page.close();
 });
+
+test("after an impulse the times of decay are compared, and the worst case opens as a free decay", async () => {
+  const page = await visit(
+    `?tab=design&${machine}&m2=0.04&R=0.2&initial_velocity=0.2,0.5&b_count=6&cycles=60`,
+  );
+  const cards = await page.$$eval("#design-cards dd", (nodes) => nodes.map((n) => n.textContent));
+  assert.match(cards[0], /^2\.3 s time to a tenth of the energy/);
+  assert.match(cards[2], /^0\.58\d s /);
+  assert.equal(await page.isVisible("#figure-design-response"), false);
+  assert.ok((await pixels(page, "#plot-design-map", "c1")) > 20);
+  await page.click("#design-simulate");
+  await drawn(page, 1);
+  const fields = new URL(page.url()).searchParams;
+  assert.equal(fields.get("F"), "0");
+  assert.ok(Number(fields.get("x_dot0")) > 0.003);
+  assert.deepEqual(browser.complaints, []);
+  await page.close();
+});

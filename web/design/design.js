@@ -19,10 +19,11 @@ const objectives = {
   x_relative_max: {title: "largest distance from the base", ...inMm},
   x_acceleration_max: {title: "largest |x″|", unit: "m/s²", factor: 1},
   impact_speed_max: {title: "fastest impact", unit: "m/s", factor: 1},
+  decay_time: {title: "time to a tenth of the energy", unit: "s", factor: 1},
 };
 const round = (value) => shortTo(3, value);
 const hostFields = ["m1", "k1", "f0", "c1", "damping_ratio", "damping"];
-const cyclesOfWorst = 300; // for the simulation of the worst case
+const [cyclesOfWorst, cyclesOfDecay] = [300, 60]; // for the simulation of the worst case
 const colours = ["c1", "c2", "c3", "c4", "minus"]; // of the restitution coefficients
 
 export class DesignTab extends RequestTab {
@@ -56,8 +57,9 @@ export class DesignTab extends RequestTab {
   }
 
   get name() {
-    const {objective, forcing} = this.asking ?? {};
-    return objective ?? (forcing ? "x_relative_max" : "x_max");
+    const {objective, forcing, initial_velocity: velocity} = this.asking ?? {};
+    const standard = forcing ? "x_relative_max" : "x_max";
+    return objective ?? (velocity ? "decay_time" : standard);
   }
 
   /** {base, f, ...} of the form. */
@@ -98,6 +100,7 @@ export class DesignTab extends RequestTab {
     Object.assign(this, {points: [], done: null, asking: request});
     for await (const {value: each} of linesOf("v1/design", request, signal)) {
       if (signal.aborted) return;
+      if (each.type === "start") this.host = each.host;
       if (each.type === "error") throw new Error(each.detail);
       if (each.type === "point") this.points.push(each);
       if (each.type === "progress") this.showProgress(each);
@@ -138,8 +141,9 @@ export class DesignTab extends RequestTab {
     const {sentence} = this.done;
     setTexts({"design-sentence": sentence});
     this.showCards();
-    $("figure-design-response").hidden = !!this.asking.forcing;
-    if (!this.asking.forcing) this.drawResponse();
+    const banded = this.asking.f !== undefined;
+    $("figure-design-response").hidden = !banded;
+    if (banded) this.drawResponse();
     this.showTolerances();
   }
 
@@ -230,8 +234,9 @@ export class DesignTab extends RequestTab {
     $("design-margins").replaceChildren(...tableOf(head, rows));
     const {impact_speed_max: speed, impulse_max: impulse, impacts_per_second: rate} = best;
     const works = [best.works_from, best.works_to].map((v) => (v == null ? "?" : round(v)));
-    const {F, forcing} = this.asking;
-    const unit = forcing ? "of the load" : `${F ? "m" : "m/s²"} at the base`;
+    const {acceleration, F, forcing} = this.asking;
+    let unit = forcing ? "of the load" : "m/s of m₁";
+    if (acceleration ?? F) unit = `${F ? "m" : "m/s²"} at the base`;
     setTexts({
       "design-walls": `The walls must stand ${round(rate)} impacts per second, of up to ${round(speed)} m/s and ${round(impulse)} N s. At least half of the reduction remains from ${works[0]} to ${works[1]} ${unit}.`,
     });
@@ -239,10 +244,20 @@ export class DesignTab extends RequestTab {
 
   /** The simulation of the best absorber where it is worst. */
   worstCase() {
-    const {b, R, m2, f, acceleration, F} = this.done.best;
+    const {b, R, m2, f, acceleration, F, initial_velocity: velocity} = this.done.best;
     const {base, forcing} = this.asking;
     const absorber = {...base, b, R, m2};
     if (forcing) return {...absorber, forcing};
+    if (f === null) {
+      const {f0} = this.host;
+      return {
+        ...absorber,
+        F: 0,
+        f: f0,
+        x_dot0: velocity / (2 * Math.PI * f0),
+        cycles: cyclesOfDecay,
+      };
+    }
     const load = acceleration == null ? {F} : {acceleration};
     return {...absorber, f, ...load, cycles: cyclesOfWorst};
   }
