@@ -365,6 +365,12 @@ inline constexpr Property<MeasuredPoint> point[] = {
       "cover",
       flag},
      result_at<&PointResult::stationary>},
+    {{"chaotic_cycles",
+      "measured cycles of shown chaos: up to its capture, or as long as the motion was followed; "
+      "null "
+      "without shown chaos",
+      number_or_null},
+     result_at<&PointResult::chaotic_cycles>},
 };
 
 /// If requested.
