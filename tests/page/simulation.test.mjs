@@ -102,7 +102,7 @@ test("the page opens with the paper's Fig. 3 on one screen: a sentence, the mach
   const page = await visit("", wide);
   assert.match(
     await sentence(page),
-    /^b = 22\.0 mm: strongly modulated \(II\), chaotic in this window\. λ₁ = 0\.\d+ ± 0\.\d+; rms x \d\d % of that without the absorber\.$/,
+    /^b = 22\.0 mm: strongly modulated \(II\), chaotic so far\. λ₁ = 0\.\d+ ± 0\.\d+; rms x \d\d % of that without absorber\.$/,
   );
   assert.deepEqual(await marked(page), [["figure-x", "Fig. 3"]]);
   for (const canvas of [...instrument, "#machine"])
@@ -790,7 +790,7 @@ test("the strip shows lambda1, the largest |x| or the impacts, and keeps what it
 test("a motion that ends on an orbit is not called chaotic", async () => {
   const page = await still("?preset=fig12");
   assert.match(await sentence(page), /two asymmetric \(IV\), stable periodic orbit/);
-  assert.doesNotMatch(await sentence(page), /chaotic in/);
+  assert.doesNotMatch(await sentence(page), /chaotic so far/);
   await unfoldDetails(page);
   assert.doesNotMatch(await page.textContent("#details"), /as the paper counted/);
   await page.close();

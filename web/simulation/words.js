@@ -23,7 +23,7 @@ function motionText({regime, exponents, energy}, units) {
   }
   if (regime.quasi_periodic) return regime.description;
   const {verdict} = exponents;
-  const window = verdict === "chaotic" ? " in this window" : "";
+  const window = verdict === "chaotic" ? " so far" : "";
   return verdict && verdict !== "not_decided" ? `${name}, ${verdict}${window}` : name;
 }
 
@@ -43,7 +43,7 @@ function lambdaText({qr, verdict}, regime, parameters) {
 }
 
 const amplitudeText = ({rms_ratio: ratio}) =>
-  ratio == null ? "" : `rms x ${percent(ratio)} of that without the absorber`;
+  ratio == null ? "" : `rms x ${percent(ratio)} of that without absorber`;
 
 /** slider: its value begins the sentence. */
 export function showSentence(answer, slider, units) {
