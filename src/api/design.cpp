@@ -267,7 +267,7 @@ std::string recommendation_of(const DesignRequest& r, const Design& d) {
     return text + (value < clearly * damper ? ". Build the cavity." : ". Both are equally good.");
 }
 
-/// What limits the best absorber, in words.
+/// The worst case of the best absorber, in words.
 std::string limit_of(const DesignRequest& r, const Design& d) {
     if (!d.complete || r.plan.mean || r.plan.host.load) return "";
     const char* unit = r.amplitude_name == "acceleration" ? "m/s^2"

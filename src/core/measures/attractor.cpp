@@ -47,7 +47,7 @@ std::optional<StateCell> next_cell(
     Eigen::Vector4d v;
     for (int i = 0; i < 4; ++i) v(i) = static_cast<double>(cell[i]) * p.b * cell_width;
     State middle = state_of(v);
-    // Of a cell across the wall.
+    // The middle of a cell can lie across the wall.
     middle.y = std::clamp(middle.y, middle.x - p.b, middle.x + p.b);
     const auto orbit =
         find_orbit(p, middle, cycles, scale_of(p, {&middle, 1}), reach_from_cell, stop);

@@ -49,10 +49,6 @@ struct Tapers {
     double remaining = 0;  ///< sum of the squares that the subtracted mean leaves
 };
 
-}  // namespace
-
-namespace {
-
 /// NaN for fewer than fewest_error_steps or non-finite steps.
 template <int count>
 double variance_of_sum(std::span<const double> steps) {
