@@ -20,8 +20,11 @@ namespace vines::api {
 namespace {
 
 constexpr double least_b_of_amplitude = 0.05, most_b_of_amplitude = 1.2;
-/// Names of the amplitude of a load.
-constexpr const char* amplitudes[] = {"acceleration", "F", "initial_velocity"};
+constexpr Excitation excitations[] = {
+    {"acceleration", "m/s^2", "x_max", "over the band"},
+    {"F", "m", "x_max", "over the band"},
+    {"initial_velocity", "m/s", "decay_time", "after this impulse"},
+    {"load_factor", "", "x_relative_max", "under this load"}};
 constexpr Range amplitude_range{1e-9, 1e6}, f_range{1e-3, 1e5}, b_range{1e-9, 1e3};
 
 // Intervals that can be given as one number.
@@ -69,7 +72,8 @@ void read_host(DesignRequest& r, const Json& given, std::vector<FieldError>& err
             errors.push_back(
                 {std::string("/base/") + name, base[name], nullptr,
                  std::string(name) + " is no field of a host: a design chooses b and R, and gives "
-                                     "f and acceleration or F, or forcing, beside base"});
+                                     "f and acceleration or F, forcing or initial_velocity beside "
+                                     "base"});
     if (!errors.empty()) return;
     Json whole = base;
     if (given.contains("forcing")) whole["forcing"] = given["forcing"];
@@ -140,7 +144,7 @@ Json designed(const Json& given, const char* name) {
 }
 
 const char* name_in(const DesignRequest& r, Toleranced what) {
-    return what == Toleranced::amplitude ? r.amplitude_name.c_str() : enum_name(what);
+    return what == Toleranced::amplitude ? r.excitation->amplitude : enum_name(what);
 }
 
 /// A checked distribution; errors are relative to the tolerances.
@@ -214,7 +218,7 @@ Json described(const DesignRequest& r, const DesignPoint& p) {
         {"m2", p.m2},
         {r.objective, finite_or_null(p.objective)},
         {"f", frequency(r, p.f)},
-        {r.amplitude_name, p.amplitude * r.amplitude}};
+        {r.excitation->amplitude, p.amplitude * r.amplitude}};
 }
 
 Json described(const DesignRequest& r, const BandMaximum& m) {
@@ -249,9 +253,7 @@ std::string recommendation_of(const DesignRequest& r, const Design& d) {
     std::string text = fmt::format(
         "A cavity with b = {:.3g} mm and R = {:.2g} for a ball of {:.3g} g keeps {} at {} {}",
         1000 * d.best.b, d.best.R, 1000 * d.best.m2, r.objective, quantity_text(r, value),
-        r.plan.host.load                   ? "under this load"
-        : r.plan.host.initial_velocity > 0 ? "after this impulse"
-                                           : "over the band");
+        r.excitation->where);
     if (r.plan.objective == Objective::impact_speed_max) return text + ".";
     text += fmt::format(
         "; without absorber it is {}, with a tuned mass damper of the same mass (frequency ratio "
@@ -270,14 +272,11 @@ std::string recommendation_of(const DesignRequest& r, const Design& d) {
 /// The worst case of the best absorber, in words.
 std::string limit_of(const DesignRequest& r, const Design& d) {
     if (!d.complete || r.plan.mean || r.plan.host.load) return "";
-    const char* unit = r.amplitude_name == "acceleration" ? "m/s^2"
-                       : r.amplitude_name == "F"          ? "m"
-                                                          : "m/s";
     const RegimeType type = d.at_worst.regime.type;
     return fmt::format(
         " The worst case of the cavity is at {}{:.3g} {}{}.",
         r.plan.host.is_harmonic() ? fmt::format("{:.4g} Hz and ", d.best.f) : "",
-        d.best.amplitude * r.amplitude, unit,
+        d.best.amplitude * r.amplitude, r.excitation->unit,
         type == RegimeType::none ? "" : fmt::format(", in a motion of type {}", name_of(type)));
 }
 
@@ -404,12 +403,14 @@ DesignRequest read_design_request(const Json& object) {
     r.given = object;
     std::vector<FieldError> errors;
     DesignPlan& plan = r.plan;
-    r.amplitude_name = "load_factor";
-    for (const char* name : amplitudes)
-        if (given.contains(name)) {
-            const Interval i = interval_of(given[name], name, amplitude_range, errors);
-            r.amplitude_name = name, r.amplitude = i.to, plan.amplitude_ratio = i.from / i.to;
-        }
+    for (const Excitation& kind : excitations) {
+        r.excitation = &kind;
+        if (!given.contains(kind.amplitude)) continue;
+        const Interval i =
+            interval_of(given[kind.amplitude], kind.amplitude, amplitude_range, errors);
+        r.amplitude = i.to, plan.amplitude_ratio = i.from / i.to;
+        break;
+    }
     const bool harmonic = given.contains("f");
     if (harmonic) {
         plan.f = interval_of(given["f"], "f", f_range, errors);
@@ -431,19 +432,14 @@ DesignRequest read_design_request(const Json& object) {
     plan.cycles = designed(given, "cycles").get<double>();
     if (given.contains("b")) plan.b = interval_of(given["b"], "b", b_range, errors);
     else {
-        const double most =
-            band_maximum(
-                [&](double f) { return linear_response(plan, {}, Objective::x_max, f); }, plan.f)
-                .value;
+        const LinearResponse linear = linear_response_of(plan, Objective::x_max);
+        const double most = band_maximum([&](double f) { return linear({}, f); }, plan.f).value;
         if (!(most > 0)) refuse(harmonic ? "/base" : "/forcing", "nothing moves the host");
         plan.b = {least_b_of_amplitude * most, most_b_of_amplitude * most};
     }
     read_tolerances(r, given, errors);
     if (!errors.empty()) refuse(std::move(errors));
-    r.objective = given.value(
-        "objective", plan.host.load                   ? "x_relative_max"
-                     : plan.host.initial_velocity > 0 ? "decay_time"
-                                                      : "x_max");
+    r.objective = given.value("objective", r.excitation->objective);
     plan.objective = enum_value<Objective>(r.objective);
     plan.mean = designed(given, "over") == "mean";
     if (r.objective == "decay_time" && plan.host.initial_velocity == 0)

@@ -9,12 +9,19 @@
 
 namespace vines::api {
 
+/// What excites the host.
+struct Excitation {
+    const char* amplitude;  ///< name of the field, or else of the factor on a load
+    const char* unit;
+    const char* objective;  ///< default
+    const char* where;      ///< in words
+};
+
 struct DesignRequest {
     Json given;  ///< as requested
     DesignPlan plan;
-    /// The largest amplitude, and its name: acceleration, m/s^2; F, m; 1 under a load.
-    double amplitude = 1;
-    std::string amplitude_name;
+    const Excitation* excitation = nullptr;
+    double amplitude = 1;   ///< the largest, in its unit
     std::string objective;  ///< its name
     SiParameters host;
 };

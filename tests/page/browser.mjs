@@ -71,11 +71,25 @@ export async function open(context, url, options = {}) {
   return page;
 }
 
-const done = (id) => (page, n) =>
-  page.waitForFunction(
-    ([id, n]) => Number(document.getElementById(id).dataset.done ?? 0) >= n,
-    [id, n],
-  );
+/** Waits for the n-th result of a tab; its error says what the tab shows instead. */
+const done = (id) => async (page, n) => {
+  try {
+    await page.waitForFunction(
+      ([id, n]) => Number(document.getElementById(id).dataset.done ?? 0) >= n,
+      [id, n],
+      {polling: 50}, // ms: an overloaded machine draws no frames for long
+    );
+  } catch (error) {
+    const shown = await page.evaluate(
+      (id) => [
+        {...document.getElementById(id).dataset},
+        document.getElementById(id.replace("results", "message")).textContent,
+      ],
+      id,
+    );
+    throw new Error(`${error.message} ${id} ${n}: ${JSON.stringify(shown)} ${page.url()}`);
+  }
+};
 /** Resolves after n animation frames. */
 export const frames = (page, n) =>
   page.evaluate(async (n) => {

@@ -160,6 +160,10 @@ struct DesignSearch {
         return m;
     }
 
+    /// Of the objective, which is a length or a rate of one, at an amplitude.
+    double scale(double amplitude) const {
+        return plan.objective == Objective::decay_time ? 1 : amplitude;
+    }
     /// Worst case, or mean, over the frequencies of a map and the amplitudes.
     DesignPoint judged(
         const DesignMap& m, double b, const std::vector<double>& amplitudes, double R,
@@ -168,8 +172,7 @@ struct DesignSearch {
         double most = -infinity, sum = 0;
         for (const double a : amplitudes)
             for (std::size_t j = 0; j < m.f.size(); ++j) {
-                const double value = (plan.objective == Objective::decay_time ? 1 : a) *
-                                     m.worst[m.at(m.row_of(b / a), j)];
+                const double value = scale(a) * m.worst[m.at(m.row_of(b / a), j)];
                 sum += value;
                 if (value > most) most = value, p.f = m.f[j], p.amplitude = a;
             }
@@ -312,8 +315,7 @@ struct DesignSearch {
         sort_unique(with_one);
         const DesignMap m = map({p.b}, with_one, frequencies(), p.R, si);
         const auto ratio = [&](double a) {
-            const double size = plan.objective == Objective::decay_time ? 1 : a;
-            return judged(m, p.b, {a}, p.R, p.m2).objective / size / d.without.value;
+            return judged(m, p.b, {a}, p.R, p.m2).objective / scale(a) / d.without.value;
         };
         const double limit = 0.5 * (1 + ratio(1));
         const auto here = std::ranges::find(with_one, 1.0);
@@ -328,15 +330,14 @@ struct DesignSearch {
         }
     }
 
-    void set_response(Design& d) const {
+    void set_response(Design& d, const LinearResponse& linear) const {
         const DesignPoint& p = d.best;
         const DesignMap m = map({p.b}, {1}, denser_frequencies(p.f), p.R, host_with(p.m2));
         const SiParameters si = host_with(p.m2);
         for (std::size_t j = 0; j < m.f.size(); ++j)
             d.response.push_back(
-                {m.f[j], m.worst[j], m.best[j], linear_response(plan, {}, plan.objective, m.f[j]),
-                 linear_response(plan, d.tuned_mass_damper, plan.objective, m.f[j]),
-                 m.extreme[j].impact_speed * si.omega0(),
+                {m.f[j], m.worst[j], m.best[j], linear({}, m.f[j]),
+                 linear(d.tuned_mass_damper, m.f[j]), m.extreme[j].impact_speed * si.omega0(),
                  si.m1 * m.extreme[j].impulse * si.omega0(),
                  m.extreme[j].impact_rate * si.omega0()});
     }
@@ -385,15 +386,20 @@ struct DesignSearch {
 
 }  // namespace
 
-double linear_response(
-    const DesignPlan& plan, const LinearAbsorber& absorber, Objective objective, double f) {
-    if (plan.host.is_harmonic()) return linear_response(plan.host, absorber, objective, f);
+LinearResponse linear_response_of(const DesignPlan& plan, Objective objective) {
+    const Host& host = plan.host;
+    if (host.is_harmonic())
+        return [host, objective](const LinearAbsorber& absorber, double f) {
+            return linear_response(host, absorber, objective, f);
+        };
     Parameters p;
     p.Omega = 1;
-    if (plan.host.load) p.load = plan.host.load(plan.host.si);
+    if (host.load) p.load = host.load(host.si);
     const Interval measured =
         measured_part(p, {.transient_cycles = plan.transient_cycles, .cycles = plan.cycles});
-    return linear_response(plan.host, absorber, objective, measured);
+    return [host, objective, load = p.load, measured](const LinearAbsorber& absorber, double) {
+        return linear_response(host, load.get(), absorber, objective, measured);
+    };
 }
 
 std::size_t design_runs(const DesignPlan& plan) {
@@ -423,9 +429,9 @@ std::optional<Design> find_design(
     if (!best) best = all.front();
     Design& d = design.emplace();
     d.best = *best;
+    const LinearResponse linear = linear_response_of(plan, plan.objective);
     const auto response = [&](const LinearAbsorber& t) {
-        return band_maximum(
-            [&](double f) { return linear_response(plan, t, plan.objective, f); }, plan.f);
+        return band_maximum([&](double f) { return linear(t, f); }, plan.f);
     };
     d.without = response({});
     d.tuned_mass_damper = best_tuned_mass_damper(
@@ -435,7 +441,7 @@ std::optional<Design> find_design(
     d.den_hartog = den_hartog(plan.host.si.m1, best->m2);
     d.with_den_hartog = response(d.den_hartog);
     try {
-        search.set_response(d);
+        search.set_response(d, linear);
         search.set_worst_motion(d);
         search.set_amplitudes(d);
         search.set_margins(d);

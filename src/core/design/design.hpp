@@ -81,9 +81,9 @@ using DesignSink = std::function<void(const DesignPoint&)>;
 /// Receives each sample, on any thread, one at a time.
 using SampleSink = std::function<void(const ToleranceSample&)>;
 
-/// The objective with a linear absorber, at a frequency if the host is harmonic.
-double linear_response(
-    const DesignPlan& plan, const LinearAbsorber& absorber, Objective objective, double f);
+/// The objective with a linear absorber, at a frequency f if the host is harmonic.
+using LinearResponse = std::function<double(const LinearAbsorber& absorber, double f)>;
+LinearResponse linear_response_of(const DesignPlan& plan, Objective objective);
 
 /// Number of motions of the first map and of the samples; others are a few more.
 std::size_t design_runs(const DesignPlan& plan);

@@ -32,14 +32,14 @@ constexpr double linear_step = 0.05;
 /// Host and tuned mass damper under a load, in tau and m.
 class LinearMotion {
 public:
-    LinearMotion(const Host& host, const LinearAbsorber& t)
+    LinearMotion(const Host& host, const Load* load, const LinearAbsorber& t)
         : mu_(t.m2 / host.si.m1),
           nu_(t.m2 > 0 ? t.frequency_ratio : 0),
           own_damping_(2 * t.damping_ratio * nu_),
           load_damping_(host.si.c1 / (host.si.m1 * host.si.omega0())),
           damping_(host.damping == Damping::closed_form ? 2 * load_damping_ : load_damping_),
           x_dot_(host.initial_velocity / host.si.omega0()),
-          load_(host.load ? host.load(host.si) : nullptr) {}
+          load_(load) {}
 
     struct Seen {
         double tau, x, x_ddot;  ///< x relative to the base, which a load can move far away
@@ -94,18 +94,19 @@ private:
     }
 
     const double mu_, nu_, own_damping_, load_damping_, damping_, x_dot_;
-    const std::shared_ptr<const Load> load_;
+    const Load* const load_;
 };
 
 }  // namespace
 
 double linear_response(
-    const Host& host, const LinearAbsorber& t, Objective objective, const Interval& measured) {
+    const Host& host, const Load* load, const LinearAbsorber& t, Objective objective,
+    const Interval& measured) {
     const double omega0 = host.si.omega0(), x_dot = host.initial_velocity / omega0;
     double most = 0, most_acceleration = 0, squares = 0, last = measured.from,
            level = elementary::log(0.05 * x_dot * x_dot),
            before = elementary::log(0.5 * x_dot * x_dot), tenth = infinity;
-    LinearMotion(host, t).run(measured.to, [&](const LinearMotion::Seen& at) {
+    LinearMotion(host, load, t).run(measured.to, [&](const LinearMotion::Seen& at) {
         if (at.tau < measured.from) return;
         most = std::max(most, std::abs(at.x));
         most_acceleration = std::max(most_acceleration, std::abs(at.x_ddot));

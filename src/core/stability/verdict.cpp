@@ -133,11 +133,26 @@ std::optional<double> chaotic_transient_end(const ExponentHistory& h, double sta
     }
     if (growth < least_transient_growth || last - first < least_entries_of_transient)
         return std::nullopt;
+    const auto grows_in_both_halves = [&](std::size_t end) {
+        const auto tau = [&](std::size_t k) { return h.tau.begin() + static_cast<long>(k); };
+        const auto middle =
+            std::lower_bound(tau(first), tau(end), 0.5 * (h.tau[first] + h.tau[end]));
+        const double half = sum_at(static_cast<std::size_t>(middle - h.tau.begin()));
+        return growth > least_growth_of_departures &&
+               std::min(half - sum_at(first), sum_at(end) - half) >
+                   0.25 * least_growth_of_departures;
+    };
+    if (grows_in_both_halves(last)) return h.tau[last];
+    // The sum can rise a little further while the motion settles: then its growth ends where it is
+    // farthest above half of its mean slope.
+    std::size_t grown = last;
+    const double slope = growth / (h.tau[last] - h.tau[first]);
+    const auto above = [&](std::size_t k) { return sum_at(k) - 0.5 * slope * h.tau[k]; };
+    for (std::size_t k = first; k < last; ++k)
+        if (above(k) > above(grown)) grown = k;
+    if (grows_in_both_halves(grown)) return h.tau[grown];
     const auto steps = even_steps(h, start, first, last, 1, 0);
     const double late = std::accumulate(steps.begin() + error_steps / 2, steps.end(), 0.0);
-    if (growth > least_growth_of_departures &&
-        std::min(late, growth - late) > 0.25 * least_growth_of_departures)
-        return h.tau[last];
     // A sum of steps with zero mean rises above its lowest value, somewhere in the history, as
     // often as the modulus of one sum exceeds that level or its double: by the reflection principle
     // at most four times as often as a single sum. Parts of the history's length are as many looks.

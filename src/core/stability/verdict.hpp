@@ -58,10 +58,10 @@ bool can_be_quasi_periodic(const Growth& growth);
 inline constexpr double least_transient_growth = 20;
 /// Growth that departure from one unstable orbit, which ends at least_growth, does not reach.
 inline constexpr double least_growth_of_departures = 40;
-/// End of a part of a history in which deviations grow by more than e^40, a fourth of it in each
-/// half, or by more than e^20 and more than chance permits anywhere in the history; empty if none
-/// does. For motions that settle afterwards, whose mean growth shows nothing. `start`: start of the
-/// history's window.
+/// End of a part of a history in which deviations grow by more than e^40, by e^10 in each half of
+/// the time they take, or by more than e^20 and more than chance permits anywhere in the history;
+/// empty if none does. For motions that settle afterwards, whose mean growth shows nothing.
+/// `start`: start of the history's window.
 std::optional<double> chaotic_transient_end(const ExponentHistory& history, double start);
 
 /// Increments of the first exponent's sum of logarithms, lambda1(tau) tau, between the entries of a

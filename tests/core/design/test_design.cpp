@@ -150,7 +150,8 @@ TEST_CASE("linear responses to a load settle on those to its frequency") {
                 // x of a load is relative to the base.
                 const double relative = linear_response(host, t, Objective::x_relative_max, f);
                 CHECK(
-                    linear_response(host, t, objective, Interval{400, 600}) ==
+                    linear_response(
+                        host, host.load(host.si).get(), t, objective, Interval{400, 600}) ==
                     doctest::Approx(
                         objective == Objective::x_acceleration_max
                             ? linear_response(host, t, objective, f)
@@ -208,7 +209,7 @@ TEST_CASE("after an impulse the time to a tenth of the energy is that of a free 
         host.damping = damping;
         const double rate = damping == Damping::closed_form ? 2 * zeta : zeta;
         CHECK(
-            linear_response(host, {}, Objective::decay_time, Interval{0, 1000}) ==
+            linear_response(host, nullptr, {}, Objective::decay_time, Interval{0, 1000}) ==
             doctest::Approx(std::log(10) / (2 * rate * omega0)).epsilon(0.01));
     }
     DesignPlan plan = machine();

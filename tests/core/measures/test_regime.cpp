@@ -207,6 +207,11 @@ TEST_CASE("growth in one step, algebraic growth and a driftless sum show no chao
         0);
     REQUIRE(modulated);
     CHECK(*modulated == doctest::Approx(500).epsilon(0.1));
+    // Growth that ends long before the highest sum, which later rises a little further.
+    const auto settling = chaotic_transient_end(
+        history_of([](int k) { return 0.2 * std::min(k, 300) + 0.01 * std::max(0, k - 300); }), 0);
+    REQUIRE(settling);
+    CHECK(*settling == doctest::Approx(300).epsilon(0.1));
     CHECK_FALSE(chaotic_transient_end(history_of([](int k) { return k < 500 ? 0.0 : 60.0; }), 0));
     CHECK_FALSE(chaotic_transient_end(history_of([](int k) { return 3 * std::log(k); }), 0));
     std::mt19937_64 engine(3);
