@@ -215,8 +215,13 @@ struct CellSearch {
         return Contact{d, start.side, flow.along(x, start.lo, d), start.side * d * rate};
     }
 
-    /// The contact in cell k, if any: rules 3 and 4.
-    std::optional<Contact> in_cell(int k, const Oscillation& lo) const {
+    /// Rule 1 for one wall, with wall g at the ends of the cell.
+    bool beneath(double left, double right, double bound) const {
+        return std::max(left, right) < b - bound * h * h / 8 - eta;
+    }
+
+    /// The contact in cell k, if any: rules 3 and 4. left, right: g at the ends of the cell.
+    std::optional<Contact> in_cell(int k, const Oscillation& lo, double left, double right) const {
         const bool first = k == 0 && start.side != 0;
         const Flow::TaylorSeries x = flow.series(lo);
         const Polynomial y_left = y.about(k * h);
@@ -224,6 +229,7 @@ struct CellSearch {
         for (int n = 2; n < y_left.size; ++n) g[n] -= y_left[n];
         std::optional<Contact> found;
         for (int wall : {1, -1}) {
+            if (beneath(wall * left, wall * right, M2)) continue;
             Flow::TaylorSeries f = wall * g;  // wall (x - y) - b, negative inside the cavity
             f[0] = first && wall != start.side ? -2 * b : wall * (lo.x - y_left[0]) - b;
             f[1] = first ? wall * start.relative_speed : wall * (lo.x_dot - y_left[1]);
@@ -289,9 +295,11 @@ std::optional<Contact> next_contact(
                         : std::abs(relative) < inside && std::abs(next[i]) < inside)
                 continue;
             const Oscillation lo = k == 0 ? start.lo : flow.at(start.lo, k);
+            const double own_M2 = std::abs(flow.acceleration(lo) - y.second(k * h)) + M3 * h;
+            if (!leaving && search.beneath(std::abs(relative), std::abs(next[i]), own_M2)) continue;
             std::optional<Contact> contact =
                 leaving ? search.chatter(M3) : search.straight(k, lo, next[i]);
-            if (!contact) contact = search.in_cell(k, lo);
+            if (!contact) contact = search.in_cell(k, lo, relative, next[i]);
             if (contact) return contact->s <= limit ? contact : std::nullopt;
         }
     }
@@ -302,9 +310,14 @@ std::optional<double> next_release(
     const Flow& flow, const Oscillation& start, int side, int zeros, double limit,
     const Polynomial& pull, double least) {
     assert(side != 0 && (zeros == 0 || zeros == 1) && limit <= flow.reach());
-    const double h = flow.cell();
+    const double h = flow.cell(),
+                 M3 = flow.bounds(start).x_dddot + pull.bound(1, std::min(flow.reach(), limit + h));
     for (int k = 0; k < Flow::cells && k * h < limit; ++k) {
-        const Flow::TaylorSeries x = flow.series(k == 0 ? start : flow.at(start, k));
+        const Oscillation lo = k == 0 ? start : flow.at(start, k);
+        const bool vanishes = k == 0 && zeros > 0;
+        // It cannot fall that far within the cell.
+        if (!vanishes && side * (flow.acceleration(lo) - pull.at(k * h)) - least > M3 * h) continue;
+        const Flow::TaylorSeries x = flow.series(lo);
         // least - side (x'' - pull), negative while the ball is held.
         std::array<double, Flow::degree - 1> f;
         for (int n = 0; n + 2 <= Flow::degree; ++n) f[n] = -side * (n + 1.0) * (n + 2.0) * x[n + 2];
