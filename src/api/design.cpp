@@ -61,13 +61,14 @@ std::vector<double> numbers_within(
     return list.get<std::vector<double>>();
 }
 
-/// The host; what the design chooses or sweeps must not be given.
+/// The host; what the design chooses or sweeps must not be given. A reduced one becomes that with
+/// m1 = 1 kg and k1 = 1 N/m, whose unit of time is 1 s.
 void read_host(DesignRequest& r, const Json& given, std::vector<FieldError>& errors) {
     const Json& base = given["base"];
     for (const char* name :
-         {"f", "F", "acceleration", "b", "R", "R_plus", "R_minus", "gravity", "inclination",
-          "friction", "mu", "restitution", "restitution_plus", "restitution_minus", "forcing",
-          "preset"})
+         {"f", "F", "acceleration", "Omega", "G", "b", "R", "R_plus", "R_minus", "gravity",
+          "inclination", "friction", "mu", "restitution", "restitution_plus", "restitution_minus",
+          "forcing", "preset"})
         if (base.contains(name))
             errors.push_back(
                 {std::string("/base/") + name, base[name], nullptr,
@@ -75,17 +76,25 @@ void read_host(DesignRequest& r, const Json& given, std::vector<FieldError>& err
                                      "f and acceleration or F, forcing or initial_velocity beside "
                                      "base"});
     if (!errors.empty()) return;
-    Json whole = base;
-    if (given.contains("forcing")) whole["forcing"] = given["forcing"];
-    else whole.update({{"f", given.contains("f") ? given["f"][0] : Json(1)}, {"F", 1e-3}});
-    // The masses to choose from stand for that of the base.
-    if (given.contains("m2") && !given["m2"].empty())
-        whole.erase("mass_ratio"), whole["m2"] = given["m2"][0];
     const auto take = [&](const std::vector<FieldError>& found) {
         for (const FieldError& e : found)
             add_errors(e.pointer.starts_with("/forcing") ? "" : "/base", {e}, errors);
     };
     try {
+        Json whole = base;
+        if (base.contains("epsilon") || base.contains("lambda")) {
+            const StartedSystem reduced = read_started_system(base);
+            take(reduced.errors);
+            if (!errors.empty()) return;
+            const Parameters& p = reduced.system.parameters;
+            whole.erase("epsilon"), whole.erase("lambda");
+            whole.update({{"m1", 1}, {"k1", 1}, {"c1", p.epsilon * p.lambda}, {"m2", p.epsilon}});
+        }
+        if (given.contains("forcing")) whole["forcing"] = given["forcing"];
+        else whole.update({{"f", given.contains("f") ? given["f"][0] : Json(1)}, {"F", 1e-3}});
+        // The masses to choose from stand for that of the base.
+        if (given.contains("m2") && !given["m2"].empty())
+            whole.erase("mass_ratio"), whole["m2"] = given["m2"][0];
         const StartedSystem host = read_started_system(whole);
         take(host.errors);
         r.host = *host.system.si;

@@ -41,6 +41,7 @@ TEST_CASE("a design's faults are named at their fields") {
     CHECK(design_faults({{"base", {{"m1", -2}}}}) == Pointers{"/base/m1"});
     CHECK(design_faults({{"base", {{"m1", nullptr}}}}) == Pointers{"/base/m1"});
     CHECK(design_faults({{"base", {{"epsilon", 0.1}}}}).front() == "/base/epsilon");
+    CHECK(design_faults({{"base", {{"Omega", 1}}}}) == Pointers{"/base/Omega"});
     CHECK(design_faults({{"objective", "x"}}) == Pointers{"/objective"});
     CHECK(design_faults({{"q", 1}}) == Pointers{"/q"});
     const auto tolerance_faults = [](const Json& t) { return design_faults({{"tolerances", t}}); };
@@ -105,6 +106,23 @@ TEST_CASE("a range of amplitudes and lists of R and m2 are read, and b follows f
     // 99 mm without absorber.
     CHECK(r.plan.b.to == doctest::Approx(1.2 * 0.0990).epsilon(1e-3));
     CHECK(r.host.f0() == doctest::Approx(8));
+}
+
+TEST_CASE("a reduced base is the machine of unit mass and stiffness") {
+    Json request = design_of_machine();
+    request["base"] = {{"epsilon", 0.02}, {"lambda", 0.8}, {"damping", "closed_form"}};
+    request["f"] = {0.15, 0.17};
+    const DesignRequest r = read_design_request(request);
+    CHECK(r.host.omega0() == 1);
+    CHECK(r.host.m1 == 1);
+    CHECK(r.host.epsilon() == 0.02);
+    CHECK(r.host.lambda() == doctest::Approx(0.8));
+    CHECK(r.plan.m2 == std::vector{0.02});
+    CHECK(r.plan.host.damping == Damping::closed_form);
+    request["base"]["epsilon"] = -1;
+    CHECK(
+        problem_of([&] { read_design_request(request); }).errors.front().pointer ==
+        "/base/epsilon");
 }
 
 TEST_CASE("tolerances yield a line for each sample, quantiles and probabilities of regimes") {

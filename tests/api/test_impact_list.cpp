@@ -195,3 +195,30 @@ TEST_CASE("impact_times_s is refused for a list of impacts") {
         CHECK_THROWS_AS(read_identify_request(request), Problem);
     }
 }
+
+TEST_CASE("impacts of a ball with a given friction and R of the speed give the run's exponents") {
+    Json system = {{"m1", 3.807}, {"damping_ratio", 0.006},
+                   {"k1", 11680}, {"m2", 0.032},
+                   {"b", 0.012},  {"f", 8.8156},
+                   {"mu", 0.02}};
+    system["restitution"] = {{"speed_m_s", {0, 1}}, {"R", {0.85, 0.7}}};
+    Json request = system;
+    request.update({{"F", 1.7e-4}, {"cycles", 150}});
+    const Json run = simulated(read_simulate_request(request), {});
+    const Json& all = run["impacts"];
+    Json list;
+    for (const char* name : {"tau", "x", "x_dot_before", "x_dot_after", "side"})
+        for (std::size_t i = 80; i < all["tau"].size(); ++i) list[name].push_back(all[name][i]);
+    request["window"] = {list["tau"].front(), list["tau"].back()};
+    const Json window = simulated(read_simulate_request(request), {});
+    system["impacts"] = list;
+    const Json a = identified(read_identify_request(system));
+    for (int k = 0; k < 4; ++k)
+        CHECK(
+            a["exponents"]["qr"]["final"][k].get<double>() ==
+            doctest::Approx(window["exponents"]["qr"]["final"][k].get<double>()).epsilon(1e-6));
+    for (std::size_t i = 1; i + 1 < list["tau"].size(); ++i)
+        CHECK(
+            a["impacts"]["y_dot_before"][i].get<double>() ==
+            doctest::Approx(all["y_dot_before"][80 + i].get<double>()).epsilon(1e-9));
+}

@@ -729,6 +729,14 @@ class IdentifyFields(TypedDict, total=False):
         to 1e+09
     f: forcing frequency (Hz, f); default: none: give all SI fields, or a preset for the rest;
         1e-09 to 1e+09
+    friction: deceleration of the sliding ball, mu g cos(inclination)/omega0^2 (m, f'); 0 to
+        1000; default: 0
+    mu: friction coefficient of the ball, for a system in SI (dimensionless, mu); default: from
+        friction; 0 to 100
+    restitution: R of both walls as a function of the speed: {speed or speed_m_s, R}, linear
+        between the points, constant outside; instead of R; default: none: a constant R
+    restitution_plus: the same for the wall at x - y = +b; default: none: a constant R
+    restitution_minus: the same for the wall at x - y = -b; default: none: a constant R
     exponents: estimators of the Lyapunov exponents: qr (Benettin), eigenvalues (33),
         raw_product ((33) unscaled in double precision, as in the paper); default: ["qr",
         "eigenvalues", "raw_product"]
@@ -799,6 +807,11 @@ class IdentifyFields(TypedDict, total=False):
     F: float
     acceleration: float
     f: float
+    friction: float
+    mu: float
+    restitution: RestitutionTable
+    restitution_plus: RestitutionTable
+    restitution_minus: RestitutionTable
     exponents: Iterable[Literal["qr", "eigenvalues", "raw_product"]]
     max_points: int
     include: Iterable[Literal["motion", "direct_exponents"]]

@@ -89,7 +89,8 @@ FieldTable record_rows() {
 
 FieldTable make_identify_fields() {
     FieldTable table = simulate_fields_where([](const Field& f) {
-        return is_of_system(f) || f.name == "exponents" || f.name == "max_points";
+        return is_of_system(f) || f.name == "exponents" || f.name == "max_points" ||
+               f.name == "friction" || f.name == "mu" || f.name.starts_with("restitution");
     });
     for (Field& field : table) adapt_to_record(field);
     const Field include = {

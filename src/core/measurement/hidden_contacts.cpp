@@ -18,6 +18,7 @@ IdentifiedSystem::IdentifiedSystem(const Parameters& p, const UnknownValues& v, 
     own_.Omega /= faster_;
     own_.lambda = std::max(0.0, v[Unknown::damping] / (faster_ * p.epsilon));
     own_.G = G_of(own_, v[Unknown::force_sin], v[Unknown::force_cos]) / (faster_ * faster_);
+    own_.friction /= faster_ * faster_;
 }
 
 // simulate() counts the forcing's phase from eq. (3); the measurement has its own phase.
@@ -33,8 +34,12 @@ Outcome IdentifiedSystem::run(
     return simulate(own_, {s.x_dot / faster_, s.x, s.y_dot / faster_, s.y}, limits, observers);
 }
 
-OscillatorMotion IdentifiedSystem::free_motion(const Release& from, double tau) const {
-    return IntervalMotion(flows_, values_, tau_zero_, {from.tau, from.x, from.x_dot})
+OscillatorMotion IdentifiedSystem::free_motion(
+    const Release& from, int from_side, double tau, int to_side) const {
+    const double pull = faster_ * faster_ * own_.epsilon * own_.friction;
+    return IntervalMotion(
+               flows_, values_, tau_zero_,
+               {from.tau, from.x, from.x_dot, false, Sliding::between(from_side, to_side), pull})
         .at(tau - from.tau, false)
         .value;
 }
@@ -107,8 +112,7 @@ struct HiddenContactSearch {
         for (std::size_t i = 0; i + 1 < impacts.size() && failed < many_runs + led;) {
             look();
             std::size_t next = i + 1;
-            if (std::isnan(y_dot_before) && i > 0)
-                y_dot_before = flight_velocity(system.own().b, impacts[i - 1], impacts[i]);
+            if (std::isnan(y_dot_before) && i > 0) y_dot_before = flight_end(i);
             const std::vector<Velocities> possible = velocities_after(i, y_dot_before);
             y_dot_before = nan;
             for (const Velocities& after : possible) {
@@ -127,6 +131,14 @@ struct HiddenContactSearch {
             i = next;
         }
         return all;
+    }
+
+    /// y' at the end of the flight to impact i.
+    double flight_end(std::size_t i) const {
+        const IdentifiedImpact &from = impacts[i - 1], &to = impacts[i];
+        const double faster = system.faster();
+        return flight_velocity(system.own().b, from, to) -
+               faster * faster * braking(system.own(), from, to);
     }
 
     /// Marks the last impacts of each chatter that ends in a sticking phase.
@@ -170,12 +182,17 @@ struct HiddenContactSearch {
     std::vector<Velocities> velocities_after(std::size_t i, double y_dot_before) const {
         const IdentifiedImpact& m = impacts[i];
         const Parameters& p = system.own();
-        const double R = p.restitution(m.side, 0), share = p.epsilon * (1 + R) / (1 + p.epsilon),
-                     meets = (m.x_dot_before - m.x_dot_after) / share;
+        const auto R_at = [&](double speed) { return p.restitution(m.side, std::abs(speed)); };
+        const auto share = [&](double R) { return p.epsilon * (1 + R) / (1 + p.epsilon); };
         std::vector<Velocities> all;
-        const double met = m.x_dot_before - y_dot_before, x_dot = m.x_dot_before - share * met;
-        if (m.side * met > 0) all.push_back({x_dot, x_dot + R * met});
-        if (m.side * meets > 0) all.push_back({m.x_dot_after, m.x_dot_after + R * meets});
+        const double met = m.x_dot_before - y_dot_before, R_met = R_at(met),
+                     x_dot = m.x_dot_before - share(R_met) * met;
+        if (m.side * met > 0) all.push_back({x_dot, x_dot + R_met * met});
+        // R depends little on the speed.
+        const double jump = m.x_dot_before - m.x_dot_after,
+                     R_meets = R_at(jump / share(R_at(jump / p.epsilon))),
+                     meets = jump / share(R_meets);
+        if (m.side * meets > 0) all.push_back({m.x_dot_after, m.x_dot_after + R_meets * meets});
         return all;
     }
 
@@ -262,13 +279,15 @@ struct HiddenContactSearch {
             return false;
         const IdentifiedImpact& from = impacts[hidden.from];
         Release last{from.tau, from.x, x_dot};
+        int side = from.side;
         if (hidden.release) last = *hidden.release;
         if (!hidden.impacts.empty()) {
             const RunImpact& h = hidden.impacts.back();
+            side = h.impact.side;
             last = h.release ? *h.release : Release{h.impact.tau, h.impact.x, h.impact.x_dot_after};
         }
         if (!(last.tau < shown.tau)) return false;
-        const OscillatorMotion end = system.free_motion(last, shown.tau);
+        const OscillatorMotion end = system.free_motion(last, side, shown.tau, shown.side);
         return std::abs(end.x - shown.x) < limits.tolerance &&
                std::abs(end.x_dot - shown.x_dot_before) < limits.tolerance;
     }

@@ -30,8 +30,8 @@ public:
     double start_of(double tau) const;
     double faster() const { return faster_; }
 
-    /// Motion of the oscillator alone at `tau`, from a state.
-    OscillatorMotion free_motion(const Release& from, double tau) const;
+    /// Motion of the oscillator at `tau` while the mass flies between two walls, from a state.
+    OscillatorMotion free_motion(const Release& from, int from_side, double tau, int to_side) const;
     /// Converts an impact of a run from `tau` on to the measurement's units.
     Impact measured(Impact impact, double tau) const;
     /// The measurement's tau at `own_tau` of a run from `tau` on.

@@ -65,15 +65,21 @@ double flight_velocity(double b, const IdentifiedImpact& from, const IdentifiedI
     return (to.x - to.side * b - (from.x - from.side * b)) / (to.tau - from.tau);
 }
 
+double braking(const Parameters& p, const IdentifiedImpact& from, const IdentifiedImpact& to) {
+    return p.friction * (to.tau - from.tau) * Sliding::between(from.side, to.side).to_end;
+}
+
 bool flight_fits(
     const Parameters& p, const IdentifiedImpact& from, const IdentifiedImpact& to,
     double typical_speed) {
     const Release leaves =
         from.release ? *from.release : Release{from.tau, from.x, from.y_dot_after};
-    const double way = to.x - to.side * p.b - (leaves.x - from.side * p.b),
-                 flown = to.y_dot_before * (to.tau - leaves.tau);
-    return std::abs(to.y_dot_before - leaves.x_dot) < flight_tolerance * typical_speed &&
-           std::abs(way - flown) < flight_tolerance * p.b;
+    const double duration = to.tau - leaves.tau,
+                 way = to.x - to.side * p.b - (leaves.x - from.side * p.b),
+                 flown = 0.5 * (leaves.x_dot + to.y_dot_before) * duration,
+                 braked = p.friction * duration;
+    return std::abs(to.y_dot_before - leaves.x_dot) < flight_tolerance * typical_speed + braked &&
+           std::abs(way - flown) < flight_tolerance * p.b + 0.25 * braked * duration;
 }
 
 std::vector<StickingPhase> sticking_phases(const std::vector<IdentifiedImpact>& impacts) {
@@ -133,11 +139,15 @@ std::vector<Row> rows_of(
     for (std::size_t i = 1; i < impacts.size(); ++i) {
         look();
         const IdentifiedImpact &from = impacts[i - 1], &to = impacts[i];
-        IntervalMotion motion(flows, given, 0, {from.tau, from.x, from.x_dot_after});
-        const auto parts = motion.at(to.tau - from.tau, false).parts;
+        const MotionRow row = IntervalMotion(
+                                  flows, given, 0,
+                                  {from.tau, from.x, from.x_dot_after, false,
+                                   Sliding::between(from.side, to.side), p.epsilon * p.friction})
+                                  .at(to.tau - from.tau, false);
+        // Without the forcing, which is not known yet.
         const auto add = [&](double OscillatorMotion::* member, double end) {
-            const double free = from.x * (parts[0].*member) + from.x_dot_after * (parts[1].*member);
-            rows.push_back({{parts[2].*member, parts[3].*member}, end - free});
+            const auto& parts = row.parts;
+            rows.push_back({{parts[2].*member, parts[3].*member}, end - row.value.*member});
         };
         add(&OscillatorMotion::x, to.x);
         add(&OscillatorMotion::x_dot, to.x_dot_before);
@@ -150,9 +160,9 @@ std::vector<Row> rows_of(
 void set_flight_velocities(const Parameters& p, std::vector<IdentifiedImpact>& impacts) {
     for (std::size_t i = 1; i < impacts.size(); ++i) {
         IdentifiedImpact &from = impacts[i - 1], &to = impacts[i];
-        const double y_dot = flight_velocity(p.b, from, to);
-        if (std::isnan(from.y_dot_after)) from.y_dot_after = y_dot;
-        if (std::isnan(to.y_dot_before)) to.y_dot_before = y_dot;
+        const double y_dot = flight_velocity(p.b, from, to), braked = braking(p, from, to);
+        if (std::isnan(from.y_dot_after)) from.y_dot_after = y_dot + braked;
+        if (std::isnan(to.y_dot_before)) to.y_dot_before = y_dot - braked;
     }
 }
 
@@ -185,7 +195,7 @@ ListedForcing fit_forcing(
         if (!std::isnan(i.x_ddot_before)) continue;
         const double angle = p.Omega * i.tau;
         i.x_ddot_before = f(0) * elementary::sin(angle) + f(1) * elementary::cos(angle) - i.x -
-                          2 * p.zeta() * i.x_dot_before;
+                          2 * p.zeta() * i.x_dot_before - p.epsilon * p.friction * i.side;
     }
     return {f(0), f(1), scale / median(std::move(speeds))};
 }

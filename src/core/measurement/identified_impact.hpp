@@ -1,8 +1,8 @@
 // One impact of a measurement, independent of how its velocities were determined: R, the error in
 // the momentum balance, and why it is excluded.
 //
-// A list of impacts is completed: between contacts the mass flies with constant velocity, and one
-// forcing moves the oscillator from impact to impact.
+// A list of impacts is completed: between contacts the mass flies with constant velocity, or is
+// braked by a given friction, and one forcing moves the oscillator from impact to impact.
 #pragma once
 
 #include <functional>
@@ -58,8 +58,11 @@ struct IdentifiedImpact {
 void complete_impacts(
     const Parameters& parameters, std::vector<IdentifiedImpact>& impacts, double pulse);
 
-/// y' of the mass between two contacts, y = x - side b at both, eq. (43).
+/// Mean y' of the mass between two contacts, y = x - side b at both, eq. (43).
 double flight_velocity(double b, const IdentifiedImpact& from, const IdentifiedImpact& to);
+/// What friction takes from y' in half of a flight whose sliding does not turn: y' is the mean plus
+/// this at its start.
+double braking(const Parameters& p, const IdentifiedImpact& from, const IdentifiedImpact& to);
 
 /// Whether the mass can have flown freely from one impact to the next: with one velocity, from wall
 /// to wall. If not, an impact between them is missing, or the mass stuck to the wall.

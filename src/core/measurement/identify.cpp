@@ -26,7 +26,7 @@ constexpr double most_of_b = 0.5;
 constexpr double most_unseen = 0.15, most_dropped = 0.02, most_R_scatter = 0.035,
                  most_momentum_scatter = 0.06;
 
-/// y' of each flight is offset - b rate, from y = x - side b at both of its ends (43).
+/// The mean y' of each flight is offset - b rate, from y = x - side b at both of its ends (43).
 struct Flight {
     double offset, rate;
     double y_dot(double b) const { return offset - b * rate; }
@@ -44,8 +44,9 @@ std::vector<WeightedB> b_of_impacts(
     std::vector<WeightedB> estimates;
     for (std::size_t i = 1; i < flights.size(); ++i) {
         const double rate = flights[i].rate - flights[i - 1].rate;
-        const double b =
-            (m[i].jump() / p.epsilon + flights[i].offset - flights[i - 1].offset) / rate;
+        const double b = (m[i].jump() / p.epsilon + flights[i].offset + m[i].braked_after -
+                          flights[i - 1].offset - m[i].braked_before) /
+                         rate;
         if (std::isfinite(b)) estimates.push_back({b, std::abs(rate)});
     }
     return estimates;
@@ -103,8 +104,8 @@ Identification identify_impacts(
     const std::vector<Flight> flights = flights_of(m, sides, gaps);
     for (std::size_t i = 0; i < sides.size(); ++i) {
         IdentifiedImpact impact = at_wall(m[i], sides[i]);
-        if (i > 0) impact.y_dot_before = flights[i - 1].y_dot(p.b);
-        if (i < flights.size()) impact.y_dot_after = flights[i].y_dot(p.b);
+        if (i > 0) impact.y_dot_before = flights[i - 1].y_dot(p.b) + m[i].braked_before;
+        if (i < flights.size()) impact.y_dot_after = flights[i].y_dot(p.b) + m[i].braked_after;
         found.impacts.push_back(impact);
     }
     complete_impacts(p, found.impacts, pulse);
@@ -150,10 +151,12 @@ bool pulses_disagree(const FoundImpacts& f) {
            static_cast<double>(f.dropped.size()) > most_dropped * n;
 }
 
-bool impacts_differ(const Identification& found) {
+bool impacts_differ(const Parameters& p, const Identification& found) {
     std::vector<double> R, momentum;
     for (const IdentifiedImpact& i : found.impacts) {
-        const double of_wall = (i.side > 0 ? found.plus : found.minus).R;
+        const double w = std::abs(i.x_dot_before - i.y_dot_before),
+                     of_wall = p.table_of(i.side) ? p.restitution(i.side, w)
+                                                  : (i.side > 0 ? found.plus : found.minus).R;
         if (std::isnan(i.R - of_wall)) continue;
         R.push_back(i.R - of_wall);
         momentum.push_back(i.momentum_error);
@@ -170,7 +173,7 @@ std::vector<Doubt> doubts_of(
     if (!refined.settled) doubts.push_back(Doubt::not_settled);
     if (!explains(refined.fit)) doubts.push_back(Doubt::unexplained);
     if (pulses_disagree(refined)) doubts.push_back(Doubt::pulses_disagree);
-    if (impacts_differ(identification)) doubts.push_back(Doubt::impacts_differ);
+    if (impacts_differ(p, identification)) doubts.push_back(Doubt::impacts_differ);
     if (!b_agrees(p, identification)) doubts.push_back(Doubt::b_disagrees);
     return doubts;
 }

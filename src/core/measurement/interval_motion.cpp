@@ -67,7 +67,13 @@ IntervalMotion::IntervalMotion(
       load_at_start_(
           f.parts.response ? f.parts.response->at(since_middle_) : LoadResponse::Motion{}),
       by_stiffness_(f.by_stiffness.flow, whole(f.by_stiffness)),
-      by_damping_(f.by_damping.flow, whole(f.by_damping)) {}
+      by_damping_(f.by_damping.flow, whole(f.by_damping)) {
+    if (i.pull == 0 || i.sliding.first == 0) return;
+    double displaced = i.pull * i.sliding.first / v[Unknown::stiffness];
+    pulls_.push_back({0, displaced});
+    for (const double turn : i.sliding.turns)
+        pulls_.push_back({turn, -2 * displaced}), displaced = -displaced;
+}
 
 MotionRow IntervalMotion::at(double s, bool with_acceleration) {
     MotionRow row{{}, parts_.at(s, with_acceleration), {}, {}, {}};
@@ -78,12 +84,27 @@ MotionRow IntervalMotion::at(double s, bool with_acceleration) {
         row.value.x_ddot += start_[k] * row.parts[k].x_ddot;
     }
     row.by_Omega = by_frequency(row.parts, s);
-    if (!flows_.oscillator_moves) return row;
-    row.by_stiffness =
-        derivative(flows_.by_stiffness, by_stiffness_.at(s, with_acceleration)[0], s, row.value);
-    row.by_damping =
-        derivative(flows_.by_damping, by_damping_.at(s, with_acceleration)[0], s, row.value);
+    if (flows_.oscillator_moves) {
+        row.by_stiffness = derivative(
+            flows_.by_stiffness, by_stiffness_.at(s, with_acceleration)[0], s, row.value);
+        row.by_damping =
+            derivative(flows_.by_damping, by_damping_.at(s, with_acceleration)[0], s, row.value);
+    }
+    add_pull(s, row.value);
     return row;
+}
+
+/// Adds the response to friction. Its derivatives by stiffness and damping, small of second order,
+/// are left out.
+void IntervalMotion::add_pull(double s, OscillatorMotion& m) const {
+    const Flow& flow = flows_.parts.flow;
+    for (const Step& step : pulls_) {
+        if (s <= step.from) break;
+        const Oscillation released = flow.after({1, 0, 0, 0}, s - step.from);
+        m.x += step.displaced * (1 - released.x);
+        m.x_dot -= step.displaced * released.x_dot;
+        m.x_ddot -= step.displaced * flow.acceleration(released);
+    }
 }
 
 /// Adds the responses to the load from rest at the start to those to f_s and f_c: the tabulated

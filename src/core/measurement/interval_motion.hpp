@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <array>
 #include <optional>
+#include <vector>
 
 #include "core/measurement/measured_load.hpp"
 #include "core/motion/flow.hpp"
@@ -66,10 +67,28 @@ private:
     int looks_ = 0, cell_ = -1;
 };
 
+/// The direction in which the mass slides during a flight, sign(y' - x').
+struct Sliding {
+    double first = 0;                ///< at the start; 0: unknown
+    std::vector<double> turns = {};  ///< times since the start at which it reverses
+    // Means over the flight: plainly, and weighted with the time to its end and since its start,
+    // over its duration. Friction lifts y' at the start, and lowers it at the end, by its
+    // deceleration times the last two and the duration.
+    double mean = 0, to_end = 0, from_start = 0;
+
+    /// Constant, on the way between two walls; unknown on one back to the same wall.
+    static Sliding between(int from_side, int to_side) {
+        const double direction = 0.5 * (from_side - to_side);
+        return {direction, {}, direction, 0.5 * direction, 0.5 * direction};
+    }
+};
+
 /// An interval between impacts, with its state after the impact.
 struct FittedInterval {
     double tau, x, x_dot;
     bool sticks = false;  ///< the free mass moves with the oscillator
+    Sliding sliding = {};
+    double pull = 0;  ///< |acceleration| of the oscillator by a given friction of the mass
 };
 
 /// A flow with the response to a load's excess, if there is one.
@@ -132,6 +151,7 @@ public:
 
 private:
     void add_load(double s, std::array<OscillatorMotion, 4>& parts) const;
+    void add_pull(double s, OscillatorMotion& m) const;
     std::array<Oscillation, 1> whole(const LoadedFlow& flow) const;
     OscillatorMotion derivative(
         const LoadedFlow& flow, const OscillatorMotion& moved, double s,
@@ -144,6 +164,11 @@ private:
     FollowedFlow<4> parts_;
     LoadResponse::Motion load_at_start_;
     FollowedFlow<1> by_stiffness_, by_damping_;
+    /// A constant force from a time on: the position of rest moves, and the oscillator follows.
+    struct Step {
+        double from, displaced;
+    };
+    std::vector<Step> pulls_;
 };
 
 using UnknownRow = Eigen::Matrix<double, 1, sensed_unknowns>;

@@ -200,7 +200,8 @@ private:
 struct MassResidual {
     std::size_t impact;
     double momentum, restitution;
-    double jump, approach;  ///< jump of x', and x' - y' before the impact
+    double jump, approach;   ///< jump of x', and x' - y' before the impact
+    double R, R_derivative;  ///< R w, over w and by w = |approach|
 };
 
 /// Residuals of the impacts whose flights on both sides are known.
@@ -210,13 +211,17 @@ std::vector<MassResidual> mass_residuals(const JointFitState& state, const Borde
     for (std::size_t i = 1; i + 1 < impacts.size(); ++i) {
         const FittedBorder& m = impacts[i];
         if (!m.flies || sides[i - 1] == 0 || sides[i + 1] == 0) continue;
-        const double before = MassFlight(state, impacts, i - 1).y_dot(),
-                     after = MassFlight(state, impacts, i).y_dot(),
-                     approach = m.x_dot_before - before,
-                     R = state.fit.values[restitution_at(sides[i])];
+        const double before = MassFlight(state, impacts, i - 1).y_dot() + m.braked_before,
+                     after = MassFlight(state, impacts, i).y_dot() + m.braked_after,
+                     approach = m.x_dot_before - before, w = std::abs(approach),
+                     fitted = state.fit.values[restitution_at(sides[i])];
+        const Parameters& p = state.parameters;
+        const bool is_given = p.table_of(sides[i]) != nullptr;
+        const double R = is_given ? p.restitution(sides[i], w) : fitted,
+                     derivative = is_given ? p.restitution_derivative(sides[i], w) : fitted;
         residuals.push_back(
             {i, m.jump() + state.fit.epsilon * (after - before),
-             m.x_dot_after - after + R * approach, m.jump(), approach});
+             m.x_dot_after - after + R * approach, m.jump(), approach, R, derivative});
     }
     return residuals;
 }
@@ -255,7 +260,7 @@ void add_mass_rows(
         if (by_R != 0 && !state.fit.fixed[wall]) row.push_back({e.unknown_at(wall), by_R});
         e.add(row, -residual, weight, state.effects ? &by_effects : nullptr);
     };
-    const double R = state.fit.values[wall], epsilon = state.fit.epsilon;
+    const double R = r.R_derivative, epsilon = state.fit.epsilon;
     add(1, -1, -epsilon, epsilon, 0, r.momentum, momentum_weight);
     add(1, R, -R, -1, r.approach, r.restitution, restitution_weight);
 }

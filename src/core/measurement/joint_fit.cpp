@@ -61,7 +61,8 @@ void fix_undetermined(JointFitState& state) {
     if (state.record.x_ddot.empty() || !any_pulse) fix({Unknown::pulse_lag});
     if (!state.sides) fix({Unknown::b});
     for (const int side : {1, -1})
-        if (!state.sides || std::count(state.sides->begin(), state.sides->end(), side) == 0)
+        if (!state.sides || std::count(state.sides->begin(), state.sides->end(), side) == 0 ||
+            state.parameters.table_of(side))
             fix({restitution_at(side)});
 }
 
@@ -211,7 +212,8 @@ double JointFitState::acceleration_at(const FittedInterval& i) const {
     std::complex<double> forcing = elementary::phasor(v[Unknown::Omega] * sigma);
     if (fit.forcing.load) forcing += fit.forcing.load->excess(sigma, v);
     return (-v[Unknown::stiffness] * i.x - v[Unknown::damping] * i.x_dot +
-            v[Unknown::force_sin] * forcing.imag() + v[Unknown::force_cos] * forcing.real()) /
+            v[Unknown::force_sin] * forcing.imag() + v[Unknown::force_cos] * forcing.real() +
+            i.pull * i.sliding.first) /
            moving_mass(i);
 }
 
@@ -222,7 +224,8 @@ MotionRow JointFitState::end_of(const IntervalFlows& flows, std::size_t k) const
 }
 
 FittedImpact JointFitState::motion_at_border(std::size_t k, const MotionRow& end) const {
-    const FittedInterval& to = fit.intervals[k + 1];
+    const FittedInterval &from = fit.intervals[k], &to = fit.intervals[k + 1];
+    const double next = k + 2 < fit.intervals.size() ? fit.intervals[k + 2].tau : to.tau;
     return {
         .tau = to.tau,
         .border = borders[k].border,
@@ -235,7 +238,9 @@ FittedImpact JointFitState::motion_at_border(std::size_t k, const MotionRow& end
         .x_jump_error = nan,
         .x_dot_before_error = nan,
         .x_dot_after_error = nan,
-        .tau_error = nan};
+        .tau_error = nan,
+        .braked_before = -parameters.friction * (to.tau - from.tau) * from.sliding.from_start,
+        .braked_after = parameters.friction * (next - to.tau) * to.sliding.to_end};
 }
 
 JointFit fit_jointly(

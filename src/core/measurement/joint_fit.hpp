@@ -43,6 +43,8 @@ struct FittedImpact {
     double x_jump, x_jump_error;                   ///< jump of x, and its standard error
     double x_dot_before_error, x_dot_after_error;  ///< standard errors of x' on either side
     double tau_error;                              ///< standard error of the time, from all data
+    /// y' of the mass before and after it, less the mean of the flight: by a given friction.
+    double braked_before = 0, braked_after = 0;
 
     double jump() const { return x_dot_after - x_dot_before; }
     /// Standard error of the jump of x', from the adjacent intervals.

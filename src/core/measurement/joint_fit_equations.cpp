@@ -188,6 +188,53 @@ void add_impacts(JointFitState& state, const IntervalFlows& flows) {
     if (state.sides) add_mass_flights(state, borders);
 }
 
+/// How the mass slides in a flight with y' = y_dot at its start; the direction changes where x' =
+/// y'. deceleration: by friction, times the duration.
+Sliding sliding_of(IntervalMotion& motion, double duration, double y_dot, double deceleration) {
+    constexpr double fewest = 24, per_tau = 10;
+    const int parts = static_cast<int>(std::max(fewest, per_tau * duration));
+    Sliding s;
+    const auto add = [&](double from, double to, double direction) {
+        const double part = direction * (to - from), later = 0.5 * (from + to);
+        s.mean += part, s.from_start += part * later, s.to_end += part * (1 - later);
+    };
+    const auto slip_at = [&](double share, double slid) {
+        return y_dot - deceleration * slid - motion.at(share * duration, false).value.x_dot;
+    };
+    double before = slip_at(0, 0);
+    s.first = std::copysign(1.0, before);
+    for (int k = 1; k <= parts; ++k) {
+        const double from = (k - 1.0) / parts, to = static_cast<double>(k) / parts,
+                     after = slip_at(to, s.mean + std::copysign(to - from, before));
+        const bool turns = before * after < 0;
+        const double turn = turns ? from + (to - from) * before / (before - after) : to;
+        add(from, turn, std::copysign(1.0, before));
+        if (turns) add(turn, to, std::copysign(1.0, after)), s.turns.push_back(turn * duration);
+        before = after;
+    }
+    return s;
+}
+
+/// Sets how the mass slides in each flight, from the motion of the step before.
+void set_sliding(JointFitState& state, const IntervalFlows& flows) {
+    const Sides& sides = *state.sides;
+    for (std::size_t k = 0; k + 1 < state.borders.size(); ++k) {
+        FittedInterval& i = state.fit.intervals[k + 1];
+        const FittedInterval& next = state.fit.intervals[k + 2];
+        const double duration = next.tau - i.tau;
+        const double deceleration = state.parameters.friction * duration,
+                     lifted = deceleration * i.sliding.to_end;
+        i.sliding = {};
+        if (!i.sticks && sides[k] != 0 && sides[k + 1] != 0 && duration > 0) {
+            const double way =
+                next.x - i.x - state.fit.values[Unknown::b] * (sides[k + 1] - sides[k]);
+            IntervalMotion motion(flows.of(i), state.fit.values, state.fit.tau_middle, i);
+            i.sliding = sliding_of(motion, duration, way / duration + lifted, deceleration);
+        }
+        i.pull = state.fit.epsilon * state.parameters.friction;
+    }
+}
+
 /// Priors; unknowns that keep their values get one that holds them.
 void add_priors(JointFitState& state) {
     for (std::size_t k = 0; k < unknowns; ++k) {
@@ -238,6 +285,8 @@ void set_equations(JointFitState& state) {
     state.equations = {state.fit.intervals.size(), state.ridge};
     if (state.effects) state.equations.collect_effects(state.effects->size());
     const IntervalFlows flows = state.flows();
+    if (state.sides && !state.is_first_step && (state.parameters.friction > 0 || state.effects))
+        set_sliding(state, flows);
     if (!state.record.x.empty()) add_displacement(state, flows);
     if (!state.record.x_ddot.empty()) add_acceleration(state, flows);
     if (!state.is_first_step) add_impacts(state, flows);

@@ -128,6 +128,7 @@ void append(
     impact.relative_speed_before = i.x_dot_before - i.y_dot_before;
     impact.R = p.restitution(i.side, std::abs(impact.relative_speed_before));
     impact.x_ddot_before = i.x_ddot_before;
+    impact.y_ddot_before = p.friction * i.side;
     const double duration = i.tau - before.tau,
                  stuck = before.release ? before.release->tau - before.tau : 0;
     const Leg legs[] = {

@@ -40,8 +40,12 @@ std::optional<DirectEstimate> direct_estimate(
     std::vector<double> times;
     for (const FittedImpact& i : refined.fit.impacts) times.push_back(i.tau);
     const double pulse = refined.pulse.length();
-    Identification found = identify_impacts(
-        p, direct_motion(m.record, times, pulse), refined.side, refined.gaps, pulse);
+    std::vector<FittedImpact> motion = direct_motion(m.record, times, pulse);
+    for (std::size_t k = 0; k < motion.size(); ++k) {
+        motion[k].braked_before = refined.fit.impacts[k].braked_before;
+        motion[k].braked_after = refined.fit.impacts[k].braked_after;
+    }
+    Identification found = identify_impacts(p, motion, refined.side, refined.gaps, pulse);
     if (!m.R_given) take_restitution(found.plus, found.minus, p);
     insert_hidden(hidden, found.impacts);
     complete_impacts(p, found.impacts, pulse);

@@ -71,11 +71,6 @@ Eigen::Index EffectDerivatives::first_of(Effect effect) const {
     return at == columns_.end() ? -1 : at->first;
 }
 
-double EffectDerivatives::direction(std::size_t i) const {
-    if (!state_.sides || i == 0 || i >= state_.borders.size()) return 0;
-    return 0.5 * ((*state_.sides)[i - 1] - (*state_.sides)[i]);
-}
-
 /// Sets the columns from `first` on to harmonics of u in [-.5, .5], times a factor.
 void EffectDerivatives::slow(double u, Eigen::Index first, double factor) {
     for (Eigen::Index k = 0; k < slow_harmonics; ++k) {
@@ -123,7 +118,7 @@ const Eigen::VectorXd& EffectDerivatives::motion(
         const OscillatorMotion& p = row.parts[0];
         const double response = (member == &OscillatorMotion::x ? 1 : 0) - p.*member;
         row_(first_of(Effect::friction)) =
-            state_.fit.epsilon * direction(i) * response / v[Unknown::stiffness];
+            state_.fit.epsilon * from.sliding.mean * response / v[Unknown::stiffness];
     }
     return row_;
 }
@@ -168,8 +163,9 @@ const Eigen::VectorXd& EffectDerivatives::acceleration(
 }
 
 double EffectDerivatives::flight(std::size_t p, double sign) const {
-    const double duration = state_.fit.intervals[p + 2].tau - state_.fit.intervals[p + 1].tau;
-    return 0.5 * sign * direction(p + 1) * duration;
+    const FittedInterval& i = state_.fit.intervals[p + 1];
+    const double duration = state_.fit.intervals[p + 2].tau - i.tau;
+    return duration * (sign > 0 ? i.sliding.to_end : -i.sliding.from_start);
 }
 
 std::vector<FittedEffect> tested_effects(

@@ -50,8 +50,6 @@ public:
     Eigen::Index first_of(Effect effect) const;
 
 private:
-    /// Direction of y' - x' in interval i; 0 if unknown.
-    double direction(std::size_t i) const;
     void slow(double u, Eigen::Index first, double factor);
 
     const JointFitState& state_;

@@ -78,14 +78,16 @@ struct Parameters {
     double cycle() const { return 2 * std::numbers::pi / Omega; }  ///< forcing period, in tau
     /// Half a cycle of the faster of forcing and oscillator, in tau.
     double faster_half_cycle() const { return std::numbers::pi / (Omega > 1 ? Omega : 1); }
+    /// The table of R of a wall; empty if it is constant.
+    const auto& table_of(int side) const { return side > 0 ? table_plus : table_minus; }
     /// R of a wall at a speed w = |x' - y'| before the impact.
     double restitution(int side, double w) const {
-        const auto& table = side > 0 ? table_plus : table_minus;
+        const auto& table = table_of(side);
         return table ? table->at(w) : side > 0 ? R_plus : R_minus;
     }
     /// d(R w)/dw.
     double restitution_derivative(int side, double w) const {
-        const auto& table = side > 0 ? table_plus : table_minus;
+        const auto& table = table_of(side);
         return table ? table->derivative(w) : side > 0 ? R_plus : R_minus;
     }
     bool has_constant_R() const { return !table_plus && !table_minus; }

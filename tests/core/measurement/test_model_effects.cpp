@@ -79,6 +79,50 @@ TEST_CASE("an effect outside the model is named") {
     }
 }
 
+TEST_CASE("a given friction of the ball is part of the model") {
+    for (const double friction : {0.05, 0.2}) {
+        CAPTURE(friction);
+        const Experiment e = unmodelled_experiment(0.015, {.friction = friction});
+        CHECK(shows(evaluate_measurement(measurement_of(e)), Effect::friction));
+        Measurement m = measurement_of(e);
+        m.parameters.friction = friction / (e.omega0 * e.omega0);
+        const MeasurementResult r = evaluate_measurement(m);
+        CHECK(r.refined->fit.effects.empty());
+        CHECK(r.doubts.empty());
+        CHECK(r.found.b_error < 1e-3 * e.true_parameters.b);
+        CHECK(r.found.plus.error < 2e-3);
+        check_values(e, r);
+        for (std::size_t k = 0; k < 6; ++k)
+            CHECK(r.forward->impacts[k].tau == doctest::Approx(e.impacts[k + 1].tau).epsilon(1e-4));
+    }
+}
+
+TEST_CASE("a given R of the speed is part of the model") {
+    constexpr double slope = -0.2, fast = 4;  // per m/s, m/s
+    const Experiment e = unmodelled_experiment(0.015, {.R_slope = slope});
+    CHECK(shows(evaluate_measurement(measurement_of(e)), Effect::R_varies));
+    const double R = e.true_parameters.R_plus;
+    const auto table = std::make_shared<const RestitutionTable>(
+        RestitutionTable{{0, fast / e.omega0}, {R, R * (1 + slope * fast)}});
+    Measurement m = measurement_of(e);
+    m.parameters.table_plus = m.parameters.table_minus = table;
+    const MeasurementResult r = evaluate_measurement(m);
+    CHECK(r.refined->fit.effects.empty());
+    CHECK(r.doubts.empty());
+    CHECK(r.refined->fit.fixed[Unknown::R_plus]);
+    CHECK(r.found.b_error < 1e-3 * e.true_parameters.b);
+    CHECK(std::abs(r.found.b_fitted - e.true_parameters.b) < 4 * r.found.b_error);
+    for (const IdentifiedImpact& i : r.found.impacts)
+        if (!std::isnan(i.R))
+            CHECK(
+                i.R == doctest::Approx(table->at(std::abs(i.x_dot_before - i.y_dot_before)))
+                           .epsilon(0.02));
+    m.parameters.table_minus =
+        std::make_shared<const RestitutionTable>(RestitutionTable{{0}, {R * 0.75}});
+    const MeasurementResult wrong = evaluate_measurement(m);
+    CHECK((!wrong.doubts.empty() || !wrong.refined->fit.effects.empty()));
+}
+
 TEST_CASE(
     "no value is more than four of its errors off under any effect outside the model" *
     doctest::test_suite("statistics")) {
