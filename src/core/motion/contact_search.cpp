@@ -306,17 +306,29 @@ std::optional<Contact> next_contact(
     return {};
 }
 
+namespace {
+
+/// Number of cells of width h over which a value stays positive that changes by at most `rate` per
+/// unit of time.
+int cells_above_zero(double value, double rate, double h) {
+    const double cells = std::ceil(value / (rate * h)) - 1;
+    return cells > 0 ? static_cast<int>(std::min<double>(cells, Flow::cells)) : 0;
+}
+
+}  // namespace
+
 std::optional<double> next_release(
     const Flow& flow, const Oscillation& start, int side, int zeros, double limit,
     const Polynomial& pull, double least) {
     assert(side != 0 && (zeros == 0 || zeros == 1) && limit <= flow.reach());
-    const double h = flow.cell(),
-                 M3 = flow.bounds(start).x_dddot + pull.bound(1, std::min(flow.reach(), limit + h));
-    for (int k = 0; k < Flow::cells && k * h < limit; ++k) {
+    const double h = flow.cell(), time = std::min(flow.reach(), limit + h),
+                 M3 = flow.bounds(start, time).x_dddot + pull.bound(1, time);
+    for (int k = 0, held = 0; k < Flow::cells && k * h < limit; k += std::max(1, held)) {
         const Oscillation lo = k == 0 ? start : flow.at(start, k);
         const bool vanishes = k == 0 && zeros > 0;
-        // It cannot fall that far within the cell.
-        if (!vanishes && side * (flow.acceleration(lo) - pull.at(k * h)) - least > M3 * h) continue;
+        const double above = side * (flow.acceleration(lo) - pull.at(k * h)) - least;
+        held = vanishes ? 0 : cells_above_zero(above, M3, h);
+        if (held > 0) continue;
         const Flow::TaylorSeries x = flow.series(lo);
         // least - side (x'' - pull), negative while the ball is held.
         std::array<double, Flow::degree - 1> f;
@@ -335,15 +347,15 @@ std::optional<double> next_equal_velocity(
     const Flow& flow, const FlightStart& start, int direction, int zeros, double limit) {
     assert(direction != 0 && limit <= flow.reach());
     const Polynomial y = start.ball();
-    const double h = flow.cell(),
-                 M2 = flow.bounds(start.lo).x_ddot + y.bound(2, std::min(flow.reach(), limit + h));
-    for (int k = 0; k < Flow::cells && k * h < limit; ++k) {
+    const double h = flow.cell(), time = std::min(flow.reach(), limit + h),
+                 M2 = flow.bounds(start.lo, time).x_ddot + y.bound(2, time);
+    for (int k = 0, sliding = 0; k < Flow::cells && k * h < limit; k += std::max(1, sliding)) {
         const double speed = k > 0             ? flow.speed_at(start.lo, k) - y.rate(k * h)
                              : start.side != 0 ? start.relative_speed
                                                : start.lo.x_dot - y[1];
         const int vanishing = k == 0 ? zeros : 0;
-        // It cannot fall to zero within the cell.
-        if (vanishing == 0 && direction * speed > M2 * h) continue;
+        sliding = vanishing > 0 ? 0 : cells_above_zero(direction * speed, M2, h);
+        if (sliding > 0) continue;
         const Flow::TaylorSeries x = flow.series(k == 0 ? start.lo : flow.at(start.lo, k));
         std::array<double, Flow::degree> f;
         for (int n = 0; n < Flow::degree; ++n) f[n] = -direction * (n + 1.0) * x[n + 1];

@@ -144,14 +144,16 @@ double Run::flight_limit() const {
 void Run::fly() {
     grazing_.clear();
     const FlightStart start = flight();
-    double limit = flight_limit();
+    const double limit = flight_limit();
+    auto contact = fast_contact(free_, start, p_.b, limit, grazing_);
+    // A contact found beyond the end of the sliding would be one of another path.
     std::optional<double> stop;
-    if (direction_ != 0) {
-        stop = next_equal_velocity(free_, start, direction_, slip_zeros_, limit);
-        limit = stop.value_or(limit);
-    }
-    const auto contact = fast_contact(free_, start, p_.b, limit, grazing_);
-    for (const GrazingPoint& t : grazing_) graze(clock_.tau() + t.s, t.side);
+    if (direction_ != 0)
+        stop = next_equal_velocity(
+            free_, start, direction_, slip_zeros_, contact ? contact->s : limit);
+    if (stop && contact && *stop < contact->s) contact.reset();
+    for (const GrazingPoint& t : grazing_)
+        if (!stop || t.s <= *stop) graze(clock_.tau() + t.s, t.side);
     if (stop && !contact) stop_sliding(*stop);
     else fly_to(contact);
 }
