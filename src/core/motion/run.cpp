@@ -252,7 +252,9 @@ void Run::strike(const Contact& contact, double relative_acceleration) {
 /// leading derivative of the gap.
 void Run::leave_or_stick() {
     if (forces_) begin_sliding(relative_speed_ != 0 ? sign_of(relative_speed_) : -side_);
-    const Oscillation o = of_flow();
+    // Not a copy of lo_, whose parts have just been written: loads of several at once would wait.
+    const Oscillation moved = forces_ ? of_flow() : Oscillation{};
+    const Oscillation& o = forces_ ? moved : lo_;
     const double press = side_ * relative_acceleration(o, 0),
                  press_rate = side_ * (free_.jerk(o) + (forces_ ? 6 * forces_->shift[3] : 0));
     bounce_limit_ = press > 0 ? longest_bounce_ : 0;
