@@ -1,6 +1,9 @@
 #include <algorithm>
+#include <cmath>
+#include <numbers>
 #include <vector>
 
+#include "core/motion/load.hpp"
 #include "core/motion/record.hpp"
 #include "core/stability/lyapunov.hpp"
 #include "parts.hpp"
@@ -84,6 +87,57 @@ void bench_case(const Case& c) {
         ratios(times[3], times[1]), "times");
 }
 
+/// Counts flights, which an impact or the end of a sliding ends.
+struct Flights : Observer {
+    void on_impact(const Impact&) override { ++count; }
+    void on_slip(const Slip&) override { ++count; }
+    long count = 0;
+};
+
+/// With friction of the ball: time of a flight, relative to one without.
+void bench_friction() {
+    Parameters p;
+    p.b = 0.015, p.damping = Damping::closed_form;
+    Parameters sliding = p;
+    sliding.friction = 0.05 * p.epsilon * p.G;
+    const auto per_flight = [](const Parameters& of) {
+        Flights flights;
+        Observer* const observers[] = {&flights};
+        const double time =
+            per_impact(1, [&] { simulate(of, default_state(of), {1e9, impacts, {}}, observers); });
+        return time / static_cast<double>(flights.count);
+    };
+    const auto times =
+        in_turn(9, {[&] { return per_flight(sliding); }, [&] { return per_flight(p); }});
+    row("b = 15 mm, a ball with friction: trajectory", times[0], "ns per flight");
+    row("b = 15 mm: time of a flight with friction, relative to one without",
+        ratios(times[0], times[1]), "times");
+}
+
+/// A record of 60 s at 200 Hz, of an oscillator of 8 Hz.
+void bench_record() {
+    constexpr int samples = 12001;
+    const double step = 2 * std::numbers::pi * 8 / 200;
+    std::vector<double> tau, values;
+    for (int k = 0; k < samples; ++k) {
+        tau.push_back(k * step);
+        values.push_back(1e-3 * (std::sin(tau.back()) + 0.3 * std::sin(7.3 * tau.back())));
+    }
+    Parameters p;
+    p.b = 0.03, p.G = 0;
+    const auto times = in_turn(
+        9, {[&] {
+            return 1e-6 * per_impact(1, [&] {
+                       p.load =
+                           std::make_shared<const Load>(LoadKind::base_acceleration, tau, values);
+                       Lyapunov lyapunov(p, 0, 1e9, qr_alone);
+                       Observer* const observers[] = {&lyapunov};
+                       simulate(p, default_state(p), {p.load->length(), 1000000, {}}, observers);
+                   });
+        }});
+    row("a recorded load of 60 s with 200 Hz, all four exponents", times[0], "ms");
+}
+
 }  // namespace
 
 void bench_kernel() {
@@ -96,6 +150,8 @@ void bench_kernel() {
           Case{"b = 22 mm, irregular", 0.022, Damping::closed_form, 100},
           Case{"b = 34 mm, sparse", 0.034, Damping::closed_form, 300}})
         bench_case(c);
+    bench_friction();
+    bench_record();
 }
 
 }  // namespace vines::bench

@@ -140,14 +140,14 @@ struct CellSearch {
     std::vector<GrazingPoint>& grazing;
 
     /// The most common case of rule 4: g' has no zero in cell k, and g ends beyond the wall
-    /// ahead.
+    /// ahead, or at it: half a cycle is a multiple of h.
     std::optional<Contact> straight(int k, const Oscillation& lo, double next_relative) const {
         const Polynomial y_left = y.about(k * h);
         const double speed = lo.x_dot - y_left[1];
         if (std::abs(speed) <= M2 * h) return {};
         const int wall = speed > 0 ? 1 : -1;
         const double f0 = wall * (lo.x - y_left[0]) - b, fh = wall * next_relative - b;
-        if (f0 >= 0 || fh < 0) return {};
+        if (f0 >= 0 || fh < -eta) return {};
 
         // f = wall g - b in the cell: the quartic about the left end plus a fifth term so that it
         // matches f(h). One Halley step from the root of the chord leaves an error below 1e-6 h, a

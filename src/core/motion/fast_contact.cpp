@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <type_traits>
 
 namespace vines {
 
@@ -14,23 +15,24 @@ constexpr double little_step = 1e-6;
 // Maximum number of steps to find a crossing; after that next_contact() takes over.
 constexpr int most_crossing_steps = 4;
 
-/// True for a ball that flies straight and begins between the walls or leaves a wall with non-zero
-/// relative velocity.
+/// True for a ball that flies straight or under a constant force, and begins between the walls or
+/// leaves a wall with non-zero relative velocity.
 bool is_simple(const FlightStart& start) {
-    return start.is_straight() &&
+    return !start.shift &&
            (start.side == 0 || (start.zeros == 1 && start.side * start.relative_speed < 0));
 }
 
 enum class SearchResult { contact, none, undecided };
 
-/// One flight. All positions are mirrored if it leaves the wall at x - y = -b, so that a flight
-/// from a wall always leaves x - y = b.
+/// One flight, under a constant force if it `bends`. All positions are mirrored if it leaves the
+/// wall at x - y = -b, so that a flight from a wall always leaves x - y = b.
+template <bool bends>
 struct FastSearch {
     const Flow& flow;
     bool leaves_wall;
     double mirror, b, limit;
     double w;  // relative speed away from the wall
-    double y, y_dot;
+    double y, y_dot, y_2;
     Oscillation lo;
     double h, M2, M3, eta;
 
@@ -43,11 +45,27 @@ struct FastSearch {
           w(-mirror * start.relative_speed),
           y(mirror * start.y),
           y_dot(mirror * start.y_dot),
+          y_2(mirror * start.y_2),
           lo(mirrored(start.lo)),
           h(f.cell()) {
         const Flow::Bounds bounds = f.bounds(lo);
-        M2 = bounds.x_ddot, M3 = bounds.x_dddot;
-        eta = position_rounding(bounds, y, b);
+        M2 = bounds.x_ddot + 2 * std::abs(y_2), M3 = bounds.x_dddot;
+        eta = position_rounding(bounds, std::abs(y) + limit * limit * std::abs(y_2), b);
+    }
+
+    // A straight flight takes the shorter terms: the search is the most frequent step of a run.
+    double y_dot_at(double s) const {
+        if constexpr (bends) return y_dot + 2 * y_2 * s;
+        return y_dot;
+    }
+    double relative_acceleration(const Oscillation& o) const {
+        if constexpr (bends) return flow.acceleration(o) - 2 * y_2;
+        return flow.acceleration(o);
+    }
+    /// y after s with the velocity `rate` at its start.
+    double moved(double from, double rate, double s) const {
+        if constexpr (bends) return from + (rate + y_2 * s) * s;
+        return from + rate * s;
     }
 
     Oscillation mirrored(const Oscillation& o) const {
@@ -71,7 +89,8 @@ struct FastSearch {
         double left = leaves_wall ? b : lo.x - y;  // x - y at a block's left end
         bool left_inside = std::abs(left) < least;
         for (int from = 0; from < blocks; from += Flow::block) {
-            const Flow::Block ends = flow.relative_positions_apart(lo, y, y_dot, from);
+            Flow::Block ends = flow.relative_positions_apart(lo, y, y_dot, from);
+            if constexpr (bends) ends -= y_2 * flow.squared_times_apart(from);
             for (int i = 0; i < Flow::block && from + i < blocks; ++i) {
                 const double right = ends[i];
                 const bool right_inside = std::abs(right) < least;
@@ -90,7 +109,8 @@ struct FastSearch {
 
     SearchResult search_block(int block, double left, std::optional<Contact>& contact) const {
         const int from = Flow::block * block;
-        const Flow::Block ends = flow.relative_positions(lo, y, y_dot, from + 1);
+        Flow::Block ends = flow.relative_positions(lo, y, y_dot, from + 1);
+        if constexpr (bends) ends -= y_2 * flow.squared_times(from + 1);
         const double least = inside(h);
         if (from == 0 && !leaves_wall && std::abs(left) >= b - eta) return SearchResult::undecided;
         for (int i = 0; i < Flow::block; ++i) {
@@ -102,7 +122,7 @@ struct FastSearch {
                 return crossing(k, left, right, contact);
             } else if (!(std::abs(left) < least && std::abs(right) < least)) {
                 // Inside at both ends, and therefore empty if x - y is monotone.
-                if (std::abs(flow.roughly_at(lo, k).x_dot - y_dot) <= M2 * h)
+                if (std::abs(flow.roughly_at(lo, k).x_dot - y_dot_at(k * h)) <= M2 * h)
                     return SearchResult::undecided;
             }
             left = right;
@@ -116,8 +136,8 @@ struct FastSearch {
     SearchResult crossing(int k, double left, double right, std::optional<Contact>& contact) const {
         const double wall = right > 0 ? 1 : -1, f0 = wall * left - b, fh = wall * right - b;
         const Oscillation o = flow.roughly_at(lo, k);
-        const double x_ddot = flow.acceleration(o), jerk = flow.jerk(o), snap = flow.snap(o);
-        const double f1 = wall * (o.x_dot - y_dot), f2 = 0.5 * wall * x_ddot,
+        const double jerk = flow.jerk(o), snap = flow.snap(o), rate_left = y_dot_at(k * h);
+        const double f1 = wall * (o.x_dot - rate_left), f2 = 0.5 * wall * relative_acceleration(o),
                      f3 = (1.0 / 6) * wall * jerk, f4 = (1.0 / 24) * wall * snap;
         if (f1 <= M2 * h || f0 >= 0) return SearchResult::undecided;
 
@@ -133,11 +153,11 @@ struct FastSearch {
             f1 + d * (2 * f2 + d * (3 * f3 + d * (4 * f4 + d * (5 * f5)))),
             f2 + d * (3 * f3 + d * (6 * f4 + d * (10 * f5))));
         const Flow::ShortSeries series = flow.short_series(o);
-        const double y_left = y + y_dot * (k * h);
+        const double y_left = moved(y, y_dot, k * h);
         for (int i = 0; i < most_crossing_steps && d > 0 && d <= h + little_step * h; ++i) {
             const auto [x, x_dot] = series.at(d);
             const double step = halley(
-                wall * (x - (y_left + y_dot * d)) - b, wall * (x_dot - y_dot),
+                wall * (x - moved(y_left, rate_left, d)) - b, wall * (x_dot - y_dot_at(k * h + d)),
                 f2 + 0.5 * wall * d * (jerk + 0.5 * d * snap));
             if (!(std::abs(step) <= little_step * h)) {
                 d += step;
@@ -152,7 +172,8 @@ struct FastSearch {
             at.x = x + step * (x_dot + 0.5 * step * a);
             at.x_dot = x_dot + step * (a + 0.5 * step * rate);
             contact.emplace(Contact{
-                s, static_cast<int>(wall * mirror), mirrored(at), mirror * (at.x_dot - y_dot)});
+                s, static_cast<int>(wall * mirror), mirrored(at),
+                mirror * (at.x_dot - y_dot_at(s))});
             return SearchResult::contact;
         }
         return SearchResult::undecided;
@@ -160,7 +181,7 @@ struct FastSearch {
 
     /// The next contact of a chatter, if the conditions of CellSearch::chatter() prove it.
     SearchResult next_in_chatter(std::optional<Contact>& contact) const {
-        const double a = flow.acceleration(lo);
+        const double a = relative_acceleration(lo);
         if (!(4 * w <= a * h)) return SearchResult::undecided;
         const double D = 4 * w / a;
         if (M3 * D >= a || D * (w + M2 * D) >= b) return SearchResult::undecided;
@@ -174,7 +195,7 @@ struct FastSearch {
             for (int n = 2 * Flow::short_pairs - 1; n > 0; --n) {
                 half_curvature = half_curvature * s + rate;
                 rate = rate * s + phi;
-                phi = phi * s + (n > 1 ? series.x[n] : -w);
+                phi = phi * s + (n > 2 ? series.x[n] : n == 2 ? series.x[2] - y_2 : -w);
             }
             const double step = halley(phi, rate, half_curvature);
             if (!(std::abs(step) <= last_chatter_step * s)) {
@@ -202,8 +223,11 @@ std::optional<Contact> fast_contact(
     const Flow& flow, const FlightStart& start, double b, double limit,
     std::vector<GrazingPoint>& grazing) {
     std::optional<Contact> contact;
-    if (!is_simple(start) ||
-        FastSearch(flow, start, b, limit).search(contact) == SearchResult::undecided)
+    const auto search = [&]<bool bends>(std::bool_constant<bends>) {
+        return FastSearch<bends>(flow, start, b, limit).search(contact);
+    };
+    if (!is_simple(start) || (start.y_2 == 0 ? search(std::false_type())
+                                             : search(std::true_type())) == SearchResult::undecided)
         contact = next_contact(flow, start, b, limit, grazing);
     return contact;
 }

@@ -175,6 +175,11 @@ public:
                from(of_sin_.x_apart) * o.sin_theta + from(of_cos_.x_apart) * o.cos_theta -
                (y0 + from(time_apart_) * y_dot);
     }
+    /// Squares of the same grid times.
+    Block squared_times(int k) const { return Eigen::Map<const Block>(time_.data() + k).square(); }
+    Block squared_times_apart(int j) const {
+        return Eigen::Map<const Block>(time_apart_.data() + j).square();
+    }
     /// The full state at grid time k h.
     Oscillation at(const Oscillation& o, int k) const;
     /// x' alone.

@@ -241,7 +241,8 @@ void Run::strike(const Contact& contact, double relative_acceleration) {
     chatter_ = i.side == last_side_ && pressed ? chatter_ + 1 : 1;
     last_side_ = i.side;
     ++impacts_;
-    lo_.x_dot = i.x_dot_after;
+    // As a whole: soon read as a whole, which waits for parts that were written on their own.
+    lo_ = {i.x, i.x_dot_after, i.sin_theta, i.cos_theta};
     y_dot_ = i.y_dot_after;
     relative_speed_ = i.relative_speed_after;
     notify(&Observer::on_impact, i);
@@ -252,9 +253,7 @@ void Run::strike(const Contact& contact, double relative_acceleration) {
 /// leading derivative of the gap.
 void Run::leave_or_stick() {
     if (forces_) begin_sliding(relative_speed_ != 0 ? sign_of(relative_speed_) : -side_);
-    // Not a copy of lo_, whose parts have just been written: loads of several at once would wait.
-    const Oscillation moved = forces_ ? of_flow() : Oscillation{};
-    const Oscillation& o = forces_ ? moved : lo_;
+    const Oscillation o = of_flow();
     const double press = side_ * relative_acceleration(o, 0),
                  press_rate = side_ * (free_.jerk(o) + (forces_ ? 6 * forces_->shift[3] : 0));
     bounce_limit_ = press > 0 ? longest_bounce_ : 0;
