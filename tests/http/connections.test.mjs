@@ -783,11 +783,11 @@ test("the memory for requests is limited over all clients", async (t) => {
 });
 
 test("the memory for unread answers is limited over all clients", async (t) => {
-  const one = await startService(["--memory-limit", "10000000"]);
+  const one = await startService(["--memory-limit", "40000000"]);
   t.after(() => one.stop());
-  // Answers of 2 MB: five are held, the next one is refused. After 2 s the first would be cut off.
+  // Answers of 8 MB: five are held, the next one is refused.
   const large =
-    '{"damping": "closed_form", "tau_end": 500, "max_points": 100000, "samples_per_cycle": 200}';
+    '{"damping": "closed_form", "tau_end": 2000, "max_points": 100000, "samples_per_cycle": 200}';
   const slow = [];
   for (let i = 0; i < 6; ++i) {
     const connection = await connect(one.url);
@@ -797,7 +797,12 @@ test("the memory for unread answers is limited over all clients", async (t) => {
     slow.push(connection);
   }
   const first = slow.map(({text}) => Number(/^HTTP\/1\.1 (\d+)/.exec(text())[1]));
-  assert.deepEqual(first, [200, 200, 200, 200, 200, 503]);
+  assert.deepEqual(first.slice(0, 5), [200, 200, 200, 200, 200]);
+  if (first[5] !== 503) {
+    // On a slow machine more than 2 s have passed: the first client was cut off instead.
+    slow[0].socket.resume();
+    assert.ok((await slow[0].ended).length < 6e6);
+  }
   assert.equal((await simulateAt(one.url, small)).status, 200, "a small answer");
   for (const {socket} of slow) socket.destroy();
   await until(async () => {

@@ -356,3 +356,30 @@ TEST_CASE("slips change the sum of the exponents by the logarithms of their rati
         lambda[0] + lambda[1] + lambda[2] + lambda[3] ==
         doctest::Approx(-2 * p.zeta() + ratios.sum / (ratios.to - ratios.from)).epsilon(1e-9));
 }
+
+TEST_CASE("vanishing gravity and friction, and a table of equal R, leave a periodic motion as it is") {
+    Parameters p;
+    p.b = 0.015, p.damping = Damping::closed_form;
+    const auto last_impacts = [](const Parameters& of) {
+        ImpactRecord record;
+        Observer* const observers[] = {&record};
+        simulate(of, default_state(of), {of.cycle() * 2000, 100000, {}}, observers);
+        return std::vector<Impact>(record.entries.end() - 8, record.entries.end());
+    };
+    const std::vector<Impact> plain = last_impacts(p);
+    Parameters heavy = p, sliding = p, table = p;
+    heavy.gravity = 1e-18, sliding.friction = 1e-18;
+    table.table_plus = table.table_minus =
+        std::make_shared<const RestitutionTable>(RestitutionTable{{0, 1}, {p.R_plus, p.R_minus}});
+    for (const Parameters& of : {heavy, sliding, table}) {
+        const std::vector<Impact> impacts = last_impacts(of);
+        for (std::size_t k = 0; k < plain.size(); ++k) {
+            CHECK(impacts[k].side == plain[k].side);
+            CHECK(impacts[k].tau == doctest::Approx(plain[k].tau).epsilon(1e-14));
+            CHECK(impacts[k].x == doctest::Approx(plain[k].x).epsilon(1e-12));
+            CHECK(
+                impacts[k].relative_speed_before ==
+                doctest::Approx(plain[k].relative_speed_before).epsilon(1e-12));
+        }
+    }
+}
