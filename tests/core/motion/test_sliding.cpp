@@ -357,7 +357,8 @@ TEST_CASE("slips change the sum of the exponents by the logarithms of their rati
         doctest::Approx(-2 * p.zeta() + ratios.sum / (ratios.to - ratios.from)).epsilon(1e-9));
 }
 
-TEST_CASE("vanishing gravity and friction, and a table of equal R, leave a periodic motion as it is") {
+TEST_CASE(
+    "vanishing gravity and friction, and a table of equal R, leave a periodic motion as it is") {
     Parameters p;
     p.b = 0.015, p.damping = Damping::closed_form;
     const auto last_impacts = [](const Parameters& of) {
