@@ -9,7 +9,7 @@
 
 namespace vines::api {
 
-/// What excites the host.
+/// A kind of load on the host.
 struct Excitation {
     const char* amplitude;  ///< name of the field, or else of the factor on a load
     const char* unit;

@@ -160,7 +160,8 @@ struct DesignSearch {
         return m;
     }
 
-    /// Of the objective, which is a length or a rate of one, at an amplitude.
+    /// The objective of the map at this amplitude over that at the largest: lengths and their rates
+    /// are in proportion to it, times do not depend on it.
     double scale(double amplitude) const {
         return plan.objective == Objective::decay_time ? 1 : amplitude;
     }

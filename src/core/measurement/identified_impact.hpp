@@ -60,8 +60,8 @@ void complete_impacts(
 
 /// Mean y' of the mass between two contacts, y = x - side b at both, eq. (43).
 double flight_velocity(double b, const IdentifiedImpact& from, const IdentifiedImpact& to);
-/// What friction takes from y' in half of a flight whose sliding does not turn: y' is the mean plus
-/// this at its start.
+/// Half of the loss of y' by friction over a flight in which the sliding does not reverse. At the
+/// start of the flight y' exceeds its mean by this.
 double braking(const Parameters& p, const IdentifiedImpact& from, const IdentifiedImpact& to);
 
 /// Whether the mass can have flown freely from one impact to the next: with one velocity, from wall

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <type_traits>
 
 namespace vines {
 
@@ -223,12 +222,11 @@ std::optional<Contact> fast_contact(
     const Flow& flow, const FlightStart& start, double b, double limit,
     std::vector<GrazingPoint>& grazing) {
     std::optional<Contact> contact;
-    const auto search = [&]<bool bends>(std::bool_constant<bends>) {
-        return FastSearch<bends>(flow, start, b, limit).search(contact);
-    };
-    if (!is_simple(start) || (start.y_2 == 0 ? search(std::false_type())
-                                             : search(std::true_type())) == SearchResult::undecided)
-        contact = next_contact(flow, start, b, limit, grazing);
+    const SearchResult found = !is_simple(start) ? SearchResult::undecided
+                               : start.y_2 == 0
+                                   ? FastSearch<false>(flow, start, b, limit).search(contact)
+                                   : FastSearch<true>(flow, start, b, limit).search(contact);
+    if (found == SearchResult::undecided) contact = next_contact(flow, start, b, limit, grazing);
     return contact;
 }
 

@@ -241,7 +241,8 @@ void Run::strike(const Contact& contact, double relative_acceleration) {
     chatter_ = i.side == last_side_ && pressed ? chatter_ + 1 : 1;
     last_side_ = i.side;
     ++impacts_;
-    // As a whole: soon read as a whole, which waits for parts that were written on their own.
+    // Assigned as a whole, because the next step reads it as a whole: a read that spans several
+    // separate writes waits until they have reached the cache.
     lo_ = {i.x, i.x_dot_after, i.sin_theta, i.cos_theta};
     y_dot_ = i.y_dot_after;
     relative_speed_ = i.relative_speed_after;
