@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <type_traits>
 
 namespace vines {
 
@@ -222,11 +223,13 @@ std::optional<Contact> fast_contact(
     const Flow& flow, const FlightStart& start, double b, double limit,
     std::vector<GrazingPoint>& grazing) {
     std::optional<Contact> contact;
-    const SearchResult found = !is_simple(start) ? SearchResult::undecided
-                               : start.y_2 == 0
-                                   ? FastSearch<false>(flow, start, b, limit).search(contact)
-                                   : FastSearch<true>(flow, start, b, limit).search(contact);
-    if (found == SearchResult::undecided) contact = next_contact(flow, start, b, limit, grazing);
+    // Through a function: with both searches in this one a run takes 2 % longer.
+    const auto search = [&]<bool bends>(std::bool_constant<bends>) {
+        return FastSearch<bends>(flow, start, b, limit).search(contact);
+    };
+    if (!is_simple(start) || (start.y_2 == 0 ? search(std::false_type())
+                                             : search(std::true_type())) == SearchResult::undecided)
+        contact = next_contact(flow, start, b, limit, grazing);
     return contact;
 }
 
