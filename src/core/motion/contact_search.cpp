@@ -65,7 +65,8 @@ private:
             const Value end = at(e);
             if (!at_resolution && !monotone && m.f2 < 0 && end.f1 < 0) return before_maximum(a, e);
             if (end.f < 0) return {};
-            return at_resolution ? e : root(a, e);
+            if (at_resolution) return e;
+            return m.f < 0 ? root(middle, m.f, e, end.f) : root(a, at(a).f, middle, m.f);
         }
         if (auto d = in(a, middle)) return d;
         return in(middle, e);
@@ -83,16 +84,15 @@ private:
             d = newton > low && newton < high ? newton : 0.5 * (low + high);
         }
         const double top = at(d).f;
-        if (top >= 0) return root(a, d);
+        if (top >= 0) return root(a, at(a).f, d, top);
         if (top >= -noise_) tangent_ = d;
         return {};
     }
 
-    /// The only upward crossing in (a, e], f(a) < 0 <= f(e): Halley steps inside the bracket. Where
-    /// rounding prevents convergence, the bracket is halved until it is an ulp wide.
-    double root(double a, double e) const {
+    /// The only upward crossing in (a, e], f(a) = fa < 0 <= f(e) = fe: Halley steps inside the
+    /// bracket. Where rounding prevents convergence, the bracket is halved until it is an ulp wide.
+    double root(double a, double fa, double e, double fe) const {
         double low = a, high = e;
-        const double fa = at(a).f, fe = at(e).f;
         double d = fe > fa ? a - fa * (e - a) / (fe - fa) : 0.5 * (a + e);
         for (int i = 0; high - low > ulp * d; ++i) {
             const Value v = at(d);

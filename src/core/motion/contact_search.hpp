@@ -2,7 +2,7 @@
 //
 // g(s) = x(s) - y(s) leaves |g| < b at a contact. A sign test at the ends of steps misses contacts
 // (two can hide within a step). Therefore every cell of the flow's grid is either proven empty or
-// searched by first_crossing(), whose bisection is itself a proof. There are four rules; eta is the
+// searched by first_crossing(), whose bisection is itself a proof. There are five rules; eta is the
 // rounding error of g on the grid.
 //
 //   1. g differs from its chord over a cell of width h by at most M2 h^2/8, M2 >= |g''|, the bound
@@ -20,6 +20,9 @@
 //   4. first_crossing() bisects until an interval is empty, monotone, convex or concave by bounds
 //      on the polynomial; each such interval has at most one upward crossing, whose position is
 //      bracketed. Bisection ends at the latest when an interval reaches the resolution of double.
+//   5. A flight that is pulled away from its wall keeps away from it for some time: with M4 >=
+//      |g''''|, side g falls up to 2 |g''(0)|/M3 where side g''(0) < 0, and after the release from
+//      sticking up to 3 |g'''(0)|/M4.
 #pragma once
 
 #include <optional>

@@ -15,11 +15,35 @@ constexpr double little_step = 1e-6;
 // Maximum number of steps to find a crossing; after that next_contact() takes over.
 constexpr int most_crossing_steps = 4;
 
-/// True for a ball that flies straight or under a constant force, and begins between the walls or
-/// leaves a wall with non-zero relative velocity.
+// Reach of near_series(), over a cell, and its coefficients.
+constexpr double near_reach = 1.0 / 20;
+constexpr int near_size = 8;
+constexpr double inverse_factorial[near_size] = {1,        1,         1.0 / 2,   1.0 / 6,
+                                                 1.0 / 24, 1.0 / 120, 1.0 / 720, 1.0 / 5040};
+
+/// Flow::short_series() for |d| <= near_reach h, from the derivatives: near_size coefficients, then
+/// zeros. The remainder is below 1e-20 of the motion.
+Flow::ShortSeries near_series(const Flow& flow, const Oscillation& o) {
+    const auto [stiffness, damping, forcing, Omega] = flow.coefficients();
+    Flow::ShortSeries s{Flow::ShortCoefficients::Zero(), Flow::ShortCoefficients::Zero()};
+    double before = o.x, derivative = o.x_dot, sin = o.sin_theta, cos = o.cos_theta;
+    s.x[0] = o.x, s.x[1] = s.x_dot[0] = o.x_dot;
+    for (int n = 2; n < near_size; ++n) {
+        const double next = forcing * sin - stiffness * before - damping * derivative;
+        s.x_dot[n - 1] = next * inverse_factorial[n - 1];
+        s.x[n] = next * inverse_factorial[n];
+        before = derivative, derivative = next;
+        const double sin_rate = Omega * cos;
+        cos = -Omega * sin, sin = sin_rate;
+    }
+    return s;
+}
+
+/// True for a ball that flies straight or under a constant force, and begins between the walls,
+/// leaves a wall or is released from it.
 bool is_simple(const FlightStart& start) {
-    return !start.shift &&
-           (start.side == 0 || (start.zeros == 1 && start.side * start.relative_speed < 0));
+    return !start.shift && (start.side == 0 || start.zeros == 3 ||
+                            (start.zeros == 1 && start.side * start.relative_speed < 0));
 }
 
 enum class SearchResult { contact, none, undecided };
@@ -29,7 +53,7 @@ enum class SearchResult { contact, none, undecided };
 template <bool bends>
 struct FastSearch {
     const Flow& flow;
-    bool leaves_wall;
+    bool leaves_wall, is_released;
     double mirror, b, limit;
     double w;  // relative speed away from the wall
     double y, y_dot, y_2;
@@ -39,6 +63,7 @@ struct FastSearch {
     FastSearch(const Flow& f, const FlightStart& start, double half_width, double until)
         : flow(f),
           leaves_wall(start.side != 0),
+          is_released(start.zeros == 3),
           mirror(leaves_wall ? start.side : 1),
           b(half_width),
           limit(until),
@@ -84,6 +109,10 @@ struct FastSearch {
     /// Tests blocks of cells, then the cells of each block not proven empty as a whole.
     SearchResult search(std::optional<Contact>& contact) const {
         const double width = Flow::block * h, least = inside(width);
+        if (leaves_wall && !is_released) {
+            const double a = relative_acceleration(lo);
+            if (is_in_chatter(a)) return return_within(4 * w / a, a, contact);
+        }
         const int blocks =
             limit < flow.reach() ? static_cast<int>(limit / width) + 1 : Flow::cells / Flow::block;
         double left = leaves_wall ? b : lo.x - y;  // x - y at a block's left end
@@ -113,21 +142,50 @@ struct FastSearch {
         if constexpr (bends) ends -= y_2 * flow.squared_times(from + 1);
         const double least = inside(h);
         if (from == 0 && !leaves_wall && std::abs(left) >= b - eta) return SearchResult::undecided;
+        const double departure = leaves_wall ? duration_of_departure() : 0;
         for (int i = 0; i < Flow::block; ++i) {
             const int k = from + i;
             const double right = ends[i];
-            if (k == 0 && leaves_wall) {
-                if (!leaves(right, h, least)) return next_in_chatter(contact);
+            if ((k + 1) * h <= departure) {
+                if (right <= -least) return SearchResult::undecided;
+            } else if (k == 0 && leaves_wall) {
+                const SearchResult first =
+                    leaves(right, h, least) ? SearchResult::none : search_first(right, contact);
+                if (first != SearchResult::none) return first;
             } else if (std::abs(right) >= b - eta) {
                 return crossing(k, left, right, contact);
-            } else if (!(std::abs(left) < least && std::abs(right) < least)) {
-                // Inside at both ends, and therefore empty if x - y is monotone.
-                if (std::abs(flow.roughly_at(lo, k).x_dot - y_dot_at(k * h)) <= M2 * h)
-                    return SearchResult::undecided;
+            } else if (
+                !(std::abs(left) < least && std::abs(right) < least) && !is_empty(k, left, right)) {
+                return SearchResult::undecided;
             }
             left = right;
         }
         return SearchResult::none;
+    }
+
+    /// Time for which x - y, once it is b, certainly falls: rule 5.
+    double duration_of_departure() const {
+        if (!is_released) return -2 * relative_acceleration(lo) / M3;
+        const auto [stiffness, damping, forcing, Omega] = flow.coefficients();
+        const double M4 = stiffness * M2 + damping * M3 + std::abs(forcing) * Omega * Omega;
+        return -3 * flow.jerk(lo) / M4;
+    }
+
+    /// True if x - y - or its negative, for `wall` = -1 - rises throughout a cell, given its first
+    /// two derivatives at the left end.
+    bool rises(double first, double second) const {
+        return first + std::min(0.0, second * h) > 0.5 * M3 * (h * h);
+    }
+
+    /// True if there is no contact in cell k, given that there is none at its ends: x - y is
+    /// monotone, or rule 1 holds with the curvature in this cell.
+    bool is_empty(int k, double left, double right) const {
+        const Oscillation o = flow.roughly_at(lo, k);
+        const double rate = o.x_dot - y_dot_at(k * h), a = relative_acceleration(o);
+        if (rises(rate, a) || rises(-rate, -a)) return true;
+        const double wall = left + right > 0 ? 1 : -1, bulge = std::max(0.0, M3 * h - wall * a);
+        return std::max(wall * left, wall * right) < b - bulge * (h * h / 8) - eta &&
+               std::min(wall * left, wall * right) > -inside(h);
     }
 
     /// The contact in cell k if x - y is monotone there: the most common case of rule 4. A
@@ -139,7 +197,7 @@ struct FastSearch {
         const double jerk = flow.jerk(o), snap = flow.snap(o), rate_left = y_dot_at(k * h);
         const double f1 = wall * (o.x_dot - rate_left), f2 = 0.5 * wall * relative_acceleration(o),
                      f3 = (1.0 / 6) * wall * jerk, f4 = (1.0 / 24) * wall * snap;
-        if (f1 <= M2 * h || f0 >= 0) return SearchResult::undecided;
+        if (!rises(f1, 2 * f2) || f0 >= 0) return SearchResult::undecided;
 
         // Root of the chord, corrected for curvature; one step on the quartic about the left end of
         // the cell, with a fifth term so that it matches f(h), which leaves an error of about 1e-8
@@ -179,27 +237,39 @@ struct FastSearch {
         return SearchResult::undecided;
     }
 
-    /// The next contact of a chatter, if the conditions of CellSearch::chatter() prove it.
-    SearchResult next_in_chatter(std::optional<Contact>& contact) const {
+    /// The first cell of a flight that may return to its wall there. With f = x - y - b = s phi(s)
+    /// there is at most one contact where phi rises. phi'(0) = a/2 and |phi''| <= M3/3.
+    SearchResult search_first(double right, std::optional<Contact>& contact) const {
         const double a = relative_acceleration(lo);
-        if (!(4 * w <= a * h)) return SearchResult::undecided;
-        const double D = 4 * w / a;
-        if (M3 * D >= a || D * (w + M2 * D) >= b) return SearchResult::undecided;
-        // f = x - y - b is s phi(s).
-        const Flow::ShortSeries series = flow.short_series(lo);
-        const double c2 = 0.5 * a, c3 = flow.jerk(lo) / 6, c4 = flow.snap(lo) / 24;
+        if (is_released || !(3 * a > 2 * M3 * h)) return SearchResult::undecided;
+        if (std::abs(right) < b - eta && right > -inside(h)) return SearchResult::none;
+        return right < b + eta ? SearchResult::undecided : return_within(h, a, contact);
+    }
+
+    /// True for a flight in a chatter: the conditions of CellSearch::chatter() prove that it
+    /// returns within D = 4 w/a.
+    bool is_in_chatter(double a) const { return 4 * w <= a * h && 4 * w * M3 < a * a; }
+
+    /// The return to the wall within D, where f = x - y - b = s phi(s) rises through 0 once;
+    /// a = f''(0) > 0.
+    SearchResult return_within(double D, double a, std::optional<Contact>& contact) const {
+        if (D * (w + M2 * D) >= b) return SearchResult::undecided;
+        const bool is_near = D <= near_reach * h;
+        const Flow::ShortSeries series = is_near ? near_series(flow, lo) : flow.short_series(lo);
+        const int size = is_near ? near_size : 2 * Flow::short_pairs;
+        const double c2 = 0.5 * a, c3 = series.x[3], c4 = series.x[4];
         double s = w / c2;
         s -= s * s * (c3 + s * c4) / (c2 + s * (2 * c3 + 3 * s * c4));
         for (int i = 0; i < 8; ++i) {
             double phi = 0, rate = 0, half_curvature = 0;
-            for (int n = 2 * Flow::short_pairs - 1; n > 0; --n) {
+            for (int n = size - 1; n > 0; --n) {
                 half_curvature = half_curvature * s + rate;
                 rate = rate * s + phi;
                 phi = phi * s + (n > 2 ? series.x[n] : n == 2 ? series.x[2] - y_2 : -w);
             }
             const double step = halley(phi, rate, half_curvature);
             if (!(std::abs(step) <= last_chatter_step * s)) {
-                s = std::clamp(s + step, 0.125 * D, D);
+                s = std::clamp(s + step, 0.5 * w / a, D);
                 continue;
             }
             s += step;

@@ -33,7 +33,7 @@ TrueMotion motion_after(double settling, double b, double R_plus, double R_minus
 
 TrueMotion settled_motion(double b, double R_plus, double R_minus, double seconds) {
     // A chaotic motion sticks occasionally: takes the first part without sticking.
-    for (double settling = 20; settling < 200; settling += 10) {
+    for (double settling = 20; settling < 600; settling += 10) {
         TrueMotion motion = motion_after(settling, b, R_plus, R_minus, seconds);
         if (motion.sticks.empty()) return motion;
     }

@@ -9,7 +9,8 @@ using namespace vines::test;
 
 namespace {
 
-/// A flight of a random system, from a wall at a speed of any size or from between the walls.
+/// A flight of a random system: from a wall at a speed of any size, from between the walls, or
+/// after a release, where x'' = y''.
 struct RandomFlight {
     Flow flow;
     double b;
@@ -20,11 +21,19 @@ struct RandomFlight {
 RandomFlight random_flight(std::mt19937_64& engine, bool bends = false) {
     const System s = random_system(engine);
     const double theta = uniform(engine, 0, 6.3);
-    const Oscillation lo{s.start.x, s.start.x_dot, std::sin(theta), std::cos(theta)};
+    Oscillation lo{s.start.x, s.start.x_dot, std::sin(theta), std::cos(theta)};
     const double y_2 = bends ? uniform(engine, -1, 1) * (std::abs(lo.x) + s.parameters.b) : 0;
     if (engine() % 8 == 0)
         return {
             Flow::free(s.parameters), s.parameters.b, {lo, s.start.y, s.start.y_dot, 0, 0, 0, y_2}};
+    if (engine() % 4 == 0) {
+        const Flow flow = Flow::free(s.parameters);
+        const auto [stiffness, damping, forcing, Omega] = flow.coefficients();
+        lo.x = (forcing * lo.sin_theta - damping * lo.x_dot - 2 * y_2) / stiffness;
+        const int away = flow.jerk(lo) < 0 ? 1 : -1;
+        return {
+            flow, s.parameters.b, {lo, lo.x - away * s.parameters.b, lo.x_dot, away, 0, 3, y_2}};
+    }
     const int side = engine() % 2 ? 1 : -1;
     const double speed =
         std::abs(s.start.x_dot - s.start.y_dot) * std::pow(10, -uniform(engine, 0, 12)) + 1e-12;
