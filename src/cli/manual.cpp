@@ -47,67 +47,63 @@ std::string sentence(std::string text) {
 
 /// Keeps line breaks.
 std::string lines_kept(const std::string& text) {
-    std::string result;
-    for (const char c : roff(text)) {
-        if (c == '\n') result += "\n.br\n";
-        else result += c;
-    }
-    return result;
-}
-
-std::string flag_meaning(const FlagUsage& flag) {
-    std::string text = sentence(flag.description);
-    if (!flag.choices.empty()) text += fmt::format(" One of: {}.", fmt::join(flag.choices, ", "));
-    if (!flag.range.empty()) text += " Range: " + flag.range + ".";
-    if (!flag.default_value.empty()) text += " Default: " + flag.default_value + ".";
-    if (!flag.environment.empty()) text += " Environment: " + flag.environment + ".";
-    return lines_kept(text) + "\n";
+    return CLI::detail::find_and_replace(roff(text), "\n", "\n.br\n");
 }
 
 /// Entry in the option list of a command.
-std::string flag_entry(const FlagUsage& flag, bool positional) {
+std::string entry(const CLI::Option& option) {
     std::vector<std::string> names;
-    for (const std::string& name : flag.names)
-        names.push_back(positional ? italic(name) : bold(name));
-    const std::string value = positional ? "" : flag.value_word();
-    return fmt::format(
-        ".TP\n{}{}\n{}", fmt::join(names, ", "), value.empty() ? "" : " " + italic(value),
-        flag_meaning(flag));
+    for (const std::string& name : names_of(option))
+        names.push_back(option.get_positional() ? italic(name) : bold(name));
+    std::string head = fmt::format("{}", fmt::join(names, ", ")),
+                text = sentence(option.get_description());
+    if (takes_value(option)) {
+        const ValueUsage value = value_of(option);
+        if (!option.get_positional()) head += " " + italic(value.word);
+        if (!value.choices.empty())
+            text += fmt::format(" One of: {}.", fmt::join(value.choices, ", "));
+        if (!value.range.empty()) text += " Range: " + value.range + ".";
+        if (!option.get_default_str().empty())
+            text += " Default: " + option.get_default_str() + ".";
+    }
+    if (!option.get_envname().empty()) text += " Environment: " + option.get_envname() + ".";
+    return fmt::format(".TP\n{}\n{}\n", head, lines_kept(text));
 }
 
-std::string flag_entries(const CommandUsage& command) {
+std::string entries(const CLI::App& command) {
     std::string text;
-    for (const FlagUsage& flag : command.positionals) text += flag_entry(flag, true);
-    for (const FlagUsage& flag : command.flags) text += flag_entry(flag, false);
+    for (const CLI::Option* option : positionals_of(command)) text += entry(*option);
+    for (const CLI::Option* option : flags_of(command)) text += entry(*option);
     return text;
 }
 
 /// Synopsis of a subcommand: "sweep [flags] [request]".
-std::string call_of(const CommandUsage& command) {
-    std::string text = bold(command.name) + " [" + italic("flags") + "]";
-    for (const FlagUsage& flag : command.positionals) {
-        const std::string word = italic(flag.names[0]) + (flag.repeats ? " ..." : "");
-        text += flag.required ? " " + word : " [" + word + "]";
+std::string call_of(const CLI::App& command) {
+    std::string text = bold(command.get_name()) + " [" + italic("flags") + "]";
+    for (const CLI::Option* option : positionals_of(command)) {
+        const bool repeats = option->get_items_expected_max() > 1;
+        const std::string word = italic(option->get_name(true)) + (repeats ? " ..." : "");
+        text += option->get_required() ? " " + word : " [" + word + "]";
     }
     return text;
 }
 
-std::string section_of_commands(const ProgramUsage& usage) {
+std::string section_of_commands(const CLI::App& app) {
     std::string text = ".SH SUBCOMMANDS\n";
-    for (const CommandUsage& command : usage.commands)
+    for (const CLI::App* command : subcommands_of(app))
         text += fmt::format(
-            ".SS {}\n{}\n{}", call_of(command), lines_kept(sentence(command.description)),
-            flag_entries(command));
+            ".SS {}\n{}\n{}", call_of(*command), lines_kept(sentence(command->get_description())),
+            entries(*command));
     return text;
 }
 
-std::string section_of_variables(const ProgramUsage& usage) {
+std::string section_of_variables(const CLI::App& app) {
     std::map<std::string, std::vector<std::string>> variables;
-    for (const CommandUsage& command : usage.commands)
-        for (const FlagUsage& flag : command.flags)
-            if (!flag.environment.empty())
-                variables[flag.environment].push_back(command.name + " " + flag.names.back());
-    if (variables.empty()) return "";
+    for (const CLI::App* command : subcommands_of(app))
+        for (const CLI::Option* flag : flags_of(*command))
+            if (!flag->get_envname().empty())
+                variables[flag->get_envname()].push_back(
+                    command->get_name() + " " + names_of(*flag).back());
     std::string text =
         ".SH ENVIRONMENT\nA flag overrides its variable, which overrides the default.\n";
     for (const auto& [name, flags] : variables)
@@ -128,34 +124,32 @@ std::vector<std::string> paragraphs_of(const std::string& text) {
 }
 
 /// Notes below the help of the subcommands; a note that several of them share is printed once.
-std::string section_of_notes(const ProgramUsage& usage) {
+std::string section_of_notes(const CLI::App& app) {
     std::vector<std::pair<std::string, std::vector<std::string>>> notes;
-    for (const CommandUsage& command : usage.commands)
-        for (const std::string& paragraph : paragraphs_of(command.footer)) {
-            auto same = std::find_if(notes.begin(), notes.end(), [&paragraph](const auto& note) {
-                return note.first == paragraph;
-            });
+    for (const CLI::App* command : subcommands_of(app))
+        for (const std::string& paragraph : paragraphs_of(command->get_footer())) {
+            auto same = std::ranges::find(notes, paragraph, [](const auto& n) { return n.first; });
             if (same == notes.end()) same = notes.insert(same, {paragraph, {}});
-            same->second.push_back(command.name);
+            same->second.push_back(command->get_name());
         }
-    std::string text = notes.empty() ? "" : ".SH NOTES\n";
+    std::string text = ".SH NOTES\n";
     for (const auto& [note, names] : notes)
         text += fmt::format(
             ".TP\n{}\n{}\n", bold(fmt::format("{}", fmt::join(names, ", "))), lines_kept(note));
     return text;
 }
 
-std::string manual_page(const ProgramUsage& usage) {
-    const CommandUsage& program = usage.program;
-    std::string summary = program.description;
+std::string manual_page(const CLI::App& app) {
+    const std::string name = app.get_name();
+    std::string summary = app.get_description();
     if (summary.ends_with('.')) summary.pop_back();
     return fmt::format(
                ".TH {} 1 \"\" \"{} {}\" \"User Commands\"\n.nh\n.ad l\n"
                ".SH NAME\n{} \\- {}\n.SH SYNOPSIS\n{} {} [{}]\n.SH FLAGS\n",
-               capitals(program.name), program.name, api::version(), program.name, roff(summary),
-               bold(program.name), italic("subcommand"), italic("flags")) +
-           flag_entries(program) + section_of_commands(usage) + section_of_variables(usage) +
-           section_of_notes(usage);
+               capitals(name), name, api::version(), name, roff(summary), bold(name),
+               italic("subcommand"), italic("flags")) +
+           entries(app) + section_of_commands(app) + section_of_variables(app) +
+           section_of_notes(app);
 }
 
 }  // namespace
@@ -164,7 +158,7 @@ Command add_manual(CLI::App& app) {
     CLI::App* command = app.add_subcommand("manual", "the manual page");
     add_examples(*command, "vines manual | man -l -");
     return ended_by_signals({command, [&app] {
-                                 print(manual_page(usage_of(app)));
+                                 print(manual_page(app));
                                  return 0;
                              }});
 }

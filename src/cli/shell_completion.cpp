@@ -70,15 +70,16 @@ public:
         if (!word.starts_with(typed_)) return;
         text_ += word + (description.empty() ? "" : "\t" + description) + "\n";
     }
-    void add_flags(const CommandUsage& command) {
-        for (const FlagUsage& flag : command.flags)
-            for (const std::string& name : flag.names) add(name, flag.description);
+    void add_flags(const CLI::App& command) {
+        for (const CLI::Option* flag : flags_of(command))
+            for (const std::string& name : names_of(*flag)) add(name, flag->get_description());
     }
     /// Values of an option or a positional; `before`: what precedes them in the same word.
-    void add_values(const FlagUsage& flag, const std::string& before = "") {
-        if (flag.value == ValueKind::file) text_ = "/file\n";
-        if (flag.value == ValueKind::folder) text_ = "/directory\n";
-        for (const std::string& choice : flag.choices) add(before + choice);
+    void add_values(const CLI::Option& option, const std::string& before = "") {
+        const ValueUsage value = value_of(option);
+        if (value.word == "file") text_ = "/file\n";
+        if (value.word == "folder") text_ = "/directory\n";
+        for (const std::string& choice : value.choices) add(before + choice);
     }
     const std::string& text() const { return text_; }
 
@@ -87,44 +88,42 @@ private:
     std::string text_;
 };
 
-const FlagUsage* flag_with_value(const CommandUsage& command, const std::string& name) {
-    const auto found = std::ranges::find_if(command.flags, [&name](const FlagUsage& flag) {
-        return flag.value != ValueKind::none && std::ranges::count(flag.names, name) > 0;
-    });
-    return found == command.flags.end() ? nullptr : &*found;
-}
-
 /// Candidates for the last word.
-std::string candidates(const ProgramUsage& usage, std::vector<std::string> words) {
+std::string candidates(const CLI::App& app, std::vector<std::string> words) {
     // bash passes --flag=value as three words.
     if (words.back() == "=") words.back().clear();
     std::erase(words, "=");
     const std::string& word = words.back();
     Candidates found(word);
     if (words.size() == 1) {
-        for (const CommandUsage& c : usage.commands) found.add(c.name, c.description);
-        if (word.starts_with('-')) found.add_flags(usage.program);
+        for (const CLI::App* c : subcommands_of(app))
+            found.add(c->get_name(), c->get_description());
+        if (word.starts_with('-')) found.add_flags(app);
         return found.text();
     }
-    const auto command = std::ranges::find(usage.commands, words[0], &CommandUsage::name);
-    if (command == usage.commands.end()) return "";
+    const auto commands = subcommands_of(app);
+    const auto at = std::ranges::find(commands, words[0], [](auto* c) { return c->get_name(); });
+    if (at == commands.end()) return "";
+    const CLI::App& command = **at;
     const std::size_t equals = word.find('=');
     const std::string before = word.substr(0, equals == std::string::npos ? 0 : equals + 1);
     const std::string name = before.empty() ? words[words.size() - 2] : word.substr(0, equals);
-    if (const FlagUsage* flag = flag_with_value(*command, name)) {
+    const CLI::Option* const flag =
+        name.starts_with('-') ? command.get_option_no_throw(name) : nullptr;
+    if (flag && takes_value(*flag)) {
         found.add_values(*flag, before);
         return found.text();
     }
-    if (!word.starts_with('-') && !command->positionals.empty())
-        found.add_values(command->positionals[0]);
-    if (found.text().empty()) found.add_flags(*command);
+    const auto positionals = positionals_of(command);
+    if (!word.starts_with('-') && !positionals.empty()) found.add_values(*positionals[0]);
+    if (found.text().empty()) found.add_flags(command);
     return found.text();
 }
 
 }  // namespace
 
 int complete_words(const CLI::App& app, const std::vector<std::string>& words) {
-    if (!words.empty()) print(candidates(usage_of(app), words));
+    if (!words.empty()) print(candidates(app, words));
     return complete;
 }
 

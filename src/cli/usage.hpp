@@ -7,45 +7,45 @@
 
 namespace vines::cli {
 
-/// Kind of value after an option.
-enum class ValueKind { none, text, file, folder, choice };
+/// Subcommands in the order of --help.
+inline std::vector<const CLI::App*> subcommands_of(const CLI::App& app) {
+    return app.get_subcommands([](const CLI::App*) { return true; });
+}
 
-/// An option with all its names, or a positional with one.
-struct FlagUsage {
-    std::vector<std::string> names;    ///< as typed: -o, --output
-    std::string description;           ///< without a full stop
-    std::string environment;           ///< environment variable that sets it
-    std::string default_value;         ///< default
-    std::string range;                 ///< "0 to 65535"
-    std::vector<std::string> choices;  ///< for ValueKind::choice
-    ValueKind value = ValueKind::text;
-    bool required = false, repeats = false;
+inline std::vector<const CLI::Option*> positionals_of(const CLI::App& command) {
+    return command.get_options([](const CLI::Option* option) { return option->get_positional(); });
+}
+/// Options that are no positionals.
+inline std::vector<const CLI::Option*> flags_of(const CLI::App& command) {
+    return command.get_options([](const CLI::Option* option) { return !option->get_positional(); });
+}
 
-    /// Placeholder for the value of an option; empty if it takes none.
-    const char* value_word() const {
-        switch (value) {
-            case ValueKind::none: return "";
-            case ValueKind::file: return "file";
-            case ValueKind::folder: return "folder";
-            case ValueKind::choice:
-            case ValueKind::text: break;
-        }
-        return "value";
+/// Names as typed (-o, --output), or the name of a positional.
+inline std::vector<std::string> names_of(const CLI::Option& option) {
+    return CLI::detail::split(option.get_name(false, true), ',');
+}
+
+inline bool takes_value(const CLI::Option& option) { return option.get_items_expected_max() > 0; }
+
+/// Value of an option or a positional.
+struct ValueUsage {
+    std::string word = "value";  ///< placeholder: value, file or folder
+    std::string range{};         ///< "0 to 65535"
+    std::vector<std::string> choices{};
+};
+
+/// Reads the type as CLI11 writes it: TEXT:{json,text}, INT:[0 - 65535], TEXT:DIR, FILE.
+inline ValueUsage value_of(const CLI::Option& option) {
+    ValueUsage value;
+    for (const std::string& part : CLI::detail::split(option.get_type_name(), ':')) {
+        const auto inner = [&part] { return part.substr(1, part.size() - 2); };
+        if (part == "FILE") value.word = "file";
+        if (part == "DIR") value.word = "folder";
+        if (part.starts_with('['))
+            value.range = CLI::detail::find_and_replace(inner(), " - ", " to ");
+        if (part.starts_with('{')) value.choices = CLI::detail::split(inner(), ',');
     }
-};
-
-/// A subcommand, or the program itself.
-struct CommandUsage {
-    std::string name, description, footer;
-    std::vector<FlagUsage> flags, positionals;
-};
-
-struct ProgramUsage {
-    CommandUsage program;
-    std::vector<CommandUsage> commands;  ///< in the order of --help
-};
-
-/// Call it after all subcommands are registered.
-ProgramUsage usage_of(const CLI::App& app);
+    return value;
+}
 
 }  // namespace vines::cli
