@@ -1,4 +1,4 @@
-#include "plot/axes.hpp"
+#include "plot/plot.hpp"
 
 #include <fmt/format.h>
 

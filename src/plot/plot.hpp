@@ -1,4 +1,5 @@
-// Plots: their content, and how they are drawn, as SVG or in the characters of a terminal.
+// Plots: their content, their axes, and how they are drawn, as SVG or in the characters of a
+// terminal.
 #pragma once
 
 #include <optional>
@@ -7,6 +8,8 @@
 #include <vector>
 
 namespace vines::plot {
+
+using Range = std::pair<double, double>;
 
 struct Curve {
     std::vector<double> x{}, y{};  ///< of equal length; a y that is not finite leaves a gap
@@ -25,17 +28,17 @@ struct Curve {
 struct Plot {
     std::string x_label{}, y_label{};
     std::vector<Curve> curves{};
-    bool logarithmic = false;                            ///< y axis; a y <= 0 leaves a gap
-    std::optional<std::pair<double, double>> y_range{};  ///< automatic if nullopt
-    std::vector<double> levels{};                        ///< y of thin horizontal lines
-    std::vector<double> marked_times{};                  ///< x of dashed vertical lines
-    std::vector<std::pair<double, double>> bands{};      ///< shaded intervals of x
-    std::string title{};                                 ///< above the plot, if not empty
+    bool logarithmic = false;            ///< y axis; a y <= 0 leaves a gap
+    std::optional<Range> y_range{};      ///< automatic if nullopt
+    std::vector<double> levels{};        ///< y of thin horizontal lines
+    std::vector<double> marked_times{};  ///< x of dashed vertical lines
+    std::vector<Range> bands{};          ///< shaded intervals of x
+    std::string title{};                 ///< above the plot, if not empty
 };
 
 /// Ordinate range of the last three quarters of all curves, and zero, for curves whose first values
 /// vary widely.
-std::pair<double, double> late_range(const std::vector<Curve>& curves);
+Range late_range(const std::vector<Curve>& curves);
 
 /// Colour of each exponent or eigenvalue.
 inline const char* const colours[] = {"#1f6fb2", "#2e8b57", "#b8780b", "#8e44ad"};
@@ -54,7 +57,28 @@ struct Terminal {
 };
 
 /// Draws the plots in characters, stacked vertically with a common x axis. Labels stand at the ends
-/// of their curves; without colours, curves of points differ by their marks; bands are omitted.
+/// of their curves; without colours, curves of points differ by their marks. Bands and marked times
+/// are omitted.
 std::string text(const std::vector<Plot>& plots, const Terminal& terminal);
+
+// Axes: ranges and ticks.
+
+/// Common abscissa range of all curves of all plots.
+Range x_range(const std::vector<Plot>& plots);
+/// Ordinate range of a plot: fixed, or of curves and error bars; log10 if logarithmic.
+Range y_range(const Plot& plot);
+
+/// Position of a value on the ordinate: y, or log10 y; -infinity for the logarithm of a y <= 0.
+double on_ordinate(const Plot& plot, double y);
+/// Positions of the ends of a point's error bar; equal without errors.
+Range error_bar(const Plot& plot, const Curve& curve, std::size_t i);
+
+/// About `count` ticks in steps of 1, 2 or 5 times a power of ten; none if the step is below the
+/// rounding of the values.
+std::vector<double> ticks(const Range& range, int count);
+/// Ticks of the ordinate; powers of ten if logarithmic.
+std::vector<double> y_ticks(const Plot& plot, const Range& range, int count);
+std::string tick_label(double tick);
+std::string y_tick_label(const Plot& plot, double tick);
 
 }  // namespace vines::plot

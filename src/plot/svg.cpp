@@ -6,8 +6,6 @@
 #include <cmath>
 #include <iterator>
 
-#include "plot/axes.hpp"
-
 namespace vines::plot {
 
 namespace {

@@ -10,8 +10,6 @@
 #include <cstdlib>
 #include <map>
 
-#include "plot/axes.hpp"
-
 namespace vines::plot {
 
 namespace {
@@ -82,7 +80,6 @@ public:
           height_(lines_of(terminal)),
           cells_(static_cast<std::size_t>(width_ * height_)) {
         for (double level : plot.levels) rule_across(on_ordinate(plot_, level));
-        for (double time : plot.marked_times) rule_down(time);
         for (const Curve& c : plot.curves) c.dots ? draw_points(c) : draw_line(c);
     }
 
@@ -144,11 +141,6 @@ private:
         if (!inside(x_.first, v)) return;
         for (int column = 0; column < width_; ++column)
             cell(column, down(v) / dots_down).mark = terminal_.ascii ? "-" : "┄";
-    }
-    void rule_down(double x) {
-        if (!inside(x, y_.first)) return;
-        for (int row = 0; row < height_; ++row)
-            cell(across(x) / dots_across, row).mark = terminal_.ascii ? ":" : "┊";
     }
 
     /// Draws a straight line from (x1, v1) to (x2, v2).
