@@ -23,11 +23,10 @@ constexpr int picture_width = 860;  // px
 const char* const title = "# Li, Lamarque, Seguy, Berlioz (2018), recomputed\n\n";
 const char* const introduction =
     "\nThe figures, tables and statements of *Nonlinear Dynamics* 91, 2319-2330, each compared "
-    "with "
-    "the result computed here. Each statement is reduced to one number and an acceptance band: it "
-    "is reproduced if the number lies in the band. The last column gives the reason for the band. "
-    "Where the paper uses only a word (almost, a little, close to, typical, a lot), the limit is "
-    "an interpretation: a tenth, nine in ten, four times.\n\n";
+    "with the result computed here. Each statement is reduced to one number and an acceptance "
+    "band: it is reproduced if the number lies in the band. The last column gives the reason for "
+    "the band. Where the paper uses only a word (almost, a little, close to, typical, a lot), the "
+    "limit is an interpretation: a tenth, nine in ten, four times.\n\n";
 
 const char* const glossary =
     "Numbers are computed with the damping of the closed form (8) to (11), zeta = epsilon lambda; "

@@ -7,8 +7,6 @@
 
 #include "core/motion/elementary.hpp"
 #include "core/motion/record.hpp"
-#include "core/sweep/parallel.hpp"
-#include "program/process.hpp"
 
 namespace vines::report {
 
@@ -88,29 +86,22 @@ Ensemble one_run(const Parameters& p, const State& start, WindowsOf size) {
     return e;
 }
 
-struct Case {
-    Parameters parameters;
-    State start;
-};
-std::vector<Regime> regimes_of(const std::vector<Case>& cases, const Interval& window) {
-    std::vector<Regime> regimes(cases.size());
-    parallel(cases.size(), cores(), [&](std::size_t i) {
-        AnalysisRequest wanted =
-            run_to(cases[i].parameters, cases[i].start, window.to, {.regime = true});
-        wanted.window.from = window.from;
-        regimes[i] = *analyse(wanted).regime;
-    });
-    return regimes;
+/// A run of which only the regime in the window is wanted.
+AnalysisRequest regime_run(const Parameters& p, const State& start, const Interval& window) {
+    AnalysisRequest wanted = run_to(p, start, window.to, {.regime = true});
+    wanted.window.from = window.from;
+    return wanted;
+}
+std::vector<Regime> regimes_of(const std::vector<AnalysisRequest>& runs) {
+    return in_parallel(runs.size(), [&](std::size_t i) { return *analyse(runs[i]).regime; });
 }
 
 Ensemble make_ensemble(double b, WindowsOf size, Damping damping) {
     const Parameters p = table1(b, damping);
-    std::vector<Ensemble> each(Ensemble::runs);
-    parallel(each.size(), cores(), [&](std::size_t run) {
-        each[run] = one_run(p, start_beside(p, run), size);
-    });
+    const std::vector<Ensemble> runs = in_parallel(
+        Ensemble::runs, [&](std::size_t k) { return one_run(p, start_beside(p, k), size); });
     Ensemble all;
-    for (const Ensemble& run : each) {
+    for (const Ensemble& run : runs) {
         all.windows.insert(all.windows.end(), run.windows.begin(), run.windows.end());
         all.capture_tau.insert(
             all.capture_tau.end(), run.capture_tau.begin(), run.capture_tau.end());
@@ -124,6 +115,13 @@ Moments finite_moments(const std::vector<Ensemble::Window>& windows, auto&& valu
     for (const Ensemble::Window& w : windows)
         if (std::isfinite(value(w))) values.push_back(value(w));
     return moments(values);
+}
+
+/// The value of a key, made at its first use.
+template <class Map>
+typename Map::mapped_type& cached(Map& map, const typename Map::key_type& key, auto make) {
+    const auto found = map.find(key);
+    return found != map.end() ? found->second : map.emplace(key, make()).first->second;
 }
 
 }  // namespace
@@ -158,24 +156,24 @@ Moments Ensemble::duration() const {
 }
 
 std::vector<Regime> long_regimes(const std::vector<double>& b, Damping damping) {
-    std::vector<Case> cases;
+    std::vector<AnalysisRequest> runs;
     for (const double half_width : b) {
         const Parameters p = table1(half_width, damping);
-        cases.push_back({p, default_state(p)});
+        runs.push_back(regime_run(p, default_state(p), {window_end, 10 * window_end}));
     }
-    return regimes_of(cases, {window_end, 10 * window_end});
+    return regimes_of(runs);
 }
 
 std::vector<Regime> regimes_of_random_starts(const Parameters& p, int starts) {
     std::mt19937_64 engine(2018);
     const auto within = [&](double size) { return uniform(engine, -size, size); };
-    std::vector<Case> cases;
+    std::vector<AnalysisRequest> runs;
     for (int i = 0; i < starts; ++i) {
         State start{within(0.008), within(0.008), within(0.01), 0};
         start.y = start.x + within(p.b);
-        cases.push_back({p, start});
+        runs.push_back(regime_run(p, start, {1500, 3000}));
     }
-    return regimes_of(cases, {1500, 3000});
+    return regimes_of(runs);
 }
 
 std::string Typical::in_words(int decimals) const {
@@ -185,17 +183,6 @@ std::string Typical::in_words(int decimals) const {
         first, decimals, neighbour_runs, median, decimals, lower_quartile, decimals, upper_quartile,
         decimals);
 }
-
-namespace {
-
-/// The value of a key, made at its first use.
-template <class Map>
-typename Map::mapped_type& cached(Map& map, const typename Map::key_type& key, auto make) {
-    const auto found = map.find(key);
-    return found != map.end() ? found->second : map.emplace(key, make()).first->second;
-}
-
-}  // namespace
 
 const PaperRun& RunCache::paper_run(double b, Damping damping) {
     return cached(responses_, {b, damping}, [&] {
@@ -216,16 +203,13 @@ const PaperRun& RunCache::paper_run(double b, Damping damping) {
 const std::vector<PaperRun>& RunCache::neighbours(double b, Damping damping) {
     return cached(neighbours_, {b, damping}, [&] {
         const Parameters p = table1(b, damping);
-        std::vector<std::optional<Analysis>> runs(neighbour_runs);
-        parallel(neighbour_runs, cores(), [&](std::size_t k) {
-            runs[k].emplace(analyse(run_to(
-                p, start_beside(p, k), window_end,
-                {.series = true, .exponents = true, .moduli = true, .regime = true},
-                {.qr = true, .raw_product = true})));
+        return in_parallel(neighbour_runs, [&](std::size_t k) {
+            return PaperRun{
+                p, analyse(run_to(
+                       p, start_beside(p, k), window_end,
+                       {.series = true, .exponents = true, .moduli = true, .regime = true},
+                       {.qr = true, .raw_product = true}))};
         });
-        std::vector<PaperRun> responses;
-        for (auto& run : runs) responses.push_back({p, std::move(*run)});
-        return responses;
     });
 }
 

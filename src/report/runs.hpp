@@ -6,9 +6,12 @@
 #include <optional>
 #include <string>
 #include <tuple>
+#include <utility>
 #include <vector>
 
 #include "core/analysis/analysis.hpp"
+#include "core/sweep/parallel.hpp"
+#include "program/process.hpp"
 #include "report/statistics.hpp"
 
 namespace vines::report {
@@ -40,6 +43,17 @@ using BothRuns = Both<PaperRun>;
 PaperRun run_until(
     const Parameters& parameters, double tau_end, const Parts& parts, std::optional<double> y = {},
     const ExponentOptions& estimators = qr_alone);
+
+/// The results of make(0) to make(count - 1), computed on all cores.
+template <class Make>
+auto in_parallel(std::size_t count, const Make& make) {
+    using Made = decltype(make(count));
+    std::vector<std::optional<Made>> made(count);
+    parallel(count, cores(), [&](std::size_t k) { made[k].emplace(make(k)); });
+    std::vector<Made> results;
+    for (auto& result : made) results.push_back(std::move(*result));
+    return results;
+}
 
 /// Common property of an ensemble's windows.
 enum class WindowsOf {

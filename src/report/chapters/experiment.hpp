@@ -10,9 +10,6 @@
 
 namespace vines::report {
 
-/// The oscillator of Table 4 with clearance b (m), excited so that the paper's responses appear.
-Parameters experimental_oscillator(double b);
-
 /// A record with its true motion and the result of its identification.
 struct Experiment {
     TrueMotion truth;

@@ -152,6 +152,20 @@ std::vector<double> late_changes_after(const Experiment& e) {
     return changes;
 }
 
+const char* word_of(vines::Verdict verdict) {
+    switch (verdict) {
+        case vines::Verdict::chaotic: return "chaotic";
+        case vines::Verdict::regular: return "regular";
+        case vines::Verdict::not_decided: return "not decided";
+        case vines::Verdict::none: return "none";
+    }
+    return "";
+}
+
+const std::vector<std::pair<double, double>> other_walls = {{0.6, 0.6}, {0.7, 0.7},   {0.8, 0.8},
+                                                            {0.9, 0.9}, {0.95, 0.95}, {0.8, 0.9},
+                                                            {0.9, 0.8}, {0.7, 0.95},  {0.95, 0.7}};
+
 }  // namespace
 
 void exponents_of_regular_response(
@@ -200,24 +214,6 @@ void exponents_of_irregular_response(Report& report, const Experiment& e) {
          almost_constant.partly},
         ClaimVerdict::not_reproduced);
 }
-
-namespace {
-
-const char* word_of(vines::Verdict verdict) {
-    switch (verdict) {
-        case vines::Verdict::chaotic: return "chaotic";
-        case vines::Verdict::regular: return "regular";
-        case vines::Verdict::not_decided: return "not decided";
-        case vines::Verdict::none: return "none";
-    }
-    return "";
-}
-
-const std::vector<std::pair<double, double>> other_walls = {{0.6, 0.6}, {0.7, 0.7},   {0.8, 0.8},
-                                                            {0.9, 0.9}, {0.95, 0.95}, {0.8, 0.9},
-                                                            {0.9, 0.8}, {0.7, 0.95},  {0.95, 0.7}};
-
-}  // namespace
 
 void vary_restitution(Report& report, const MeasuredResponses& responses) {
     DataTable table{{"b (mm)", "assumed R", "slope", "90 % interval", "verdict"}};

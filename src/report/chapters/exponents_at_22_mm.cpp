@@ -51,11 +51,10 @@ void limits_of_the_computer(Report& report, const TransferProduct& product) {
         "The exponents add up to -2 zeta + (2/T) (sum of ln R), for any motion: they cannot all be "
         "positive. \"Too large value of transfer matrix M in Eq. (32) will exceed the capability "
         "of computer\": from y(0) = {:.8f} m its entries overflow at T = {:.0f}; but rounding "
-        "hides "
-        "lambda3 from T = {:.0f} on, and lambda2 from {:.0f} on. The unscaled product is then a "
-        "matrix of rank one plus rounding, and its third exponent is the rounding floor lambda1 - "
-        "ln(1/2.2e-16)/T (dashed in the plot): {:.4f} from this start, compared with {:.4f} by "
-        "raw_product and {:.4f} by qr.",
+        "hides lambda3 from T = {:.0f} on, and lambda2 from {:.0f} on. The unscaled product is "
+        "then a matrix of rank one plus rounding, and its third exponent is the rounding floor "
+        "lambda1 - ln(1/2.2e-16)/T (dashed in the plot): {:.4f} from this start, compared with "
+        "{:.4f} by raw_product and {:.4f} by qr.",
         y_beside, range / qr[0], rounded_from(qr, 2), rounded_from(qr, 1),
         rounding_floor(raw[0], T), raw[2], qr[2]));
 }

@@ -143,13 +143,11 @@ void open_questions(Report& report, RunCache& runs) {
     three_impacts(report);
     report.paragraph(
         "Without a row in the table: Fig. 1, a drawing; (12) to (24), which the row on Fig. 2 "
-        "uses, "
-        "as it does (27) at both walls; that velocity differences fall by R at an impact (Fig. 7), "
-        "an eigenvalue of M; that Fig. 24 and Fig. 5 are "
-        "\"consistent\", for which the paper gives no measure (each has its own rows); that "
-        "irregular impacts are the \"common base\" of all chaotic regimes (section 6), of which "
-        "one is tested (section 4.1); friction and the walls' materials (section 6), which are in "
-        "no equation.");
+        "uses, as it does (27) at both walls; that velocity differences fall by R at an impact "
+        "(Fig. 7), an eigenvalue of M; that Fig. 24 and Fig. 5 are \"consistent\", for which the "
+        "paper gives no measure (each has its own rows); that irregular impacts are the \"common "
+        "base\" of all chaotic regimes (section 6), of which one is tested (section 4.1); friction "
+        "and the walls' materials (section 6), which are in no equation.");
     report.heading("Misprints in the paper");
     report.paragraph(
         "Below eq. (1) lambda_1 stands for lambda, the damping. In (7) tau = 0 stands for tau_0. "
