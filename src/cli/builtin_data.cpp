@@ -25,16 +25,11 @@ namespace vines::cli {
 
 namespace {
 
-/// Output of a listing: its JSON, and its text for all names ("") or for one.
-struct Listing {
-    api::Json (*json)();
-    std::string (*text)(const std::string& name);
-};
-
-/// `about_name` is the help text of the positional `name`.
+/// A command that prints text(name), of all names if `name` is empty, or json(). `about_name` is
+/// the help text of the positional `name`.
 Command with_listing(
-    CLI::App* command, const Listing& listing, const std::string& about_name,
-    const std::string& examples) {
+    CLI::App* command, api::Json (*json)(), std::string (*text)(const std::string& name),
+    const std::string& about_name, const std::string& examples) {
     struct Options {
         std::string name, format = "text";
     };
@@ -48,10 +43,8 @@ Command with_listing(
         ->capture_default_str();
     return with_exit_codes(
         command,
-        [options, listing] {
-            print(
-                options->format == "json" ? api::json_text(listing.json()) + "\n"
-                                          : listing.text(options->name));
+        [options, json, text] {
+            print(options->format == "json" ? api::json_text(json()) + "\n" : text(options->name));
             return complete;
         },
         examples);
@@ -111,11 +104,6 @@ std::string fallback_of(const Field& f) {
     return f.fallback.is_string() ? f.fallback.get<std::string>() : api::json_text(f.fallback);
 }
 
-std::string range_of(const Field& f) {
-    if (f.range) return fmt::format("[{:g}, {:g}]", f.range->minimum, f.range->maximum);
-    return api::joined(f.choices);
-}
-
 std::string line_of(const Field& f) {
     return fmt::format(
         "  {:<21} {:<14} {}\n", f.name, f.unit.empty() ? api::enum_name(f.type) : f.unit,
@@ -131,13 +119,17 @@ std::string all_fields() {
     return text;
 }
 
-void append_field(const Field& f, const std::string& before, std::string& text) {
-    text += line_of(f);
-    if (!f.symbol.empty()) text += before + "symbol   " + f.symbol + "\n";
-    text += before + "default  " + fallback_of(f) + "\n";
-    if (f.range || !f.choices.empty())
-        text += before + (f.range ? "range    " : "one of   ") + range_of(f) + "\n";
+std::string text_of(const Field& f) {
+    std::string text = line_of(f);
+    const auto add = [&text](const char* what, const std::string& value) {
+        text += fmt::format("    {:<8} {}\n", what, value);
+    };
+    if (!f.symbol.empty()) add("symbol", f.symbol);
+    add("default", fallback_of(f));
+    if (f.range) add("range", fmt::format("[{:g}, {:g}]", f.range->minimum, f.range->maximum));
+    else if (!f.choices.empty()) add("one of", api::joined(f.choices));
     for (const Field& part : f.fields) text += "  " + f.name + "." + line_of(part).substr(2);
+    return text;
 }
 
 /// All fields, or a field in each table that has it. Throws Problem 422 if no table has it.
@@ -149,8 +141,7 @@ std::string text_of_fields(const std::string& name) {
         all.insert(all.end(), table.begin(), table.end());
         const Field* const field = api::find(table, name);
         if (!field) continue;
-        text += fmt::format("{}{}\n", text.empty() ? "" : "\n", title);
-        append_field(*field, std::string(4, ' '), text);
+        text += fmt::format("{}{}\n", text.empty() ? "" : "\n", title) + text_of(*field);
     }
     if (text.empty()) refuse_name("field", name, api::nearest_name(all, name));
     return text;
@@ -161,14 +152,14 @@ std::string text_of_fields(const std::string& name) {
 Command add_presets(CLI::App& app) {
     return with_listing(
         app.add_subcommand("presets", "the paper's figures and tables, as requests"),
-        {api::describe_presets, text_of_presets}, "show only this preset, with its parameters",
+        api::describe_presets, text_of_presets, "show only this preset, with its parameters",
         "vines presets\nvines presets fig3\nvines presets --format json | jq length");
 }
 
 Command add_parameters(CLI::App& app) {
     return with_listing(
-        app.add_subcommand("parameters", "the fields of requests"),
-        {api::describe_fields, text_of_fields}, "show only this field, with its default and range",
+        app.add_subcommand("parameters", "the fields of requests"), api::describe_fields,
+        text_of_fields, "show only this field, with its default and range",
         "vines parameters\nvines parameters b\n"
         "vines parameters --format json | jq '.fields[].name'");
 }

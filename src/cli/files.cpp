@@ -1,7 +1,3 @@
-// Output opens the existing target, which proves that it is writable, and locks it. It writes a
-// temporary file, which end() renames to the target; the target keeps its old content until then.
-// Streams and descriptors are written directly. AppendFile locks its file in the same way and
-// writes to the file itself.
 #include "cli/files.hpp"
 
 #include <fcntl.h>
@@ -173,43 +169,58 @@ Destination destination_of(const std::string& path) {
     return {path, std::move(stream), ""};
 }
 
-TemporaryFile::TemporaryFile(std::string target, std::string name)
-    : target_(std::move(target)),
-      name_(std::move(name)) {
-    struct stat old{};
-    const bool replaces = ::stat(target_.c_str(), &old) == 0;
-    const std::lock_guard lock(temporaries().mutex);
-    do {
-        path_ = new_path(target_);
-        file_ = Descriptor(::open(
-            path_.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC,
-            replaces ? private_mode : new_mode));
-    } while (!file_ && errno == EEXIST);
-    if (!file_) fail_at("write", name_);
-    temporaries().paths.insert(path_);
-    if (replaces) copy_owner_and_mode(file_.number(), old);
-}
-
-TemporaryFile::~TemporaryFile() {
-    const std::lock_guard lock(temporaries().mutex);
-    if (path_.empty()) return;
-    ::unlink(path_.c_str());
-    temporaries().paths.erase(path_);
-}
-
-void TemporaryFile::write(std::string_view text) {
-    if (const int failed = write_fully(file_.number(), text)) fail_at("write", name_, failed);
-}
-
-void TemporaryFile::replace_target() {
-    if (::fsync(file_.number()) != 0) fail_at("write", name_);
-    {
+/// A file that replaces another one atomically. Created in the target's folder, with the target's
+/// mode if that exists. The destructor removes it unless it has replaced the target; so does
+/// remove_temporary_files() when a signal ends the program.
+class TemporaryFile {
+public:
+    /// `name` is used in messages. The constructor and all members throw std::runtime_error with
+    /// the reason.
+    TemporaryFile(std::string target, std::string name)
+        : target_(std::move(target)),
+          name_(std::move(name)) {
+        struct stat old{};
+        const bool replaces = ::stat(target_.c_str(), &old) == 0;
         const std::lock_guard lock(temporaries().mutex);
-        if (::rename(path_.c_str(), target_.c_str()) != 0) fail_at("write", name_);
-        temporaries().paths.erase(std::exchange(path_, ""));
+        do {
+            path_ = new_path(target_);
+            file_ = Descriptor(::open(
+                path_.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC,
+                replaces ? private_mode : new_mode));
+        } while (!file_ && errno == EEXIST);
+        if (!file_) fail_at("write", name_);
+        temporaries().paths.insert(path_);
+        if (replaces) copy_owner_and_mode(file_.number(), old);
     }
-    sync_folder(target_);
-}
+    ~TemporaryFile() {
+        const std::lock_guard lock(temporaries().mutex);
+        if (path_.empty()) return;
+        ::unlink(path_.c_str());
+        temporaries().paths.erase(path_);
+    }
+    TemporaryFile(const TemporaryFile&) = delete;
+    TemporaryFile& operator=(const TemporaryFile&) = delete;
+
+    void write(std::string_view text) {
+        if (const int failed = write_fully(file_.number(), text)) fail_at("write", name_, failed);
+    }
+
+    /// Syncs the file to disk first, so that a power failure leaves the old or the new content.
+    void replace_target() {
+        if (::fsync(file_.number()) != 0) fail_at("write", name_);
+        {
+            const std::lock_guard lock(temporaries().mutex);
+            if (::rename(path_.c_str(), target_.c_str()) != 0) fail_at("write", name_);
+            temporaries().paths.erase(std::exchange(path_, ""));
+        }
+        sync_folder(target_);
+    }
+
+private:
+    const std::string target_, name_;
+    std::string path_;  ///< empty after it has replaced the target
+    Descriptor file_;
+};
 
 void remove_temporary_files() {
     temporaries().mutex.lock();  // never unlocked
@@ -219,8 +230,10 @@ void remove_temporary_files() {
 Output::Output(Destination to) : to_(std::move(to)) {
     if (to_.is_stream()) return;
     old_ = open_locked(to_, O_WRONLY);
-    file_.emplace(to_.file, to_.name);
+    file_ = std::make_unique<TemporaryFile>(to_.file, to_.name);
 }
+
+Output::~Output() = default;
 
 void Output::write(std::string_view text) {
     if (file_) return file_->write(text);
@@ -239,7 +252,8 @@ void write_all(const std::string& path, const std::string& text) {
 }
 
 AppendFile::AppendFile(const Destination& file)
-    : name_(file.name),
+    : path_(file.file),
+      name_(file.name),
       file_(open_locked(file, O_RDWR | O_CREAT | O_APPEND)) {
     struct stat entry{};
     if (::fstat(file_.number(), &entry) != 0) fail_at("read", name_);
@@ -270,6 +284,12 @@ void AppendFile::append(std::string_view lines) {
 
 void AppendFile::sync() {
     if (::fsync(file_.number()) != 0) fail_at("write", name_);
+}
+
+void AppendFile::replace(std::string_view content) {
+    TemporaryFile copy(path_, name_);
+    copy.write(content);
+    copy.replace_target();
 }
 
 }  // namespace vines::cli

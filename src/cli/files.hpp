@@ -4,7 +4,7 @@
 #pragma once
 
 #include <CLI/CLI.hpp>
-#include <optional>
+#include <memory>
 #include <string>
 #include <string_view>
 
@@ -56,27 +56,7 @@ struct Destination {
 /// std::runtime_error with the reason if the path is a directory or cannot be resolved.
 Destination destination_of(const std::string& path);
 
-/// A file that replaces another one atomically. Created in the target's folder, with the target's
-/// mode if that exists. The destructor removes it unless it has replaced the target; so does
-/// remove_temporary_files() when a signal ends the program.
-class TemporaryFile {
-public:
-    /// `name` is used in messages. The constructor and all members throw std::runtime_error with
-    /// the reason.
-    TemporaryFile(std::string target, std::string name);
-    ~TemporaryFile();
-    TemporaryFile(const TemporaryFile&) = delete;
-    TemporaryFile& operator=(const TemporaryFile&) = delete;
-
-    void write(std::string_view text);
-    /// Syncs the file to disk first, so that a power failure leaves the old or the new content.
-    void replace_target();
-
-private:
-    const std::string target_, name_;
-    std::string path_;  ///< empty after it has replaced the target
-    Descriptor file_;
-};
+class TemporaryFile;
 
 /// Removes all temporary files and blocks the creation and renaming of others for good. Called by
 /// the thread that ends the program after a signal.
@@ -88,6 +68,7 @@ class Output {
 public:
     explicit Output(const std::string& path) : Output(destination_of(path)) {}
     explicit Output(Destination to);
+    ~Output();
     void write(std::string_view text);
     void end();
 
@@ -95,7 +76,7 @@ private:
     const Destination to_;
     /// The existing file, opened and locked: fails if it is not writable or another run writes it.
     Descriptor old_;
-    std::optional<TemporaryFile> file_;
+    std::unique_ptr<TemporaryFile> file_;  ///< empty for a stream
 };
 
 /// Writes a whole text.
@@ -116,9 +97,11 @@ public:
     void append(std::string_view lines);
     /// Waits until the content is on the disk.
     void sync();
+    /// Replaces the file as Output does. Ends the use of this object.
+    void replace(std::string_view content);
 
 private:
-    const std::string name_;
+    const std::string path_, name_;
     const Descriptor file_;
     std::size_t length_ = 0;
 };

@@ -36,7 +36,7 @@ int write_lines(
 
 int continue_branches(const RequestOptions& o) {
     const api::ContinueRequest request =
-        api::read_continue_request(read_over_base(o, api::continue_fields()));
+        api::read_continue_request(read_request(o, api::continue_fields()));
     return write_lines(
         o.files.output, api::continuation_start(request),
         [&request](SignalControl& control, const TakeLine& take) {
@@ -54,7 +54,7 @@ struct DesignOptions {
 
 int design_absorber(const DesignOptions& o) {
     const api::DesignRequest request =
-        api::read_design_request(read_over_base(o.request, api::design_fields()));
+        api::read_design_request(read_request(o.request, api::design_fields()));
     return write_lines(
         o.request.files.output, api::design_start(request),
         [&](SignalControl& control, const TakeLine& take) {

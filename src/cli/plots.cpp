@@ -5,11 +5,9 @@
 #include <unistd.h>
 
 #include <algorithm>
-#include <cctype>
 #include <cmath>
 #include <cstdlib>
 #include <filesystem>
-#include <functional>
 #include <iterator>
 #include <memory>
 #include <optional>
@@ -170,63 +168,47 @@ void add(Curve& curve, double x, double y, std::optional<double> error = {}) {
 
 /// States in the section: at impacts (where |x - y| = b) or at whole forcing cycles.
 Plot section(const std::vector<Json>& points, const Abscissa& at) {
-    const Json::json_pointer states("/section/x");
     Plot p{.y_label = "x in the section (mm)", .curves = {{.dots = true}}};
-    for (const Json& point : points) {
-        if (!point.contains(states)) continue;
-        for (const double x : numbers_of(point[states], mm)) add(p.curves[0], at.of(point), x);
-    }
+    for (const Json& point : points)
+        for (const double x : numbers_of(part(point, "/section/x"), mm))
+            add(p.curves[0], at.of(point), x);
     return p;
 }
 
-/// One curve of dots for each word that a field can have.
-std::vector<Curve> by_word(
-    const std::vector<Json>& points, const Abscissa& at, const char* field,
-    const std::vector<std::pair<std::string, const char*>>& colours,
-    const std::function<std::pair<double, double>(const Json&)>& value_and_error) {
-    std::vector<Curve> curves;
-    for (const auto& [word, colour] : colours) {
+/// The words that a field of a point can have, each with its colour.
+struct Words {
+    const char *name, *field;
+    std::vector<std::pair<std::string, const char*>> colours;
+};
+const Words verdicts = {
+    "verdict",
+    "/verdict",
+    {{"chaotic", plot::red}, {"regular", plot::colours[0]}, {"not_decided", plot::grey}}};
+const Words regimes = {
+    "regime",
+    "/regime",
+    {{"I", "#b8780b"},
+     {"II", plot::red},
+     {"III", plot::colours[0]},
+     {"IV", plot::colours[1]},
+     {"V", plot::colours[3]},
+     {"VI", "#39424a"},
+     {"none", plot::grey}}};
+
+/// A number of the points, as one curve of dots for each word. `value`, `error`: JSON pointers.
+Plot by_word(
+    const std::vector<Json>& points, const Abscissa& at, const Words& words,
+    const std::string& label, const char* value, double unit = 1, const char* error = nullptr) {
+    Plot p{.y_label = label + ", by " + words.name};
+    for (const auto& [word, colour] : words.colours) {
         Curve curve{.colour = colour, .label = word, .dots = true};
-        for (const Json& point : points) {
-            if (word_of(part(point, field)) != word) continue;
-            const auto [value, error] = value_and_error(point);
-            add(curve, at.of(point), value, error);
-        }
-        if (!curve.x.empty()) curves.push_back(std::move(curve));
+        for (const Json& point : points)
+            if (word_of(part(point, words.field)) == word)
+                add(curve, at.of(point), number_of(part(point, value)) / unit,
+                    error ? number_of(part(point, error)) : 0);
+        if (!curve.x.empty()) p.curves.push_back(std::move(curve));
     }
-    return curves;
-}
-
-Plot lambda1(const std::vector<Json>& points, const Abscissa& at) {
-    return {
-        .y_label = "lambda1, by verdict",
-        .curves = by_word(
-            points, at, "/verdict",
-            {{"chaotic", plot::red}, {"regular", plot::colours[0]}, {"not_decided", plot::grey}},
-            [](const Json& p) {
-                return std::pair(
-                    number_of(part(p, "/lambda/0")), number_of(part(p, "/standard_error/0")));
-            }),
-        .levels = {0}};
-}
-
-Plot response(
-    const std::vector<Json>& points, const Abscissa& at, const std::string& label,
-    const char* field, double unit) {
-    return {
-        .y_label = label + ", by regime",
-        .curves = by_word(
-            points, at, "/regime",
-            {{"I", "#b8780b"},
-             {"II", plot::red},
-             {"III", plot::colours[0]},
-             {"IV", plot::colours[1]},
-             {"V", plot::colours[3]},
-             {"VI", "#39424a"},
-             {"none", plot::grey}},
-            [field, unit](const Json& p) {
-                return std::pair(number_of(part(p, field)) / unit, 0.);
-            })};
+    return p;
 }
 
 /// Request fields except axes, as "name = value, ...", including those of the base.
@@ -248,39 +230,39 @@ std::vector<Plot> sweep_plots(const Json& start, const std::vector<Json>& points
     if (points.empty()) return {};
     const Abscissa at = abscissa_of(start, points);
     std::vector<Plot> plots = {
-        section(points, at), lambda1(points, at),
-        response(points, at, "rms ratio of x", "/x_rms_ratio", 1),
-        response(points, at, "max |x| (mm)", "/x_max", mm),
-        response(points, at, "peak of |x| (mm)", "/x_peak", mm)};
+        section(points, at),
+        by_word(points, at, verdicts, "lambda1", "/lambda/0", 1, "/standard_error/0"),
+        by_word(points, at, regimes, "rms ratio of x", "/x_rms_ratio"),
+        by_word(points, at, regimes, "max |x| (mm)", "/x_max", mm),
+        by_word(points, at, regimes, "peak of |x| (mm)", "/x_peak", mm)};
+    plots[1].levels = {0};
     std::erase_if(plots, [](const Plot& p) { return p.curves.empty() || p.curves[0].x.empty(); });
     for (Plot& p : plots) p.x_label = at.label();
     if (!plots.empty()) plots[0].title = fields_except_axes(start.value("request", Json::object()));
     return plots;
 }
 
-// --- Drawing ---
-
-constexpr int picture_width = 860, plot_height = 230;  // px
-
-std::vector<Plot> plots_of_lines(const std::string& text) {
+std::vector<Plot> sweep_plots(const std::string& text) {
     std::istringstream lines(text);
-    api::Json start;
-    std::vector<api::Json> points;
+    Json start;
+    std::vector<Json> points;
     for (std::string line; std::getline(lines, line);) {
         if (line.empty()) continue;
         // The last line of a killed run can be incomplete.
-        if (lines.eof() && !api::Json::accept(line)) break;
-        api::Json read = api::parse_object(line);
+        if (lines.eof() && !Json::accept(line)) break;
+        Json read = api::parse_object(line);
         const std::string type = word_of(part(read, "/type"));
         if (type == "start") start = std::move(read);
         else if (type == "point") points.push_back(std::move(read));
     }
     if (!start.contains("axes") || !start["axes"].is_array())
         throw std::runtime_error("the first line of the sweep is missing");
-    return plots_of(start, points);
+    return sweep_plots(start, points);
 }
 
-bool is_sweep(const std::string& text) { return text.starts_with(R"({"type":)"); }
+// --- Drawing ---
+
+constexpr int picture_width = 860, plot_height = 230;  // px
 
 /// Returns whether the locale states a character set other than UTF-8. Without a locale it is
 /// false.
@@ -311,35 +293,26 @@ std::string in_characters(const std::vector<Plot>& plots, bool is_stdout) {
                 .ascii = has_ascii_alone()});
 }
 
-std::vector<Plot> drawable(std::vector<Plot> plots) {
+}  // namespace
+
+std::vector<Plot> plots_of(const std::string& answer) {
+    const bool is_sweep = answer.starts_with(R"({"type":)");
+    std::vector<Plot> plots = is_sweep ? sweep_plots(answer) : run_plots(api::parse_object(answer));
     if (plots.empty())
         throw std::runtime_error(
             "nothing to draw: plots need a run's series or exponents, or points of a sweep");
     return plots;
 }
 
-}  // namespace
-
-std::vector<Plot> plots_of(const api::Json& start, const std::vector<api::Json>& points) {
-    return drawable(sweep_plots(start, points));
-}
-
-std::vector<Plot> plots_of(const std::string& answer) {
-    return is_sweep(answer) ? plots_of_lines(answer)
-                            : drawable(run_plots(api::parse_object(answer)));
-}
-
 void check_plot_file(const std::string& path) {
     constexpr std::string_view others[] = {".pdf", ".png", ".jpg",  ".jpeg", ".gif", ".webp",
                                            ".eps", ".ps",  ".tiff", ".tif",  ".bmp"};
-    std::string ending = std::filesystem::path(path).extension();
-    for (char& c : ending) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+    const std::string ending = CLI::detail::to_lower(std::filesystem::path(path).extension());
     if (std::ranges::find(others, ending) != std::end(others))
         throw api::Problem(
             422,
             fmt::format(
-                "{}: plots are SVG (FILE.svg) or text; rsvg-convert and Inkscape convert SVG to "
-                "{}",
+                "{}: plots are SVG (FILE.svg) or text; rsvg-convert and Inkscape convert SVG to {}",
                 path, ending.substr(1)));
 }
 

@@ -5,15 +5,13 @@
 #include <string>
 #include <vector>
 
-#include "api/schema/json.hpp"
 #include "plot/plot.hpp"
 
 namespace vines::cli {
 
-/// Plots of a run (its JSON) or of a sweep (its lines, or its parsed lines). Throw
-/// std::runtime_error if the answer has nothing to draw.
+/// Plots of a run (its JSON) or of a sweep (its lines). Throws std::runtime_error if the answer has
+/// nothing to draw.
 std::vector<plot::Plot> plots_of(const std::string& answer);
-std::vector<plot::Plot> plots_of(const api::Json& start, const std::vector<api::Json>& points);
 
 /// Adds --plot, which excludes --format. Call add_format() before.
 void add_plot_flag(CLI::App& command, bool& plot);

@@ -82,7 +82,7 @@ Json axis_of(const std::string& text) {
 /// Returns whether a name, even a mistyped one, belongs to the table rather than to its base.
 bool belongs_to(const FieldTable& table, const std::string& name) {
     const std::string outer = name.substr(0, name.find('.'));
-    if (api::find(table, outer)) return true;
+    if (!api::find(table, "base") || api::find(table, outer)) return true;
     return !api::find(api::sweep_base_fields(), name) && !api::nearest_name(table, name).empty();
 }
 
@@ -90,31 +90,14 @@ bool belongs_to(const FieldTable& table, const std::string& name) {
     throw api::Problem(400, name + " and " + api::shortened(other) + " exclude each other");
 }
 
-Json given_over_base(const RequestOptions& given, const FieldTable& table) {
-    api::Query own, base;
-    for (auto& pair : pairs_of(given)) (belongs_to(table, pair.first) ? own : base).push_back(pair);
-    Json object = fields_of_pairs(own, table);
-    if (object.contains("base") && !base.empty()) refuse_both("base", base[0].first);
-    if (object.contains("axes") && !given.axes.empty()) refuse_both("axes", "--axis");
-    if (!base.empty()) object["base"] = fields_of_pairs(base, api::sweep_base_fields());
+void set_axes(Json& object, const std::vector<std::string>& axes, const FieldTable& table) {
+    if (object.contains("axes") && !axes.empty()) refuse_both("axes", "--axis");
     const bool has_one = api::find(table, "axis");
-    if (has_one && given.axes.size() + object.contains("axis") > 1)
+    if (has_one && axes.size() + object.contains("axis") > 1)
         throw api::Problem(400, "there is only one axis");
-    for (const std::string& axis : given.axes)
+    for (const std::string& axis : axes)
         if (has_one) object["axis"] = axis_of(axis);
         else object["axes"].push_back(axis_of(axis));
-    if (!given.format.empty()) object["format"] = given.format;
-    return object;
-}
-
-Json with_file(const RequestOptions& given, const Json& fields) {
-    Json request = fields;
-    if (!given.files.input.empty() || !given.is_given()) {
-        request = api::parse_object(read_all(given.files.input));
-        request.merge_patch(fields);
-    }
-    add_format_of(given.files.output, request);
-    return request;
 }
 
 }  // namespace
@@ -168,17 +151,25 @@ void add_format_of(const std::string& output, Json& request) {
 }
 
 Json given_fields(const RequestOptions& given, const FieldTable& table) {
-    Json object = fields_of_pairs(pairs_of(given), table);
+    api::Query own, base;
+    for (auto& pair : pairs_of(given)) (belongs_to(table, pair.first) ? own : base).push_back(pair);
+    Json object = fields_of_pairs(own, table);
+    if (object.contains("base") && !base.empty()) refuse_both("base", base[0].first);
+    set_axes(object, given.axes, table);
+    if (!base.empty()) object["base"] = fields_of_pairs(base, api::sweep_base_fields());
     if (!given.format.empty()) object["format"] = given.format;
     return object;
 }
 
 Json read_request(const RequestOptions& given, const FieldTable& table) {
-    return with_file(given, given_fields(given, table));
-}
-
-Json read_over_base(const RequestOptions& given, const FieldTable& table) {
-    return with_file(given, given_over_base(given, table));
+    Json request = given_fields(given, table);
+    if (!given.files.input.empty() || !given.is_given()) {
+        Json of_file = api::parse_object(read_all(given.files.input));
+        of_file.merge_patch(request);
+        request = std::move(of_file);
+    }
+    add_format_of(given.files.output, request);
+    return request;
 }
 
 }  // namespace vines::cli

@@ -31,8 +31,9 @@ void add_format(
     const std::string& about = "");
 void add_axes(CLI::App& command, RequestOptions& options);
 
-/// The options as a request's JSON, typed by the route's table. Throws Problem 400 for an argument
-/// that is not NAME=VALUE or for a duplicate.
+/// The options as a request's JSON, typed by the route's table. If that has a base, fields that are
+/// not in the table are set in the base. Throws Problem 400 for an argument that is not NAME=VALUE
+/// or for a duplicate.
 api::Json given_fields(const RequestOptions& options, const api::FieldTable& table);
 
 /// The request of a file or stdin, overridden by the options. If options are given and no file is
@@ -42,9 +43,5 @@ api::Json read_request(const RequestOptions& options, const api::FieldTable& tab
 /// Sets the format that the extension of the output file names (csv, cbor, npz), unless the request
 /// has one.
 void add_format_of(const std::string& output, api::Json& request);
-
-/// The same as read_request() for a request with a base, such as a sweep: fields that are not in
-/// its own table are set in the base.
-api::Json read_over_base(const RequestOptions& options, const api::FieldTable& table);
 
 }  // namespace vines::cli

@@ -1,15 +1,12 @@
-// `vines sweep`: computes a sweep or a shard of one on several threads. The points are
-// - appended to a file in order of completion; a later run can complete it, and it is sorted at the
-//   end;
-// - or written to a stream in the order of their index;
-// - or written as a table, which needs all points: a signal ends the program without it;
-// - or collected in memory, for plots, which need all of them.
-// Otherwise the points computed so far are kept after a signal.
+// `vines sweep` and `vines basins`: computes a sweep or a shard of one on several threads, into a
+// file that a later run can complete, a stream, a table, or plots. After a signal the points
+// computed so far are kept, except in a table, which needs all of them.
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <atomic>
 #include <cstddef>
+#include <cstdlib>
 #include <exception>
 #include <filesystem>
 #include <functional>
@@ -29,10 +26,10 @@
 #include "cli/files.hpp"
 #include "cli/plots.hpp"
 #include "cli/request_fields.hpp"
-#include "cli/shard.hpp"
 #include "cli/sweep_file.hpp"
 #include "cli/terminal.hpp"
 #include "program/process.hpp"
+#include "program/whole_number.hpp"
 
 namespace vines::cli {
 
@@ -43,18 +40,72 @@ struct SweepOptions {
     bool basins = false;  ///< a request of /v1/basins
     bool plot = false;    ///< draw instead of writing the points
     bool resume = false;  ///< complete the output file instead of refusing to overwrite it
-    std::string shard;    ///< syntax of read_shard()
+    std::string shard;    ///< i/N, auto, or empty: the whole sweep
     int shards = 0;       ///< N for "auto"; 0: SLURM_ARRAY_TASK_COUNT
     int threads = 0;      ///< 0: one per core
 };
 
-/// The request, limited to the shard's lines of output.
-api::SweepRequest read_request(const SweepOptions& o, const api::Json& given) {
-    api::SweepRequest request = o.basins ? api::read_basins_request(given, max_points)
-                                         : api::read_sweep_request(given, max_points);
-    const Shard shard = read_shard(o.shard, static_cast<std::size_t>(o.shards));
-    request.plan.lines = api::shard_of(request, shard.index, shard.count);
-    return request;
+/// Part of a sweep that one process computes.
+struct Shard {
+    std::size_t index = 0;  ///< from 0
+    std::size_t count = 1;
+};
+
+// Largest number of shards, and largest id of a Slurm array's first task.
+constexpr std::size_t max_shards = max_points;
+
+/// Value of an environment variable; empty if unset.
+std::string variable(const char* name) {
+    const char* value = std::getenv(name);
+    return value ? value : "";
+}
+
+/// The same as a number. Throws Problem 422 unless it is a whole number from `least` to `most`.
+std::size_t number_in_variable(const char* name, std::size_t least, std::size_t most) {
+    const std::string text = variable(name);
+    if (const auto value = whole_number(text, least, most)) return *value;
+    throw api::Problem(
+        422,
+        fmt::format(
+            "{} is {}, not a whole number from {} to {}", name, api::shortened(text), least, most));
+}
+
+/// `shards`: N if above 0, in place of SLURM_ARRAY_TASK_COUNT. Throws Problem 422 for a missing or
+/// invalid variable.
+Shard shard_of_environment(std::size_t shards) {
+    if (!variable("SLURM_ARRAY_TASK_ID").empty()) {
+        if (shards == 0 && variable("SLURM_ARRAY_TASK_COUNT").empty())
+            throw api::Problem(
+                422, "--shard auto in a Slurm array needs SLURM_ARRAY_TASK_COUNT or --shards");
+        if (shards == 0) shards = number_in_variable("SLURM_ARRAY_TASK_COUNT", 1, max_shards);
+        const std::size_t first = variable("SLURM_ARRAY_TASK_MIN").empty()
+                                      ? 0
+                                      : number_in_variable("SLURM_ARRAY_TASK_MIN", 0, max_shards);
+        return {
+            number_in_variable("SLURM_ARRAY_TASK_ID", first, first + shards - 1) - first, shards};
+    }
+    if (variable("JOB_COMPLETION_INDEX").empty())
+        throw api::Problem(
+            422,
+            "--shard auto needs SLURM_ARRAY_TASK_ID and SLURM_ARRAY_TASK_COUNT, or "
+            "JOB_COMPLETION_INDEX and --shards, in the environment");
+    if (shards == 0)
+        throw api::Problem(422, "--shard auto with JOB_COMPLETION_INDEX needs --shards");
+    return {number_in_variable("JOB_COMPLETION_INDEX", 0, shards - 1), shards};
+}
+
+/// Reads "i/N", "" (the whole sweep), or "auto": then i and N are taken from the environment of a
+/// Slurm array or a Kubernetes Indexed Job. Throws Problem 422 for other texts.
+Shard read_shard(const std::string& text, std::size_t shards) {
+    if (text.empty()) return {};
+    if (text == "auto") return shard_of_environment(shards);
+    const std::size_t slash = std::min(text.find('/'), text.size() - 1);
+    const auto count = whole_number(text.substr(slash + 1), 1, max_shards);
+    const auto index = whole_number(text.substr(0, slash), 0, count.value_or(1) - 1);
+    if (!index || !count)
+        throw api::Problem(
+            422, fmt::format("a shard is i/N with 0 <= i < N, not {}", api::shortened(text)));
+    return {*index, *count};
 }
 
 /// Throws Problem 422 for incompatible options, before anything is computed.
@@ -134,6 +185,37 @@ void refuse_to_overwrite(const std::string& name) {
     throw std::runtime_error(name + " exists already; --resume completes it");
 }
 
+/// Texts of a sweep's lines, brought into the order of their index.
+class LinesInOrder {
+public:
+    /// `indices`: those of all lines, ascending. They must outlive the object.
+    explicit LinesInOrder(const std::vector<std::size_t>& indices) : indices_(indices) {}
+
+    /// Takes the text of a line. Returns the texts that are next in order.
+    std::string add(std::size_t index, std::string text) {
+        waiting_[index] = std::move(text);
+        std::string next;
+        while (!waiting_.empty() && waiting_.begin()->first == indices_[returned_]) {
+            next += waiting_.begin()->second;
+            waiting_.erase(waiting_.begin());
+            ++returned_;
+        }
+        return next;
+    }
+
+    /// Returns the other texts, despite missing ones between them.
+    std::string rest() const {
+        std::string all;
+        for (const auto& [index, text] : waiting_) all += text;
+        return all;
+    }
+
+private:
+    const std::vector<std::size_t>& indices_;
+    std::map<std::size_t, std::string> waiting_;  ///< after a missing one, by index
+    std::size_t returned_ = 0;
+};
+
 /// Parses the file of an earlier run. Throws std::runtime_error if it belongs to another sweep or
 /// holds points that are not requested now.
 SweepFile parsed_earlier_file(
@@ -154,53 +236,29 @@ SweepFile parsed_earlier_file(
     return file;
 }
 
-/// The output file while it is extended.
-class ResumableFile {
-public:
-    ResumableFile(
-        const Destination& to, bool resume, const std::string& start,
-        const std::vector<std::size_t>& wanted)
-        : to_(to),
-          out_(to) {
-        const std::string text = out_.read();
-        if (!text.empty() && !resume) refuse_to_overwrite(to.name);
-        file_ = parsed_earlier_file(text, to.name, start, wanted);
-        out_.truncate(file_.complete_bytes);
-        done_ = file_.points.size();
-        if (!file_.start.empty()) return;
-        file_.start = start;
-        out_.append(start + "\n");
+/// The contents of the output file, without an incomplete last line, which is removed. An empty
+/// file gets its first line, `start`.
+SweepFile begun_file(
+    AppendFile& out, const std::string& name, bool resume, const std::string& start,
+    const std::vector<std::size_t>& wanted) {
+    const std::string text = out.read();
+    if (!text.empty() && !resume) refuse_to_overwrite(name);
+    SweepFile file = parsed_earlier_file(text, name, start, wanted);
+    out.truncate(file.complete_bytes);
+    if (file.start.empty()) {
+        file.start = start;
+        out.append(start + "\n");
     }
+    return file;
+}
 
-    const SweepFile& contents() const { return file_; }
-    /// Thread-safe.
-    std::size_t done() const { return done_; }
-
-    void add(std::size_t index, const std::string& line) {
-        out_.append(line + "\n");
-        if (file_.ended || (!file_.points.empty() && index < file_.points.rbegin()->first))
-            file_.in_order = false;
-        file_.points[index] = {line};
-        ++done_;
-    }
-
-    /// Call it after the last point.
-    void complete() {
-        if (file_.in_order) {
-            if (!file_.ended) out_.append(api::done_line(file_.points.size()));
-            return out_.sync();
-        }
-        TemporaryFile sorted(to_.file, to_.name);
-        sorted.write(file_.text());
-        sorted.replace_target();
-    }
-
-private:
-    const Destination& to_;
-    AppendFile out_;
-    SweepFile file_;
-    std::atomic<std::size_t> done_ = 0;
-};
+/// Ends a file whose points are sorted; replaces any other by a sorted copy.
+void complete_file(AppendFile& out, const SweepFile& contents) {
+    const std::string sorted = contents.text(), present = out.read();
+    if (!sorted.starts_with(present)) return out.replace(sorted);
+    out.append(sorted.substr(present.size()));
+    out.sync();
+}
 
 /// Adds to a write error how many points are kept.
 [[noreturn]] void fail(const std::runtime_error& reason, std::size_t done, std::size_t total) {
@@ -223,52 +281,25 @@ int sweep_to_file(SweepRun run, const Destination& to, bool resume) {
     std::error_code not_found;
     if (!resume && std::filesystem::exists(to.file, not_found)) refuse_to_overwrite(to.name);
     std::vector<std::size_t>& left = run.request.plan.lines;
-    ResumableFile file(to, resume, api::json_text(api::sweep_start(run.request)), left);
-    std::erase_if(left, [&](std::size_t i) { return file.contents().points.contains(i); });
-    const Stoppable stoppable([&] { print_stopped(file.done(), run.total, resume_hint); });
+    AppendFile out(to);
+    SweepFile file =
+        begun_file(out, to.name, resume, api::json_text(api::sweep_start(run.request)), left);
+    std::erase_if(left, [&](std::size_t i) { return file.points.contains(i); });
+    std::atomic<std::size_t> done = file.points.size();
+    const Stoppable stoppable([&] { print_stopped(done, run.total, resume_hint); });
     try {
-        const std::string warning = compute(
-            run, [&file](std::size_t index, const std::string& line) { file.add(index, line); });
+        const std::string warning = compute(run, [&](std::size_t index, const std::string& line) {
+            out.append(line + "\n");
+            file.points[index] = {line};
+            ++done;
+        });
         if (!warning.empty()) print_message(warning);
-        if (file.done() == run.total) file.complete();
+        if (done == run.total) complete_file(out, file);
     } catch (const std::runtime_error& reason) {
-        fail(reason, file.done(), run.total);
+        fail(reason, done, run.total);
     }
-    return conclude("", file.done(), run.total, resume_hint);
+    return conclude("", done, run.total, resume_hint);
 }
-
-/// Writes lines in the order of their index.
-class OrderedLines {
-public:
-    /// `indices`: all expected indices, ascending.
-    OrderedLines(const std::vector<std::size_t>& indices, Output& out)
-        : indices_(indices),
-          out_(out) {}
-
-    void take(std::size_t index, const std::string& line) {
-        waiting_[index] = line;
-        while (!waiting_.empty() && waiting_.begin()->first == indices_[written_]) write_first();
-    }
-
-    /// After a stop: writes the remaining lines, despite missing ones between them.
-    void write_rest() {
-        while (!waiting_.empty()) write_first();
-    }
-
-    std::size_t written() const { return written_; }
-
-private:
-    void write_first() {
-        out_.write(waiting_.begin()->second + "\n");
-        waiting_.erase(waiting_.begin());
-        ++written_;
-    }
-
-    const std::vector<std::size_t>& indices_;
-    Output& out_;
-    std::map<std::size_t, std::string> waiting_;
-    std::atomic<std::size_t> written_ = 0;
-};
 
 /// Writes the lines sorted by index, each as soon as all before it are computed: the content of a
 /// complete file. Returns the exit code. Throws std::runtime_error if a line cannot be written,
@@ -276,16 +307,22 @@ private:
 int sweep_to_stream(SweepRun run, Destination to) {
     run.request.plan.in_order = true;
     Output out(std::move(to));
-    OrderedLines lines(run.request.plan.lines, out);
+    LinesInOrder lines(run.request.plan.lines);
+    std::atomic<std::size_t> written = 0;
+    const auto write = [&](const std::string& text) {
+        out.write(text);
+        written += static_cast<std::size_t>(std::ranges::count(text, '\n'));
+    };
     // A reader that does not read can block a write for any time, hence a Stoppable with a limit.
-    const Stoppable stoppable([&] { print_stopped(lines.written(), run.total); });
+    const Stoppable stoppable([&] { print_stopped(written, run.total); });
     out.write(api::json_text(api::sweep_start(run.request)) + "\n");
-    const std::string warning = compute(
-        run, [&lines](std::size_t index, const std::string& line) { lines.take(index, line); });
-    lines.write_rest();
-    if (lines.written() == run.total) out.write(api::done_line(run.total, &run.request));
+    const std::string warning = compute(run, [&](std::size_t index, const std::string& line) {
+        write(lines.add(index, line + "\n"));
+    });
+    write(lines.rest());
+    if (written == run.total) out.write(api::done_line(run.total, &run.request));
     out.end();
-    return conclude(warning, lines.written(), run.total);
+    return conclude(warning, written, run.total);
 }
 
 /// Writes a table: a stream gets the rows of CSV as they are computed, a file is replaced at the
@@ -304,35 +341,36 @@ int sweep_to_table(SweepRun run, api::Format format, const std::string& path) {
 }
 
 /// Computes all points, or those up to a signal, and draws them. Returns the exit code.
-int sweep_drawn(const SweepRun& run, const SweepOptions& o) {
-    std::map<std::size_t, api::Json> lines;
+int sweep_drawn(const SweepRun& run, const std::string& path) {
+    std::string lines = api::json_text(api::sweep_start(run.request)) + "\n";
+    LinesInOrder points(run.request.plan.lines);
+    std::size_t done = 0;
     std::optional<Stoppable> stoppable(std::in_place);
-    const std::string warning = compute(run, [&lines](std::size_t index, const std::string& line) {
-        lines[index] = api::Json::parse(line);
+    const std::string warning = compute(run, [&](std::size_t index, const std::string& line) {
+        lines += points.add(index, line + "\n");
+        ++done;
     });
     stoppable.reset();
-    std::vector<api::Json> points;
-    for (auto& [index, line] : lines) points.push_back(std::move(line));
-    // The start is parsed again from its text: api::sweep_start() returns packed lists.
-    if (!points.empty())
-        draw(
-            plots_of(api::Json::parse(api::json_text(api::sweep_start(run.request))), points),
-            o.request.files.output);
-    return conclude(warning, points.size(), run.total);
+    lines += points.rest();
+    if (done > 0) draw(plots_of(lines), path);
+    return conclude(warning, done, run.total);
 }
 
 int sweep(const SweepOptions& o) {
+    const std::string& path = o.request.files.output;
     const api::Json given =
-        read_over_base(o.request, o.basins ? api::basins_fields() : api::sweep_fields());
-    api::SweepRequest request = read_request(o, given);
+        read_request(o.request, o.basins ? api::basins_fields() : api::sweep_fields());
+    api::SweepRequest request = o.basins ? api::read_basins_request(given, max_points)
+                                         : api::read_sweep_request(given, max_points);
+    const Shard shard = read_shard(o.shard, static_cast<std::size_t>(o.shards));
+    request.plan.lines = api::shard_of(request, shard.index, shard.count);
     const api::Format format = api::sweep_format(given).value_or(api::Format::json);
     check(o, format, request);
     const std::size_t total = request.plan.lines.size();
     SweepRun run{std::move(request), total, o.threads > 0 ? o.threads : cores()};
-    if (o.plot) return sweep_drawn(run, o);
-    if (format != api::Format::json)
-        return sweep_to_table(std::move(run), format, o.request.files.output);
-    Destination to = destination_of(o.request.files.output);
+    if (o.plot) return sweep_drawn(run, path);
+    if (format != api::Format::json) return sweep_to_table(std::move(run), format, path);
+    Destination to = destination_of(path);
     return to.is_stream() || o.basins ? sweep_to_stream(std::move(run), std::move(to))
                                       : sweep_to_file(std::move(run), to, o.resume);
 }

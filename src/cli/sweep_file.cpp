@@ -1,13 +1,19 @@
+// Parses the file of a sweep; `vines merge`: combines the files of its shards.
 #include "cli/sweep_file.hpp"
 
 #include <fmt/format.h>
 
+#include <memory>
 #include <optional>
 #include <stdexcept>
+#include <vector>
 
 #include "api/problem.hpp"
 #include "api/sweep.hpp"
+#include "cli/exit.hpp"
+#include "cli/files.hpp"
 #include "cli/json_values.hpp"
+#include "program/process.hpp"
 
 namespace vines::cli {
 
@@ -18,61 +24,16 @@ bool is_between_points(const std::string& type) {
     return type == "done" || type == "progress" || type == "warning" || type == "error";
 }
 
-/// Parses a file line by line.
-class Reader {
-public:
-    Reader(const std::string& name, LineChecks checks) : name_(name), checks_(checks) {}
-
-    void take(std::string line) {
-        ++number_;
-        file_.complete_bytes += line.size() + 1;
-        const api::Json json = parse_answer(line);
-        const std::string type = word_of(part(json, "/type"));
-        if (number_ == 1 && type == "start") return take_start(std::move(line));
-        if (number_ == 1 || (type != "point" && !is_between_points(type)))
-            fail_in_line(name_, number_, "not a line of a sweep");
-        if (file_.ended) file_.in_order = false;
-        file_.ended = type == "done";
-        if (type == "point") take_point(line, json);
-        else if (!file_.ended) file_.in_order = false;
-    }
-
-    SweepFile taken() { return std::move(file_); }
-
-private:
-    void take_start(std::string line) {
-        file_.start = std::move(line);
-        request_.emplace(request_of(file_, name_));
-        check_.emplace(*request_);
-    }
-
-    std::string fault_of(const std::string& line, const api::Json& json) const {
-        return checks_ == LineChecks::full ? check_->fault_of(line, json)
-                                           : check_->fault_of_index(json);
-    }
-
-    void take_point(const std::string& line, const api::Json& json) {
-        if (const std::string fault = fault_of(line, json); !fault.empty())
-            fail_in_line(name_, number_, fault);
-        const std::size_t index = json["index"].get<std::size_t>();
-        auto& points = file_.points;
-        if (!points.empty() && index <= points.rbegin()->first) file_.in_order = false;
-        const auto [there, is_new] = points.try_emplace(index, SweepFile::Line{line, number_});
-        if (!is_new && there->second.text != line)
-            fail_in_line(
-                name_, number_,
-                fmt::format(
-                    "point {} differs from the same point in line {}", index,
-                    there->second.number));
-    }
-
-    const std::string& name_;
-    const LineChecks checks_;
-    long number_ = 0;
-    SweepFile file_;
-    std::optional<api::SweepRequest> request_;
-    std::optional<api::SweepLineCheck> check_;
-};
+/// Adds the point of a line. Throws std::runtime_error if another line has a different one.
+void add_point(
+    SweepFile& file, const SweepFile::Line& line, std::size_t index, const std::string& name) {
+    const auto [there, is_new] = file.points.try_emplace(index, line);
+    if (!is_new && there->second.text != line.text)
+        fail_in_line(
+            name, line.number,
+            fmt::format(
+                "point {} differs from the same point in line {}", index, there->second.number));
+}
 
 }  // namespace
 
@@ -87,11 +48,30 @@ std::string SweepFile::text() const {
 }
 
 SweepFile parse_sweep_file(const std::string& text, const std::string& name, LineChecks checks) {
-    Reader reader(name, checks);
-    for (std::size_t from = 0, end; (end = text.find('\n', from)) != std::string::npos;
-         from = end + 1)
-        reader.take(text.substr(from, end - from));
-    return reader.taken();
+    SweepFile file;
+    std::optional<api::SweepRequest> request;
+    std::optional<api::SweepLineCheck> check;
+    long number = 0;
+    for (std::size_t end; (end = text.find('\n', file.complete_bytes)) != std::string::npos;
+         file.complete_bytes = end + 1) {
+        const std::string line = text.substr(file.complete_bytes, end - file.complete_bytes);
+        const api::Json json = parse_answer(line);
+        const std::string type = word_of(part(json, "/type"));
+        ++number;
+        if (number == 1 && type == "start") {
+            file.start = line;
+            request.emplace(request_of(file, name));
+            check.emplace(*request);
+        } else if (number > 1 && type == "point") {
+            const std::string fault = checks == LineChecks::full ? check->fault_of(line, json)
+                                                                 : check->fault_of_index(json);
+            if (!fault.empty()) fail_in_line(name, number, fault);
+            add_point(file, {line, number}, json["index"].get<std::size_t>(), name);
+        } else if (number == 1 || !is_between_points(type)) {
+            fail_in_line(name, number, "not a line of a sweep");
+        }
+    }
+    return file;
 }
 
 api::SweepRequest request_of(const SweepFile& file, const std::string& name) {
@@ -103,6 +83,67 @@ api::SweepRequest request_of(const SweepFile& file, const std::string& name) {
     } catch (const api::Problem& problem) {
         fail_in_line(name, 1, std::string("its request is invalid: ") + problem.what());
     }
+}
+
+namespace {
+
+struct MergeOptions {
+    std::vector<std::string> inputs;
+    std::string output;
+};
+
+/// Adds a shard's points. Throws std::runtime_error if a line is invalid, the shard belongs to
+/// another sweep, or its value of a point differs from an earlier shard's.
+void add(SweepFile& all, const std::string& path, const std::string& first_path) {
+    const SweepFile part = parse_sweep_file(read_file(path), path, LineChecks::full);
+    if (part.start.empty()) throw std::runtime_error(path + " is empty");
+    if (all.start.empty()) all.start = part.start;
+    if (part.start != all.start)
+        throw std::runtime_error(fmt::format(
+            "{} belongs to another sweep than {}: its first line differs", path, first_path));
+    for (const auto& [index, line] : part.points) {
+        const auto [there, added] = all.points.try_emplace(index, line);
+        if (!added && there->second.text != line.text)
+            fail_in_line(
+                path, line.number,
+                fmt::format("point {} differs from the same point in another file", index));
+    }
+}
+
+std::size_t first_missing(const SweepFile& file) {
+    std::size_t first = 0;
+    for (const auto& [index, line] : file.points) {
+        if (index != first) break;
+        ++first;
+    }
+    return first;
+}
+
+int merge(const MergeOptions& o) {
+    SweepFile all;
+    for (const std::string& path : o.inputs) add(all, path, o.inputs[0]);
+    const std::size_t points = request_of(all, o.inputs[0]).plan.grid.lines();
+    if (all.points.size() < points) {
+        print_message(fmt::format(
+            "{} of {} points are missing, the first is {}: a shard is not complete or was not "
+            "given",
+            points - all.points.size(), points, first_missing(all)));
+        return incomplete;
+    }
+    write_all(o.output, all.text());
+    return complete;
+}
+
+}  // namespace
+
+Command add_merge(CLI::App& app) {
+    const auto options = std::make_shared<MergeOptions>();
+    CLI::App* command = app.add_subcommand("merge", "combine the files of a sweep's shards");
+    add_file(*command, "files", options->inputs, "the shards' files")->required();
+    add_output(*command, options->output, "file for the whole sweep; - or nothing: stdout");
+    return with_exit_codes(
+        command, [options] { return merge(*options); },
+        "vines merge 0.ndjson 1.ndjson 2.ndjson 3.ndjson -o sweep.ndjson");
 }
 
 }  // namespace vines::cli

@@ -20,8 +20,6 @@ struct SweepFile {
     std::string start;                   ///< first line; empty in an empty file
     std::map<std::size_t, Line> points;  ///< by index
     std::size_t complete_bytes = 0;      ///< bytes of the complete lines
-    bool in_order = true;                ///< only points, sorted by index, between start and done
-    bool ended = false;                  ///< the last line is {type: done}
 
     /// Content of a complete file: start, points sorted by index, done.
     std::string text() const;
