@@ -13,15 +13,7 @@ namespace {
 /// Every window costs a computation of the exponents and a part of the response.
 constexpr std::size_t most_windows = 1000;
 
-std::string pointer(const std::string& name) {
-    std::string escaped(1, '/');
-    for (char c : name) {
-        if (c == '~') escaped += "~0";
-        else if (c == '/') escaped += "~1";
-        else escaped += c;
-    }
-    return escaped;
-}
+std::string pointer(const std::string& name) { return (Json::json_pointer() / name).to_string(); }
 
 /// FieldError::range of this field.
 Json range_of(const Field& f) {
@@ -45,113 +37,105 @@ struct Checked {
         return value.is_string() &&
                std::ranges::count(field.choices, value.get_ref<const std::string&>()) > 0;
     }
-    /// Calls check(pointer relative to the field, entry) for each entry of an array of this kind.
+    bool is_permitted(const Json& value) const {
+        return field.choices.empty() ? value.is_string() : is_choice(value);
+    }
+    /// Checks each entry of an array of this kind by check(JSON Pointer relative to the field,
+    /// entry).
     template <class Check>
     void each(const Json& array, const std::string& kind, Check check) const {
         if (!array.is_array()) return fail("", array, "must be an array of " + kind);
         for (std::size_t i = 0; i < array.size() && errors.size() < most_errors; ++i)
-            check(pointer(std::to_string(i)), array[i]);
+            check("/" + std::to_string(i), array[i]);
+    }
+    /// The same for entries that are valid by themselves; `what`: the valid ones.
+    template <class IsValid>
+    void each(const Json& array, const std::string& kind, const std::string& what, IsValid is_valid)
+        const {
+        each(array, kind, [&](const std::string& where, const Json& entry) {
+            if (!is_valid(entry)) fail(where, entry, "must hold only " + what);
+        });
     }
 };
+
+std::string text_of(const Range& range) {
+    return "[" + Json(range.minimum).dump() + ", " + Json(range.maximum).dump() + "]";
+}
 
 void check_number(const Checked& c, const Json& value) {
     if (!value.is_number()) return c.fail("", value, "must be a number");
     const double v = value.get<double>();
-    const auto [minimum, maximum] = *c.field.range;
+    const Range& range = *c.field.range;
     const std::string& unit = c.field.unit;
-    if (!(v >= minimum && v <= maximum))
+    if (!(v >= range.minimum && v <= range.maximum))
         c.fail(
             "", value,
-            "must lie in [" + Json(minimum).dump() + ", " + Json(maximum).dump() + "]" +
+            "must lie in " + text_of(range) +
                 (unit.empty() || unit == dimensionless ? "" : " " + unit));
     else if (c.field.type == FieldType::integer && v != std::floor(v))
         c.fail("", value, "must be a whole number");
-}
-
-void check_choice(const Checked& c, const Json& value) {
-    if (!value.is_string()) c.fail("", value, "must be a string");
-    else if (!c.field.choices.empty() && !c.is_choice(value))
-        c.fail("", value, "must be one of " + joined(c.field.choices));
 }
 
 void check_interval(const Checked& c, const std::string& where, const Json& v) {
     if (!v.is_array() || v.size() != 2 || !v[0].is_number() || !v[1].is_number())
         return c.fail(where, v, "must be two numbers, [from, to]");
     const double from = v[0], to = v[1];
-    if (const auto& range = c.field.range;
-        range && !(from >= range->minimum && to <= range->maximum))
-        c.fail(
-            where, v,
-            "must lie in [" + Json(range->minimum).dump() + ", " + Json(range->maximum).dump() +
-                "]");
-    if (!c.field.range && !(from >= 0)) c.fail(where + "/0", v[0], "must not begin before 0");
+    if (const auto& range = c.field.range) {
+        if (!(from >= range->minimum && to <= range->maximum))
+            c.fail(where, v, "must lie in " + text_of(*range));
+    } else if (!(from >= 0)) {
+        c.fail(where + "/0", v[0], "must not begin before 0");
+    }
     if (!(from < to)) c.fail(where, v, "must begin before it ends");
 }
 
-void check_intervals(const Checked& c, const Json& value) {
-    if (value.is_array() && value.size() > most_windows)
-        return c.fail(
-            "", value.size(), "must hold at most " + std::to_string(most_windows) + " intervals");
-    c.each(value, "intervals, [[from, to], ...]", [&](const std::string& where, const Json& entry) {
-        check_interval(c, where, entry);
-    });
-}
-
-/// `is_valid`: of an entry; `what`: the valid entries.
-template <class IsValid>
-void check_list(
-    const Checked& c, const Json& value, const std::string& kind, const std::string& what,
-    IsValid is_valid) {
-    c.each(value, kind, [&](const std::string& where, const Json& entry) {
-        if (!is_valid(entry)) c.fail(where, entry, "must hold only " + what);
-    });
-}
-
-void check_choices(const Checked& c, const Json& value) {
-    const bool any = c.field.choices.empty();
-    check_list(
-        c, value, "strings", any ? "strings" : joined(c.field.choices),
-        [&](const Json& entry) { return any ? entry.is_string() : c.is_choice(entry); });
-}
-
-/// The reader of the request checks the objects themselves, with their own table.
-void check_objects(const Checked& c, const Json& value) {
-    const std::vector<std::string>& choices = c.field.choices;
-    if (!value.is_array() && !c.is_choice(value))
-        c.fail(
-            "", value,
-            "must be an array" + (choices.empty() ? "" : " or \"" + joined(choices) + "\""));
-}
-
-/// The sub-fields are checked by the field's own table, or by the reader of the request.
-void check_object(const Checked& c, const Json& value) {
-    if (!value.is_object()) return c.fail("", value, "must be an object");
-    if (c.field.fields.empty()) return;
-    for (FieldError& e : check(c.field.fields, value)) {
-        e.pointer = pointer(c.field.name) + e.pointer;
-        c.errors.push_back(std::move(e));
-    }
-}
-
 void check_field(const Checked& c, const Json& value) {
-    switch (c.field.type) {
+    const Field& f = c.field;
+    switch (f.type) {
         case FieldType::number:
         case FieldType::integer: return check_number(c, value);
-        case FieldType::choice: return check_choice(c, value);
-        case FieldType::choices: return check_choices(c, value);
+        case FieldType::choice:
+            if (!c.is_permitted(value))
+                c.fail(
+                    "", value,
+                    value.is_string() ? "must be one of " + joined(f.choices) : "must be a string");
+            return;
+        case FieldType::choices:
+            return c.each(
+                value, "strings", f.choices.empty() ? "strings" : joined(f.choices),
+                [&](const Json& entry) { return c.is_permitted(entry); });
         case FieldType::interval: return check_interval(c, "", value);
-        case FieldType::intervals: return check_intervals(c, value);
+        case FieldType::intervals:
+            if (value.is_array() && value.size() > most_windows)
+                return c.fail(
+                    "", value.size(),
+                    "must hold at most " + std::to_string(most_windows) + " intervals");
+            return c.each(
+                value, "intervals, [[from, to], ...]",
+                [&](const std::string& where, const Json& v) { check_interval(c, where, v); });
         case FieldType::integers:
-            return check_list(
-                c, value, "whole numbers", "whole numbers >= 0",
-                [](const Json& entry) { return entry.is_number_integer() && entry >= 0; });
-        case FieldType::numbers:
-            if (c.field.range && value.is_number()) return check_number(c, value);
-            return check_list(c, value, "numbers", "numbers", [](const Json& entry) {
-                return entry.is_number();
+            return c.each(value, "whole numbers", "whole numbers >= 0", [](const Json& entry) {
+                return entry.is_number_integer() && entry >= 0;
             });
-        case FieldType::object: return check_object(c, value);
-        case FieldType::objects: return check_objects(c, value);
+        case FieldType::numbers:
+            if (f.range && value.is_number()) return check_number(c, value);
+            return c.each(
+                value, "numbers", "numbers", [](const Json& entry) { return entry.is_number(); });
+        case FieldType::object:
+            if (!value.is_object()) return c.fail("", value, "must be an object");
+            if (f.fields.empty()) return;  // the reader of the request checks it
+            for (FieldError& e : check(f.fields, value)) {
+                e.pointer = pointer(f.name) + e.pointer;
+                c.errors.push_back(std::move(e));
+            }
+            return;
+        case FieldType::objects:  // the reader of the request checks each
+            if (!value.is_array() && !c.is_choice(value))
+                c.fail(
+                    "", value,
+                    "must be an array" +
+                        (f.choices.empty() ? "" : " or \"" + joined(f.choices) + "\""));
+            return;
     }
 }
 

@@ -11,27 +11,19 @@
 
 namespace vines::api {
 
-Field integer(
-    const char* name, const char* description, Range range, Json fallback, const char* unit) {
-    return {
-        .name = name,
-        .type = FieldType::integer,
-        .unit = unit,
-        .description = description,
-        .fallback = std::move(fallback),
-        .range = range};
-}
-
-Field choice(
-    const std::string& name, const std::string& description, std::vector<std::string> choices,
-    Json fallback, const std::string& fallback_note) {
-    return {
-        .name = name,
-        .type = FieldType::choice,
-        .description = description,
-        .fallback = std::move(fallback),
-        .fallback_note = fallback_note,
-        .choices = std::move(choices)};
+Field::Field(
+    std::string name_, std::string description_, FieldType type_, Limits limits, Json fallback_,
+    std::string note, std::string unit_, std::string symbol_)
+    : name(std::move(name_)),
+      type(type_),
+      unit(std::move(unit_)),
+      symbol(std::move(symbol_)),
+      description(std::move(description_)),
+      fallback(std::move(fallback_)),
+      fallback_note(std::move(note)) {
+    if (const auto* limit = std::get_if<Range>(&limits)) range = *limit;
+    if (auto* all = std::get_if<Choices>(&limits)) choices = std::move(*all);
+    if (auto* all = std::get_if<FieldTable>(&limits)) fields = std::move(*all);
 }
 
 FieldTable grouped(const char* group, FieldTable rows) {

@@ -6,6 +6,7 @@
 #include <optional>
 #include <span>
 #include <string>
+#include <variant>
 #include <vector>
 
 #include "api/schema/json.hpp"
@@ -31,30 +32,35 @@ struct Range {
     double minimum, maximum;
 };
 
-struct Field {
-    std::string name;
-    FieldType type = FieldType::number;
-    std::string group = "", unit = "", symbol = "", description = "";
-    /// The default; null if it follows from other fields.
-    Json fallback = nullptr;
-    std::string fallback_note = "";   ///< how the default follows from other fields
-    std::optional<Range> range = {};  ///< every number and integer has one
-    /// The permitted values of a choice or of choices; empty: any string. For objects: strings that
-    /// are permitted in place of the array.
-    std::vector<std::string> choices = {};
-    /// Sub-fields of an object; empty if the reader of the request checks them.
-    std::vector<Field> fields = {};
-};
-
+using Choices = std::vector<std::string>;
+struct Field;
 using FieldTable = std::vector<Field>;
 
-/// A row of type integer.
-Field integer(
-    const char* name, const char* description, Range range, Json fallback, const char* unit = "");
-/// A row of type choice; empty `choices` permit any string.
-Field choice(
-    const std::string& name, const std::string& description, std::vector<std::string> choices,
-    Json fallback, const std::string& fallback_note = "");
+/// The range of a number, the choices of a string, or the sub-fields of an object.
+using Limits = std::variant<std::monostate, Range, Choices, FieldTable>;
+inline constexpr std::monostate any_value;
+/// Prevents overflow of a number whose reader checks it against the range of its parameter.
+inline constexpr Range any_number{-1e300, 1e300};
+
+struct Field {
+    Field(
+        std::string name, std::string description, FieldType type, Limits limits = any_value,
+        Json fallback = nullptr, std::string fallback_note = "", std::string unit = "",
+        std::string symbol = "");
+
+    std::string name;
+    FieldType type;
+    std::string group, unit, symbol, description;
+    /// The default; null if it follows from other fields.
+    Json fallback;
+    std::string fallback_note;   ///< how the default follows from other fields
+    std::optional<Range> range;  ///< every number and integer has one
+    /// The permitted values of a choice or of choices; empty: any string. For objects: strings that
+    /// are permitted in place of the array.
+    Choices choices;
+    /// Sub-fields of an object; empty if the reader of the request checks them.
+    FieldTable fields;
+};
 
 /// The rows as one group.
 FieldTable grouped(const char* group, FieldTable rows);

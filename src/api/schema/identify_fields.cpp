@@ -30,19 +30,22 @@ void adapt_to_record(Field& f) {
 }
 
 Field column_row(const Channel& c) {
-    return choice(
-        c.name + "_column", "name of the column of " + (c.forcing.empty() ? c.quantity : c.forcing),
-        {}, nullptr,
+    return {
+        c.name + "_column",
+        "name of the column of " + (c.forcing.empty() ? c.quantity : c.forcing),
+        FieldType::choice,
+        any_value,
+        nullptr,
         fmt::format(
             "{}, or the first name that begins with {}{}", c.column,
-            fmt::join(c.beginnings, " or "), c.forcing.empty() ? "" : "; optional"));
+            fmt::join(c.beginnings, " or "), c.forcing.empty() ? "" : "; optional")};
 }
 
 Field unit_row(const Channel& c) {
-    return choice(
+    return {
         c.name + "_unit",
         "unit of " + c.quantity + ", unless the column's name or a row of units gives one",
-        unit_names(c), c.units[0].name);
+        FieldType::choice, unit_names(c), c.units[0].name};
 }
 
 std::vector<std::string> fixable() {
@@ -52,66 +55,51 @@ std::vector<std::string> fixable() {
 }
 
 FieldTable record_rows() {
+    using enum FieldType;
     FieldTable rows = {
-        {.name = "fixed",
-         .type = FieldType::choices,
-         .description = "quantities that are not fitted to the record: f, F, phase, omega0, zeta, "
-                        "b and R keep "
-                        "the values of the other fields, a sensor counts as free of errors",
-         .fallback = Json::array(),
-         .choices = fixable()},
-        {.name = "phase",
-         .unit = "rad",
-         .description =
-             "phase of the base, which moves by F sin(2 pi f t + phase), t as in the record; used "
-             "if fixed contains phase",
-         .fallback_note = "fitted; if fixed, the phase of the forcing channel",
-         .range = Range{-7, 7}}};
+        {"fixed",
+         "quantities that are not fitted to the record: f, F, phase, omega0, zeta, b and R keep "
+         "the values of the other fields, a sensor counts as free of errors",
+         choices, fixable(), Json::array()},
+        {"phase",
+         "phase of the base, which moves by F sin(2 pi f t + phase), t as in the record; used "
+         "if fixed contains phase",
+         number, Range{-7, 7}, nullptr, "fitted; if fixed, the phase of the forcing channel",
+         "rad"}};
     const std::vector<const Channel*> channels = {
         &time_channel, &displacement_channel, &acceleration_channel, &base_channel, &force_channel};
     for (const Channel* channel : channels) rows.push_back(column_row(*channel));
     for (const Channel* channel : channels) rows.push_back(unit_row(*channel));
     rows.push_back(
-        {.name = "threshold",
-         .unit = "standard deviations of the noise",
-         .description = "smallest height at which a spike of the acceleration can be an impact",
-         .fallback = 6,
-         .range = Range{3, 1000}});
+        {"threshold", "smallest height at which a spike of the acceleration can be an impact",
+         number, Range{3, 1000}, 6, "", "standard deviations of the noise"});
     rows.push_back(
-        {.name = "impact_times_s",
-         .type = FieldType::numbers,
-         .unit = "s",
-         .description =
-             "times of the impacts, for example an edited list; replaces their detection",
-         .fallback_note = "detected in the record"});
+        {"impact_times_s",
+         "times of the impacts, for example an edited list; replaces their detection", numbers,
+         any_value, nullptr, "detected in the record", "s"});
+    for (const std::string name : {"m1", "c1", "k1", "m2"})
+        rows.push_back(
+            {name + "_uncertainty",
+             "relative standard error of the given " + name +
+                 "; for a record it becomes part of the standard errors of b, R and the other "
+                 "fitted values",
+             number, Range{0, 0.5}, 0});
     return rows;
 }
 
 FieldTable make_identify_fields() {
+    using enum FieldType;
     FieldTable table = simulate_fields_where([](const Field& f) {
         return is_of_system(f) || f.name == "exponents" || f.name == "max_points" ||
                f.name == "friction" || f.name == "mu" || f.name.starts_with("restitution");
     });
     for (Field& field : table) adapt_to_record(field);
     const Field include = {
-        .name = "include",
-        .type = FieldType::choices,
-        .description =
-            "additional parts of the response for a record: motion, the fitted motion at the "
-            "samples; direct_exponents, exponents with histories by the direct method of the paper",
-        .fallback = Json::array(),
-        .choices = {"motion", "direct_exponents"}};
-    std::vector<Field> uncertainties;
-    for (const char* name : {"m1", "c1", "k1", "m2"})
-        uncertainties.push_back(
-            {.name = std::string(name) + "_uncertainty",
-             .description = std::string("relative standard error of the given ") + name +
-                            "; for a record it becomes part of the standard errors of b, R and "
-                            "the other fitted values",
-             .fallback = 0,
-             .range = Range{0, 0.5}});
-    return table + grouped("output", {include}) + grouped("record", record_rows()) +
-           grouped("record", std::move(uncertainties));
+        "include",
+        "additional parts of the response for a record: motion, the fitted motion at the samples; "
+        "direct_exponents, exponents with histories by the direct method of the paper",
+        choices, Choices{"motion", "direct_exponents"}, Json::array()};
+    return table + grouped("output", {include}) + grouped("record", record_rows());
 }
 
 }  // namespace

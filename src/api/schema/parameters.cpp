@@ -62,17 +62,9 @@ Json describe_model() {
 }  // namespace
 
 Json describe_fields() {
-    return {
-        {"model", describe_model()},
-        {"fields", describe(simulate_fields())},
-        {"manifold_fields", describe(manifold_fields())},
-        {"sweep_fields", describe(sweep_fields())},
-        {"axis_fields", describe(axis_fields())},
-        {"basins_fields", describe(basins_fields())},
-        {"continue_fields", describe(continue_fields())},
-        {"design_fields", describe(design_fields())},
-        {"identify_fields", describe(identify_fields())},
-        {"form_fields", describe(form_fields())}};
+    Json all = {{"model", describe_model()}};
+    for (const ListedTable& table : listed_tables) all[table.key] = describe(table.fields());
+    return all;
 }
 
 }  // namespace vines::api

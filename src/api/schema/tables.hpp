@@ -1,6 +1,6 @@
 // The fields of each route. A new field is a new row in simulate_fields.cpp (which also holds the
-// tables of /v1/manifold and of the response's format), sweep_fields.cpp, basins_fields.cpp,
-// continue_fields.cpp or identify_fields.cpp.
+// tables of /v1/manifold and of the response's format), sweep_fields.cpp (also /v1/basins),
+// continue_fields.cpp, design_fields.cpp or identify_fields.cpp.
 #pragma once
 
 #include "api/schema/field.hpp"
@@ -20,22 +20,25 @@ inline constexpr const char* dimensionless = "dimensionless";
 /// Fields of /v1/simulate, in the order in which a form shows them.
 const FieldTable& simulate_fields();
 
+const FieldTable& manifold_fields();
+
 /// Fields of /v1/sweep, of its `base`, of an entry of `axes`, and of an entry of `starts`.
 const FieldTable& sweep_fields();
 const FieldTable& sweep_base_fields();
 const FieldTable& axis_fields();
 const FieldTable& start_fields();
 
-/// Fields of /v1/basins; those of its `base` are sweep_base_fields(), of its `axis` axis_fields().
+/// Those of a `base` are sweep_base_fields(), of an `axis` axis_fields().
 const FieldTable& basins_fields();
-
-/// Fields of /v1/continue; those of its `base` are sweep_base_fields().
 const FieldTable& continue_fields();
-/// Fields of /v1/design; those of its `base` are fields of a system in SI.
+/// Those of `base` are fields of a system in SI.
 const FieldTable& design_fields();
 
-/// Fields of /v1/identify, without the record itself.
+/// Without the record itself.
 const FieldTable& identify_fields();
+
+/// Format of the response: additional fields of /v1/simulate, /v1/manifold and /v1/identify.
+const FieldTable& form_fields();
 
 // The channels of a record, from which the fields of their columns and units follow.
 
@@ -61,12 +64,6 @@ std::vector<std::string> unit_names(const Channel& channel);
 extern const Channel time_channel, displacement_channel, acceleration_channel, base_channel,
     force_channel;
 
-/// Fields of /v1/manifold.
-const FieldTable& manifold_fields();
-
-/// Format of the response: additional fields of /v1/simulate, /v1/manifold and /v1/identify.
-const FieldTable& form_fields();
-
 /// The row `section_phase` of /v1/simulate and /v1/sweep.
 Field section_phase_row();
 
@@ -76,7 +73,24 @@ bool is_of_system(const Field& field);
 /// The fields of /v1/simulate for which keep(field) is true.
 FieldTable simulate_fields_where(bool (*keep)(const Field& field));
 
-/// The response of GET /v1/parameters: the model with its symbols, and all tables.
+/// A table of GET /v1/parameters: its key there and what it lists.
+struct ListedTable {
+    const char *key, *meaning;
+    const FieldTable& (*fields)();
+};
+inline constexpr ListedTable listed_tables[] = {
+    {"fields", "fields of /v1/simulate", simulate_fields},
+    {"manifold_fields", "fields of /v1/manifold", manifold_fields},
+    {"sweep_fields", "fields of /v1/sweep", sweep_fields},
+    {"axis_fields", "fields of an axis of a sweep", axis_fields},
+    {"basins_fields", "fields of /v1/basins", basins_fields},
+    {"continue_fields", "fields of /v1/continue", continue_fields},
+    {"design_fields", "fields of /v1/design", design_fields},
+    {"identify_fields", "fields of /v1/identify", identify_fields},
+    {"form_fields", "format of the response: fields of simulate, manifold and identify",
+     form_fields}};
+
+/// The response of GET /v1/parameters: the model with its symbols, and the listed tables.
 Json describe_fields();
 
 }  // namespace vines::api
