@@ -1,5 +1,4 @@
 // Examples: requests that are valid as they stand, and the responses to them, which are computed.
-#include <string_view>
 #include <utility>
 
 #include "api/continuation.hpp"
@@ -12,15 +11,12 @@ namespace vines::api::document {
 
 namespace {
 
-struct Example {
-    std::string_view name;  ///< of the operation or the schema
-    std::string_view json;
-};
-
-constexpr Example requests[] = {
-    {"simulate_by_query", R"({"preset": "fig11", "include": ["regime", "energy"]})"},
-    {"manifold_by_query", R"({"preset": "fig11", "points": 5})"},
-    {"simulate", R"({
+/// By operation.
+const Json& requests() {
+    static const Json all = Json::parse(R"json({
+    "simulate_by_query": {"preset": "fig11", "include": ["regime", "energy"]},
+    "manifold_by_query": {"preset": "fig11", "points": 5},
+    "simulate": {
         "figure": {
             "summary": "energies in Fig. 11 of the paper",
             "value": {"preset": "fig11", "include": ["energy"]}},
@@ -30,10 +26,10 @@ constexpr Example requests[] = {
                 "f": 14, "R": 0.4, "b": 0.03, "include": ["impacts", "exponents", "regime"]}},
         "perturbed": {
             "summary": "two runs with slightly different starts",
-            "value": {"b": 0.022, "tau_end": 400, "perturbation": {"size": 1e-8}}}})"},
-    {"manifold", R"({
-        "default": {"summary": "system of Table 1", "value": {"points": 3}}})"},
-    {"sweep", R"({
+            "value": {"b": 0.022, "tau_end": 400, "perturbation": {"size": 1e-8}}}},
+    "manifold": {
+        "default": {"summary": "system of Table 1", "value": {"points": 3}}},
+    "sweep": {
         "clearances": {
             "summary": "four values of the clearance b",
             "value": {"base": {"damping": "closed_form"}, "cycles": 500,
@@ -43,51 +39,38 @@ constexpr Example requests[] = {
             "value": {"base": {"m1": 12, "f0": 14, "damping_ratio": 0.006, "mass_ratio": 0.01,
                 "F": 0.0004, "R": 0.4, "b": 0.03}, "starts": "default set",
                 "reduce": "max over f", "cycles": 200,
-                "axes": [{"parameter": "f", "from": 13, "to": 15, "count": 9}]}}})"},
-    {"basins", R"({
+                "axes": [{"parameter": "f", "from": 13, "to": 15, "count": 9}]}}},
+    "basins": {
         "twins": {
             "summary": "two motions that are mirror images of each other",
             "value": {"base": {"damping": "closed_form", "b": 0.0065, "y0": 0}, "count": 100,
-                "box": {"x0": [-0.003, 0.003], "y_dot0": [-0.02, 0.02]}, "pairs": 0}}})"},
-    {"continue", R"({
+                "box": {"x0": [-0.003, 0.003], "y_dot0": [-0.02, 0.02]}, "pairs": 0}}},
+    "continue": {
         "clearances": {
             "summary": "the symmetric two-impact orbit of Table 1, both ends of its stability",
             "value": {"base": {"damping": "closed_form", "b": 0.015}, "parameter": "b",
-                "from": 0.005, "to": 0.02}}})"},
-    {"design", R"({
+                "from": 0.005, "to": 0.02}}},
+    "design": {
         "a band": {
             "summary": "2 kg at 8 Hz, up to 5 m/s^2 between 7.8 and 8.2 Hz, 40 g to spend",
             "value": {"base": {"m1": 2, "f0": 8, "damping_ratio": 0.01, "m2": 0.04},
                 "f": [7.8, 8.2], "acceleration": 5, "R": 0.2, "b_count": 6, "f_count": 3,
-                "starts": "one", "transient_cycles": 20, "cycles": 20}}})"},
-    {"identify", R"(
-        {"impacts": {
+                "starts": "one", "transient_cycles": 20, "cycles": 20}}},
+    "identify": {
+        "impacts": {
             "summary": "a list of impacts, in SI: x in m, velocities in m/s",
             "value": {"preset": "fig20", "b": 0.015, "exponents": ["qr"], "impacts": {
                 "time_s": [1.403385, 1.461862, 1.607638, 1.984774, 2.058772],
                 "x": [0.0004349904, -0.0006110741, 0.002128898, 0.002552786, -0.001091305],
                 "x_velocity_before": [-0.1111193, 0.1141878, 0.05954217, -0.0625302, 0.1405365],
                 "x_velocity_after": [-0.1126914, 0.1123261, 0.06186857, -0.06275421, 0.1378615]
-            }}}})"},
-};
-
-constexpr Example service_answers[] = {
-    {"Version", R"json(
-        {"name": "vines", "version": "0.2.0", "commit": "fcd41c5a1b2c", "compiler": "g++ 12.2.0"}
-    )json"},
-    {"Status", R"({"status": "ok"})"},
-};
-
-template <std::size_t n>
-Json example_of(const Example (&table)[n], std::string_view name) {
-    for (const Example& example : table)
-        if (example.name == name) return Json::parse(example.json);
-    return nullptr;
+            }}}}})json");
+    return all;
 }
 
 /// The first request example of an operation, in key order.
-Json first_request(const char* operation) {
-    return request_example(operation).begin()->at("value");
+const Json& first_request(const char* operation) {
+    return requests()[operation].begin()->at("value");
 }
 
 Json answer_to(const char* operation, const char* route) {
@@ -135,18 +118,24 @@ Json design_line() {
 
 }  // namespace
 
-Json request_example(const char* operation) { return example_of(requests, operation); }
+Json request_example(const std::string& operation) { return requests().value(operation, Json()); }
 
-Json answer_example(const char* schema) {
-    static const Json computed = {
+Json answer_example(const std::string& schema) {
+    static const Json answers = {
         {"Simulation", answer_to("simulate", "/v1/simulate")},
         {"Manifold", answer_to("manifold", "/v1/manifold")},
         {"SweepLine", point_line("sweep", read_sweep_request, 3)},
         {"BasinsLine", point_line("basins", read_basins_request, 0)},
         {"ContinueLine", special_line()},
         {"DesignLine", design_line()},
-        {"Identification", answer_to("identify", "/v1/identify")}};
-    return computed.contains(schema) ? computed[schema] : example_of(service_answers, schema);
+        {"Identification", answer_to("identify", "/v1/identify")},
+        {"Version",
+         {{"name", "vines"},
+          {"version", "0.2.0"},
+          {"commit", "fcd41c5a1b2c"},
+          {"compiler", "g++ 12.2.0"}}},
+        {"Status", {{"status", "ok"}}}};
+    return answers.value(schema, Json());
 }
 
 }  // namespace vines::api::document

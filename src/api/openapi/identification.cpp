@@ -6,7 +6,43 @@ namespace vines::api::document {
 
 namespace {
 
-Json signal() {
+/// A key of the response to a record.
+Keys of_record(const std::string& name, const Json& schema, const std::string& description) {
+    return {name + "?", schema, "for a record: " + description};
+}
+
+}  // namespace
+
+// NOLINTNEXTLINE(readability-function-size): a table
+void add_identification(Json& schemas) {
+    schemas["Identification"] = object_of(
+        {sealed_keys("System"),
+         of_record("signal", reference("Signal"), "noise, misfit, pulse, forcing"),
+         of_record(
+             "fitted", reference("Fitted"),
+             "fitted properties of the sensors, of the forcing and of the oscillator"),
+         of_record(
+             "motion", reference("FittedMotion"),
+             "if include has motion, the fitted motion at the samples"),
+         of_record(
+             "direct", or_null(reference("DirectEstimate")),
+             "estimate by the paper's method, with velocities from differences of the "
+             "displacement, for comparison; null without both sensors"),
+         of_record(
+             "forward", or_null(reference("ForwardRun")),
+             "a run of the identified system from the first known state"),
+         {"impacts", reference("IdentifiedImpacts"), "every impact, with a status"},
+         {"sticking", reference("Sticking"), "every sticking phase"},
+         {"restitution", reference("Restitution"), "restitution coefficient of each wall"},
+         {"b_fitted", object_of(values_of(properties::fitted_b)),
+          "the b that conserves momentum best"},
+         {"exponents", reference("MeasuredExponents"),
+          "Lyapunov exponents of the sequence of impacts"},
+         {"slope", object_of(values_of(properties::slope)), "growth of lambda1(tau) tau"},
+         {"verdict", enum_schema<Verdict>(),
+          "chaotic, regular, not_decided; null if the impacts die out because there is no "
+          "forcing"},
+         {"verdict_reason", text(), "reason for the verdict, a sentence"}});
     const Json forcing = object_of(
         {{"f", number(), "forcing frequency in that channel, Hz"},
          {"F", number(),
@@ -16,7 +52,7 @@ Json signal() {
          {"load", one_of({"measured", "sine"}),
           "measured: variations and harmonics in the channel are part of the forcing; sine: it "
           "shows none"}});
-    return object_of(
+    schemas["Signal"] = object_of(
         {{"samples", whole(), "number of samples"},
          {"sampling_rate", number(), "sampling rate, Hz"},
          {"noise_displacement", or_null(number()), "standard deviation of the residuals, m"},
@@ -42,9 +78,6 @@ Json signal() {
          {"force_cos", number(), "see force_sin, m"},
          {"forcing", or_null(forcing),
           "forcing by the channel of the base or of a force; null without one"}});
-}
-
-Json fitted() {
     const Json value = object_of(
         {{"value", or_null(number()), "in SI"},
          {"standard_error", or_null(number()), "null if fixed"},
@@ -67,93 +100,27 @@ Json fitted() {
              {"R_minus", "restitution coefficient of the wall at -b"},
              {"F", "amplitude of the base, m"},
              {"phase", "the base moves by F sin(2 pi f t + phase), rad"}})
-        keys.push_back({name, value, meaning});
-    return object_of(keys);
-}
-
-Json identified_impacts() {
-    return object_of(columns_of(identified_wall_columns) + columns_of(identified_columns));
-}
-
-Json restitution() {
+        keys = {keys, {name, value, meaning}};
+    schemas["Fitted"] = object_of(keys);
+    schemas["IdentifiedImpacts"] =
+        object_of({columns_of(identified_wall_columns), columns_of(identified_columns)});
     const Json wall = object_of(values_of(properties::restitution));
-    return object_of({{"plus", wall, "the wall at +b"}, {"minus", wall, "the wall at -b"}});
-}
-
-Json fitted_motion() {
-    return object_of(Keys{column_of(quantity.tau)} + columns_of(fitted_motion_columns));
-}
-
-Json direct() {
-    return object_of(
+    schemas["Restitution"] =
+        object_of({{"plus", wall, "the wall at +b"}, {"minus", wall, "the wall at -b"}});
+    schemas["FittedMotion"] =
+        object_of({column_of(quantity.tau), columns_of(fitted_motion_columns)});
+    schemas["DirectEstimate"] = object_of(
         {{"impacts", table_of(identified_columns), "the same impacts, in the same order"},
          {"restitution", reference("Restitution"), "restitution coefficients"},
          {"lambda", four_exponents(),
           "four exponents by qr, without the impacts that status excludes here"},
-         optional(
-             {"exponents", reference("MeasuredExponents"),
-              "if include has direct_exponents: exponents from the impacts that the fit uses, "
-              "whatever their status here"})});
-}
-
-Json forward_run() {
-    return object_of(
+         {"exponents?", reference("MeasuredExponents"),
+          "if include has direct_exponents: exponents from the impacts that the fit uses, "
+          "whatever their status here"}});
+    schemas["ForwardRun"] = object_of(
         {{"start", number(), "tau at the start of the run"},
          {"impacts", table_of(forward_impact_columns), "impacts of the run"},
          {"lambda", four_exponents(), "four exponents by qr"}});
-}
-
-Key of_record(const std::string& name, const Json& schema, const std::string& description) {
-    return optional({name, schema, "for a record: " + description});
-}
-
-Keys record_keys() {
-    return {
-        of_record("signal", reference("Signal"), "noise, misfit, pulse, forcing"),
-        of_record(
-            "fitted", reference("Fitted"),
-            "fitted properties of the sensors, of the forcing and of the oscillator"),
-        of_record(
-            "motion", reference("FittedMotion"),
-            "if include has motion, the fitted motion at the samples"),
-        of_record(
-            "direct", or_null(reference("DirectEstimate")),
-            "estimate by the paper's method, with velocities from differences of the displacement, "
-            "for comparison; null without both sensors"),
-        of_record(
-            "forward", or_null(reference("ForwardRun")),
-            "a run of the identified system from the first known state")};
-}
-
-Json identification() {
-    return object_of(
-        sealed_keys("System") + record_keys() +
-        Keys{
-            {"impacts", reference("IdentifiedImpacts"), "every impact, with a status"},
-            {"sticking", reference("Sticking"), "every sticking phase"},
-            {"restitution", reference("Restitution"), "restitution coefficient of each wall"},
-            {"b_fitted", object_of(values_of(properties::fitted_b)),
-             "the b that conserves momentum best"},
-            {"exponents", reference("MeasuredExponents"),
-             "Lyapunov exponents of the sequence of impacts"},
-            {"slope", object_of(values_of(properties::slope)), "growth of lambda1(tau) tau"},
-            {"verdict", enum_schema<Verdict>(),
-             "chaotic, regular, not_decided; null if the impacts die out because there is no "
-             "forcing"},
-            {"verdict_reason", text(), "reason for the verdict, a sentence"}});
-}
-
-}  // namespace
-
-void add_identification(Json& schemas) {
-    schemas["Identification"] = identification();
-    schemas["Signal"] = signal();
-    schemas["Fitted"] = fitted();
-    schemas["IdentifiedImpacts"] = with_si(identified_impacts());
-    schemas["Restitution"] = restitution();
-    schemas["FittedMotion"] = with_si(fitted_motion());
-    schemas["DirectEstimate"] = with_si(direct());
-    schemas["ForwardRun"] = with_si(forward_run());
 }
 
 }  // namespace vines::api::document

@@ -1,8 +1,6 @@
-#include "api/openapi/json_schema.hpp"
-
 #include <utility>
 
-#include "core/measures/regime.hpp"
+#include "api/openapi/parts.hpp"
 
 namespace vines::api::document {
 
@@ -27,6 +25,10 @@ Json numbers() { return list_of(number()); }
 
 Json interval() { return list_of(number(), 2); }
 
+Json four_exponents() { return list_of(or_null(number()), 4); }
+
+Json regime_name() { return one_of({"none", "I", "II", "III", "IV", "V", "VI"}); }
+
 Json or_null(Json schema) {
     if (schema.contains("type") && schema["type"].is_array()) return schema;
     if (!schema.contains("type"))
@@ -38,9 +40,14 @@ Json or_null(Json schema) {
 
 Json reference(const std::string& name) { return {{"$ref", "#/components/schemas/" + name}}; }
 
-Key optional(Key key) {
-    key.required = false;
-    return key;
+Keys::Keys(std::string name, Json schema, std::string description) {
+    const bool is_optional = name.ends_with('?');
+    if (is_optional) name.pop_back();
+    push_back({std::move(name), std::move(schema), std::move(description), !is_optional});
+}
+
+Keys::Keys(std::initializer_list<Keys> parts) {
+    for (const Keys& part : parts) insert(end(), part.begin(), part.end());
 }
 
 Keys optional(Keys keys) {
@@ -53,14 +60,10 @@ Keys or_null(Keys keys) {
     return keys;
 }
 
-Keys operator+(Keys keys, const Keys& more) {
-    keys.insert(keys.end(), more.begin(), more.end());
-    return keys;
-}
-
 Json object_of(const Keys& keys) {
     Json required = Json::array(), properties = Json::object();
     for (const Key& key : keys) {
+        if (properties.contains(key.name)) continue;
         Json& schema = properties[key.name] = key.schema;
         if (!key.description.empty()) schema["description"] = key.description;
         if (key.required) required.push_back(key.name);
@@ -73,15 +76,6 @@ Json object_of(const Keys& keys) {
 
 Json map_of(Json values) {
     return {{"type", "object"}, {"additionalProperties", std::move(values)}};
-}
-
-Json regime_name() {
-    std::vector<std::string> names;
-    for (const RegimeType type :
-         {RegimeType::none, RegimeType::I, RegimeType::II, RegimeType::III, RegimeType::IV,
-          RegimeType::V, RegimeType::VI})
-        names.push_back(name_of(type));
-    return one_of(names);
 }
 
 namespace {
@@ -97,7 +91,7 @@ Json schema_of(ValueType type) {
         case ValueType::word_or_null: return or_null(text());
         case ValueType::component: return one_of({"x_dot", "x", "y_dot", "y"});
         case ValueType::moduli: return list_of(number(), 4);
-        case ValueType::exponents: return list_of(or_null(number()), 4);
+        case ValueType::exponents: return four_exponents();
         case ValueType::statuses: return list_of(enum_schema<Status>(), 4);
         case ValueType::matrix: return list_of(list_of(number(), 4), 4);
         case ValueType::interval: return interval();
@@ -128,20 +122,18 @@ void add_si_counterparts(Json& properties, const Table& table) {
 
 }  // namespace
 
-Key value_of(const Quantity& q) { return {q.name, schema_of(q.type), q.meaning}; }
+Keys::Keys(const Quantity& q) : Keys(q.name, schema_of(q.type), q.meaning) {}
 
-Key column_of(const Quantity& q) {
+Keys column_of(const Quantity& q) {
     const Json entries = schema_of(q.type);
     const bool is_state = q.type == ValueType::component;
     return {q.name, is_state ? list_of(entries, 4) : list_of(entries), q.meaning};
 }
 
 Json with_si(Json schema) {
-    if (schema.contains("items")) schema["items"] = with_si(std::move(schema["items"]));
-    if (!schema.contains("properties")) return schema;
-    Json& properties = schema["properties"];
-    add_si_counterparts(properties, quantity);
-    for (auto& [name, value] : properties.items()) value = with_si(std::move(value));
+    if (schema.contains("properties")) add_si_counterparts(schema["properties"], quantity);
+    if (schema.is_structured())
+        for (Json& part : schema) part = with_si(std::move(part));
     return schema;
 }
 

@@ -1,14 +1,102 @@
-// The parts of the OpenAPI document, each made in a file of its own.
+// The parts of the OpenAPI document, each made in a file of its own, and short names for the JSON
+// Schemas (2020-12) of which they are made.
 #pragma once
 
+#include <algorithm>
 #include <functional>
+#include <initializer_list>
+#include <set>
 
-#include "api/openapi/json_schema.hpp"
+#include "api/quantity.hpp"
+#include "api/schema/enum_names.hpp"
 #include "api/schema/tables.hpp"
 
 namespace vines::api::document {
 
-// Schemas: each function adds those of its file to components/schemas, by name.
+// Schemas of values (json_schema.cpp).
+
+Json text();
+Json flag();
+Json number();
+/// An integer >= 0.
+Json whole();
+Json constant(const std::string& value);
+Json one_of(const std::vector<std::string>& values);
+Json list_of(Json items);
+/// A list of exactly `length` entries.
+Json list_of(Json items, int length);
+/// A list of numbers: a column of a response.
+Json numbers();
+/// [from, to].
+Json interval();
+/// Four numbers; null for minus infinity and for an exponent that is not converged.
+Json four_exponents();
+/// I to VI, or none.
+Json regime_name();
+/// The schema, or null; unchanged if it permits null.
+Json or_null(Json schema);
+/// A reference to a schema of the components.
+Json reference(const std::string& name);
+
+/// The names of an enumeration; nullable if one of its values is null in JSON.
+template <class Enum>
+Json enum_schema() {
+    const bool has_null =
+        std::ranges::any_of(enum_names<Enum>, [](const auto& entry) { return !entry.name; });
+    const Json schema = one_of(enum_choices<Enum>());
+    return has_null ? or_null(schema) : schema;
+}
+
+// Schemas of objects.
+
+/// A key of an object and its meaning.
+struct Key {
+    std::string name;
+    Json schema;
+    std::string description;
+    bool required;
+};
+
+/// The keys of an object, put together from single keys, quantities and other Keys.
+struct Keys : std::vector<Key> {
+    Keys() = default;
+    /// One key; it is not required if its name ends with "?".
+    Keys(std::string name, Json schema, std::string description = "");
+    /// The key of a quantity with one value.
+    Keys(const Quantity& quantity);  // NOLINT(google-explicit-constructor): an entry of Keys
+    Keys(std::initializer_list<Keys> parts);
+};
+
+/// The key of a list of a quantity's values, a column of a response.
+Keys column_of(const Quantity& quantity);
+/// The keys of a table of values (properties.hpp) or of columns (columns.hpp).
+Keys values_of(const auto& table) {
+    Keys keys;
+    for (const auto& property : table) keys = {keys, property.quantity};
+    return keys;
+}
+Keys columns_of(const auto& table) {
+    Keys keys;
+    for (const auto& column : table) keys = {keys, column_of(column.quantity)};
+    return keys;
+}
+/// The same keys, not required.
+Keys optional(Keys keys);
+/// The same keys, whose values can be null.
+Keys or_null(Keys keys);
+
+/// An object with these keys and no others. The first of two keys with one name counts.
+Json object_of(const Keys& keys);
+/// An object with arbitrary keys.
+Json map_of(Json values);
+Json table_of(const auto& table) { return object_of(columns_of(table)); }
+
+/// The schema with the SI counterparts in all of it, as add_si() adds them to a response.
+Json with_si(Json schema);
+/// The schema of `energy` with its counterparts in J, as add_joules() adds them.
+Json with_joules(Json schema);
+
+// Each function adds the schemas of its file to components/schemas, by name.
 
 void add_requests(Json& schemas);            // requests.cpp
 void add_systems(Json& schemas);             // systems.cpp: parameters and provenance
@@ -16,7 +104,8 @@ void add_exponents(Json& schemas);           // exponents.cpp
 void add_manifolds(Json& schemas);           // simulation.cpp: the part and the response
 void add_simulation(Json& schemas);          // simulation.cpp
 void add_sweep_lines(Json& schemas);         // sweep_lines.cpp
-void add_continuation_lines(Json& schemas);  // continuation_lines.cpp
+void add_basins_lines(Json& schemas);        // sweep_lines.cpp
+void add_continuation_lines(Json& schemas);  // sweep_lines.cpp
 void add_design_lines(Json& schemas);        // design_lines.cpp
 void add_identification(Json& schemas);      // identification.cpp
 void add_service(Json& schemas);             // service.cpp: tables, presets, version, problems
@@ -27,46 +116,37 @@ void add_service(Json& schemas);             // service.cpp: tables, presets, ve
 Keys answer_keys(const std::string& parameters);
 /// The same with provenance.
 Keys sealed_keys(const std::string& parameters);
-Json multipliers_schema();  // continuation_lines.cpp
-/// A line of a stream: `type`, then these keys.
-Json line_of(const char* type, const Keys& keys);
-/// An optional key for each parameter that can be swept and for which is_kept() is true.
-Keys swept_keys(
-    const Json& value, const std::string& description,
-    const std::function<bool(const Field&)>& is_kept = [](const Field&) { return true; });
-/// One of these schemas, selected by the key `type`: {value of type, name of the schema}.
-Json by_type(const std::vector<std::pair<std::string, std::string>>& schemas);
 /// Columns of a Poincare section at impact, without tau.
 Keys impact_section_keys();
-/// Columns of a stroboscopic section, without tau.
-Keys stroboscopic_keys();
-/// Four numbers; null for minus infinity and for an exponent that is not converged.
-Json four_exponents();
 /// `final` and `status`.
 Keys final_keys();
+/// A line of a stream: `type`, then these keys.
+Json line_of(const char* type, const Keys& keys);
+/// One of these schemas, selected by the key `type`, the last word of the schema's name:
+/// "progress" of SweepProgress.
+Json any_line(const std::vector<std::string>& schemas);
 
 /// The fields as query parameters; `example`: values of some of them, which together are a valid
 /// request.
 Json query_of(const FieldTable& fields, const Json& example);
 
-// Responses and headers.
+// Responses and headers (service.cpp).
 
 /// components/responses, components/headers.
 Json response_components();
 Json header_components();
-/// References to the response components of these statuses.
-Json responses_of(const std::vector<int>& statuses);
-/// The statuses with which every operation can respond.
-std::vector<int> common_statuses();
-/// X-Request-ID and the named header components.
+/// References to the response components of the statuses with which every operation can respond,
+/// and of `others`.
+Json error_responses(std::set<int> others);
+/// References to X-Request-ID and the named header components.
 Json headers_of(const std::vector<std::string>& names);
 
 // Examples.
 
 /// Examples of an operation, each a valid request: {name: {summary, value}} for its request body,
 /// or the fields of its query.
-Json request_example(const char* operation);
+Json request_example(const std::string& operation);
 /// The response with this schema to the first request example. Null where it is too long.
-Json answer_example(const char* schema);
+Json answer_example(const std::string& schema);
 
 }  // namespace vines::api::document

@@ -9,27 +9,30 @@ namespace {
 
 Json request_of(const FieldTable& fields, const std::vector<std::string>& required = {});
 
-/// The schema of the value alone, without description, range and default.
+/// The schema of the value, without description and default.
 Json value_schema(const Field& f) {
+    Json one = number();
+    if (f.range) {
+        one["minimum"] = f.range->minimum;
+        one["maximum"] = f.range->maximum;
+    }
+    const Json word = f.choices.empty() ? text() : one_of(f.choices);
     switch (f.type) {
-        case FieldType::number: return number();
-        case FieldType::integer: return {{"type", "integer"}};
-        case FieldType::choice: return f.choices.empty() ? text() : one_of(f.choices);
-        case FieldType::choices: return list_of(f.choices.empty() ? text() : one_of(f.choices));
-        case FieldType::interval: return interval();
+        case FieldType::number: return one;
+        case FieldType::integer: one["type"] = "integer"; return one;
+        case FieldType::choice: return word;
+        case FieldType::choices: return list_of(word);
+        case FieldType::interval: return list_of(one, 2);
         case FieldType::intervals: return list_of(interval());
         case FieldType::integers: return list_of(whole());
-        case FieldType::numbers:
-            if (!f.range) return numbers();
-            return {{"anyOf", {numbers(), number()}}};
+        case FieldType::numbers: return f.range ? Json{{"anyOf", {numbers(), one}}} : numbers();
         case FieldType::object:
             return !f.fields.empty() ? request_of(f.fields)
                                      : reference(f.name == "axis" ? "Axis" : "SweepBase");
         case FieldType::objects:
             // All lists of objects are of these two kinds.
             Json objects = list_of(reference(f.name == "axes" ? "Axis" : "Start"));
-            if (f.choices.empty()) return objects;
-            return {{"anyOf", {std::move(objects), one_of(f.choices)}}};
+            return f.choices.empty() ? objects : Json{{"anyOf", {objects, word}}};
     }
     return {};
 }
@@ -43,13 +46,6 @@ std::string description_of(const Field& f) {
 
 Json schema_of(const Field& f) {
     Json schema = value_schema(f);
-    if (f.range) {
-        Json& limited = schema.contains("anyOf")        ? schema["anyOf"][1]
-                        : f.type == FieldType::interval ? schema["items"]
-                                                        : schema;
-        limited["minimum"] = f.range->minimum;
-        limited["maximum"] = f.range->maximum;
-    }
     if (!f.fallback.is_null()) schema["default"] = f.fallback;
     return schema;
 }
@@ -93,51 +89,18 @@ void add_query(
 /// ignored.
 Json impact_list_columns() {
     Keys keys;
-    for (const Quantity& q : members_of(impact_list)) keys.push_back(optional(column_of(q)));
-    Json columns = with_si(object_of(keys));
+    for (const Quantity& q : members_of(impact_list)) keys = {keys, column_of(q)};
+    Json columns = with_si(object_of(optional(keys)));
     columns["additionalProperties"] = true;
     return columns;
 }
 
-Json identify_request() {
-    Json request = request_of(identify_fields() + form_fields());
-    Json& properties = request["properties"];
-    properties["record"] = map_of(numbers());
-    properties["record"]["description"] =
-        "columns: time_s, displacement_m, acceleration_m_s2; other units in a name "
-        "(displacement_mm, time (ms)) are converted";
-    properties["impacts"] = impact_list_columns();
-    properties["impacts"]["description"] =
-        "columns as in impacts of /v1/simulate, instead of a record";
-    return request;
-}
-
-Json sweep_request() {
-    Json request = request_of(sweep_fields(), {"axes"});
-    Json& axes = request["properties"]["axes"];
-    axes["minItems"] = 1;
-    axes["maxItems"] = 3;
-    return request;
-}
-
-Json continue_request() {
-    Json request = request_of(continue_fields(), {"parameter", "from", "to"});
-    Json& depth = request["properties"]["switch"];
-    Json whole = depth;
-    whole.erase("description");
-    depth = {{"anyOf", {std::move(whole), flag()}}, {"description", depth["description"]}};
-    return request;
-}
-
-Json design_request() {
-    Json request = request_of(design_fields(), {"base", "f"});
-    for (const char* name : {"f", "acceleration", "F", "b", "R", "m2"}) {
-        Json& field = request["properties"][name];
-        Json list = field;
-        list.erase("description");
-        field = {{"anyOf", {std::move(list), number()}}, {"description", field["description"]}};
-    }
-    return request;
+/// Permits `other` in place of the values of a field.
+void permit(Json& request, const char* name, const Json& other) {
+    Json& field = request["properties"][name];
+    const Json description = field["description"];
+    field.erase("description");
+    field = {{"anyOf", {field, other}}, {"description", description}};
 }
 
 }  // namespace
@@ -151,11 +114,22 @@ Json query_of(const FieldTable& fields, const Json& example) {
 void add_requests(Json& schemas) {
     schemas["SimulateRequest"] = request_of(simulate_fields() + form_fields());
     schemas["ManifoldRequest"] = request_of(manifold_fields() + form_fields());
-    schemas["IdentifyRequest"] = identify_request();
-    schemas["SweepRequest"] = sweep_request();
+    schemas["IdentifyRequest"] = request_of(identify_fields() + form_fields());
+    const Json measured = object_of(
+        {{"record", map_of(numbers()),
+          "columns: time_s, displacement_m, acceleration_m_s2; other units in a name "
+          "(displacement_mm, time (ms)) are converted"},
+         {"impacts", impact_list_columns(),
+          "columns as in impacts of /v1/simulate, instead of a record"}});
+    schemas["IdentifyRequest"]["properties"].update(measured["properties"]);
+    schemas["SweepRequest"] = request_of(sweep_fields(), {"axes"});
+    schemas["SweepRequest"]["properties"]["axes"].update({{"minItems", 1}, {"maxItems", 3}});
     schemas["BasinsRequest"] = request_of(basins_fields(), {"box"});
-    schemas["ContinueRequest"] = continue_request();
-    schemas["DesignRequest"] = design_request();
+    schemas["ContinueRequest"] = request_of(continue_fields(), {"parameter", "from", "to"});
+    permit(schemas["ContinueRequest"], "switch", flag());
+    schemas["DesignRequest"] = request_of(design_fields(), {"base", "f"});
+    for (const char* name : {"f", "acceleration", "F", "b", "R", "m2"})
+        permit(schemas["DesignRequest"], name, number());
     schemas["SweepBase"] = request_of(sweep_base_fields());
     schemas["Axis"] = request_of(axis_fields(), {"parameter"});
     schemas["Start"] = request_of(start_fields());

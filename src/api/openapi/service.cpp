@@ -6,89 +6,6 @@ namespace vines::api::document {
 
 namespace {
 
-Json field_schema() {
-    return object_of(
-        {{"name", text(), "name of the field"},
-         {"type", enum_schema<FieldType>(), "type; lists in a query are separated by commas"},
-         {"group", text(), "heading under which a form shows the field"},
-         {"unit", text(), "unit; empty if the field has none"},
-         {"symbol", text(), "symbol in the model; can be empty"},
-         {"description", text(), "meaning"},
-         {"default", Json::object(), "default; null with default_note if it is not a plain value"},
-         optional({"default_note", text(), "how the default follows from other fields"}),
-         optional({"minimum", number(), "smallest value of a number"}),
-         optional({"maximum", number(), "largest value of a number"}),
-         optional({"choices", list_of(text()), "permitted values of a choice"}),
-         optional({"fields", list_of(reference("Field")), "sub-fields of an object"})});
-}
-
-Json parameters() {
-    const Json fields = list_of(reference("Field"));
-    return object_of(
-        {{"model",
-          object_of(
-              {{"equations", list_of(text()), "equations of motion and of an impact"},
-               {"symbols", map_of(text()), "meaning of each symbol"},
-               {"sketch", text(), "file name of the page's sketch"}}),
-          "the mechanical model"},
-         {"fields", fields, "fields of /v1/simulate"},
-         {"manifold_fields", fields, "fields of /v1/manifold"},
-         {"sweep_fields", fields, "fields of /v1/sweep"},
-         {"axis_fields", fields, "fields of an axis of a sweep"},
-         {"basins_fields", fields, "fields of /v1/basins"},
-         {"continue_fields", fields, "fields of /v1/continue"},
-         {"design_fields", fields, "fields of /v1/design"},
-         {"identify_fields", fields, "fields of /v1/identify"},
-         {"form_fields", fields,
-          "format of the response: fields of simulate, manifold and identify"}});
-}
-
-Json presets_schema() {
-    const Json preset = object_of(
-        {{"name", text(), "value for the field preset"},
-         {"source", text(), "figure or table of the paper, or machine"},
-         {"doi", or_null(text()), "DOI of the paper; null for a machine"},
-         {"title", text(), "what the figure, table or machine shows"},
-         {"note", text(), "remark on how the preset reproduces it; can be empty"},
-         {"parameters", reference("SimulateRequest"), "fields that the preset sets"}});
-    return object_of(
-        {{"citation", text(), "citation of the paper"},
-         {"doi", text(), "DOI of the paper"},
-         {"presets", list_of(preset), "one preset for each figure and table"}});
-}
-
-Json version_schema() {
-    return object_of(
-        {{"name", constant("vines"), "name of the program"},
-         {"version", text(), "version of the release"},
-         {"commit", text(), "commit of the source; empty if unknown"},
-         {"compiler", text(), "compiler and its version"}});
-}
-
-Json problem() {
-    const Json string_or_number = {{"type", {"string", "number", "null"}}};
-    const Json error = object_of(
-        {{"pointer", text(), "JSON Pointer to the field"},
-         {"value", Json::object(), "value in the request"},
-         {"range", or_null(list_of(string_or_number)),
-          "[minimum, maximum], or the choices, or null"},
-         {"detail", text(), "a sentence"}});
-    Json errors = list_of(error);
-    errors["maxItems"] = most_errors;
-    return object_of(
-        {{"type", constant("about:blank"), "the status has the meaning that HTTP gives it"},
-         {"title", text(), "reason phrase of the HTTP status"},
-         {"status", {{"type", "integer"}, {"minimum", 400}, {"maximum", 599}}, "HTTP status"},
-         {"detail", text(), "a sentence"},
-         {"request_id", text(),
-          "name of the request in the server's log; also in the header X-Request-ID"},
-         optional(
-             {"lacking", one_of({"computing", "memory", "stopping", "sweeps", "threads"}),
-              "with 503: the exhausted resource, computing (the queue is full), sweeps, threads or "
-              "memory; or stopping"}),
-         optional({"errors", std::move(errors), "with 422: each invalid field, up to 20"})});
-}
-
 /// An error status, its description, and an example of `detail`.
 struct Refusal {
     int status;
@@ -171,16 +88,68 @@ Json response_of(const Refusal& r) {
 }  // namespace
 
 void add_service(Json& schemas) {
-    schemas["Parameters"] = parameters();
-    schemas["Field"] = field_schema();
-    schemas["Presets"] = presets_schema();
-    schemas["Version"] = version_schema();
+    const Json model = object_of(
+        {{"equations", list_of(text()), "equations of motion and of an impact"},
+         {"symbols", map_of(text()), "meaning of each symbol"},
+         {"sketch", text(), "file name of the page's sketch"}});
+    Keys keys = {"model", model, "the mechanical model"};
+    for (const ListedTable& table : listed_tables)
+        keys = {keys, {table.key, list_of(reference("Field")), table.meaning}};
+    schemas["Parameters"] = object_of(keys);
+    schemas["Field"] = object_of(
+        {{"name", text(), "name of the field"},
+         {"type", enum_schema<FieldType>(), "type; lists in a query are separated by commas"},
+         {"group", text(), "heading under which a form shows the field"},
+         {"unit", text(), "unit; empty if the field has none"},
+         {"symbol", text(), "symbol in the model; can be empty"},
+         {"description", text(), "meaning"},
+         {"default", Json::object(), "default; null with default_note if it is not a plain value"},
+         {"default_note?", text(), "how the default follows from other fields"},
+         {"minimum?", number(), "smallest value of a number"},
+         {"maximum?", number(), "largest value of a number"},
+         {"choices?", list_of(text()), "permitted values of a choice"},
+         {"fields?", list_of(reference("Field")), "sub-fields of an object"}});
+    const Json preset = object_of(
+        {{"name", text(), "value for the field preset"},
+         {"source", text(), "figure or table of the paper, or machine"},
+         {"doi", or_null(text()), "DOI of the paper; null for a machine"},
+         {"title", text(), "what the figure, table or machine shows"},
+         {"note", text(), "remark on how the preset reproduces it; can be empty"},
+         {"parameters", reference("SimulateRequest"), "fields that the preset sets"}});
+    schemas["Presets"] = object_of(
+        {{"citation", text(), "citation of the paper"},
+         {"doi", text(), "DOI of the paper"},
+         {"presets", list_of(preset), "one preset for each figure and table"}});
+    schemas["Version"] = object_of(
+        {{"name", constant("vines"), "name of the program"},
+         {"version", text(), "version of the release"},
+         {"commit", text(), "commit of the source; empty if unknown"},
+         {"compiler", text(), "compiler and its version"}});
     schemas["OpenApi"] = {
         {"type", "object"},
         {"required", {"openapi", "paths"}},
         {"properties", {{"openapi", text()}, {"paths", {{"type", "object"}}}}}};
     schemas["Status"] = object_of({{"status", constant("ok"), "the service is healthy"}});
-    schemas["Problem"] = problem();
+    const Json string_or_number = {{"type", {"string", "number", "null"}}};
+    const Json error = object_of(
+        {{"pointer", text(), "JSON Pointer to the field"},
+         {"value", Json::object(), "value in the request"},
+         {"range", or_null(list_of(string_or_number)),
+          "[minimum, maximum], or the choices, or null"},
+         {"detail", text(), "a sentence"}});
+    Json errors = list_of(error);
+    errors["maxItems"] = most_errors;
+    schemas["Problem"] = object_of(
+        {{"type", constant("about:blank"), "the status has the meaning that HTTP gives it"},
+         {"title", text(), "reason phrase of the HTTP status"},
+         {"status", {{"type", "integer"}, {"minimum", 400}, {"maximum", 599}}, "HTTP status"},
+         {"detail", text(), "a sentence"},
+         {"request_id", text(),
+          "name of the request in the server's log; also in the header X-Request-ID"},
+         {"lacking?", one_of({"computing", "memory", "stopping", "sweeps", "threads"}),
+          "with 503: the exhausted resource, computing (the queue is full), sweeps, threads or "
+          "memory; or stopping"},
+         {"errors?", std::move(errors), "with 422: each invalid field, up to 20"}});
 }
 
 Json response_components() {
@@ -210,21 +179,14 @@ Json header_components() {
         {"Allow", header("methods that the path allows", text())}};
 }
 
-Json responses_of(const std::vector<int>& statuses) {
-    std::vector<int> ascending = statuses;
-    std::sort(ascending.begin(), ascending.end());
+Json error_responses(std::set<int> statuses) {
+    for (const Refusal& r : refusals)
+        if (r.is_common) statuses.insert(r.status);
     Json responses = Json::object();
-    for (const int status : ascending)
+    for (const int status : statuses)
         responses[std::to_string(status)] = {
             {"$ref", "#/components/responses/" + component_of(status)}};
     return responses;
-}
-
-std::vector<int> common_statuses() {
-    std::vector<int> statuses;
-    for (const Refusal& r : refusals)
-        if (r.is_common) statuses.push_back(r.status);
-    return statuses;
 }
 
 Json headers_of(const std::vector<std::string>& names) {
