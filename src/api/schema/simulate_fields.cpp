@@ -75,7 +75,6 @@ FieldTable reduced_rows() {
     };
 }
 
-// NOLINTNEXTLINE(readability-function-size): a table
 FieldTable si_rows() {
     using enum FieldType;
     return {
@@ -132,7 +131,6 @@ FieldTable law_rows() {
     };
 }
 
-// NOLINTNEXTLINE(readability-function-size): a table
 FieldTable load_rows() {
     using enum FieldType;
     constexpr Range any{-1e9, 1e9};  // of a list: a number, too, which a formula needs
