@@ -185,7 +185,7 @@ TEST_CASE("a forced motion whose impacts weaken for a while is not said to die o
 
 TEST_CASE(
     "impacts that die out have no long-run exponents, and negligible forcing counts as none") {
-    for (const double G : {0.0, 1e-6}) {
+    for (const double G : {0.0, 1e-7}) {
         CAPTURE(G);
         Parameters p;
         p.G = G, p.b = 0.004;
