@@ -7,7 +7,7 @@
 #include "api/identify_parts.hpp"
 #include "api/parse.hpp"
 #include "api/schema/check.hpp"
-#include "core/measurement/hum.hpp"
+#include "core/measurement/measured_record.hpp"
 
 namespace vines::api {
 

@@ -4,7 +4,7 @@
 #include <numbers>
 
 #include "api/identify_parts.hpp"
-#include "core/measurement/harmonic.hpp"
+#include "core/measurement/measured_load.hpp"
 #include "core/motion/elementary.hpp"
 
 namespace vines::api {

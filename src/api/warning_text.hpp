@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "core/analysis/analysis.hpp"
-#include "core/measurement/identify.hpp"
+#include "core/measurement/measurement.hpp"
 
 namespace vines::api {
 

@@ -45,7 +45,7 @@ double true_lambda1(
     std::vector<IdentifiedImpact> impacts = listed(seen);
     complete_impacts(e.true_parameters, impacts, 0);
     const MeasuredExponents exponents(
-        e.true_parameters, MeasuredOscillator::given(e.true_parameters), impacts,
+        e.true_parameters, given_unknowns(e.true_parameters), impacts,
         continuity_of(e.true_parameters, impacts, gaps).stretches, qr_alone);
     return exponents.all().qr()[0];
 }

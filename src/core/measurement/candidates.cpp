@@ -6,10 +6,8 @@
 namespace vines {
 
 double typical_jump(const std::vector<Candidate>& candidates) {
-    std::vector<double> jumps;
-    for (const Candidate& c : candidates)
-        if (c.is_impact()) jumps.push_back(std::abs(c.jump));
-    return median(std::move(jumps));
+    return median(values_of(
+        candidates, [](const Candidate& c) { return c.is_impact() ? std::abs(c.jump) : nan; }));
 }
 
 double jump_to_height(const std::vector<Candidate>& candidates) {
@@ -35,9 +33,8 @@ constexpr double attach_steps = 2.5, far_from_kinks = 0.5;
 constexpr double most_events_without_kink = 0.1;
 
 bool are_sharp(const std::vector<Candidate>& kinks) {
-    std::vector<double> improvements;
-    for (const Candidate& c : kinks) improvements.push_back(c.improvement);
-    return kinks.size() >= 2 && median(std::move(improvements)) > sharp_improvement;
+    return kinks.size() >= 2 &&
+           median(values_of(kinks, &Candidate::improvement)) > sharp_improvement;
 }
 
 std::vector<Candidate>::const_iterator nearest(const std::vector<Candidate>& events, double tau) {
@@ -111,11 +108,9 @@ PulseExtent unknown_extent(const RecordStatistics& statistics) {
 
 FirstCandidates first_candidates(const ImpactSearchInput& in, bool events_first) {
     PulseEvents seen{{}, unknown_extent(in.statistics)};
-    if (!in.record.x_ddot.empty())
-        seen = pulse_events(in, pulse_signal(in), in.bad.a_without_clipped());
+    if (!in.record.x_ddot.empty()) seen = pulse_events(in, pulse_signal(in), in.statistics.a_held);
     std::vector<Candidate>& events = seen.events;
     FirstCandidates first{{}, seen.extent, 0};
-    if (events_first && events.empty()) return first;
     if (!events_first) add_kinks(in, first.candidates);
     if (events.empty()) return first;
     if (!events_first && are_sharp(first.candidates)) {

@@ -19,24 +19,6 @@ struct PulseSignal {
     double noise;               ///< standard deviation outside pulses
 };
 
-/// A possible impact, or another border between two intervals of motion.
-struct Candidate {
-    double tau = 0;
-    double jump = 0;         ///< jump of x'; 0: unknown
-    double height = 0;       ///< height of its event in the acceleration; 0: none visible
-    double event = 0;        ///< time of that event
-    double improvement = 0;  ///< improvement by its kink, in variances
-    double pulse_tau = 0, pulse_error = infinity;  ///< as in ImpactTime
-    Border border = Border::impact;
-    bool sticks = false;  ///< as in ImpactTime
-    /// Wall of an impact that the run of the identified system predicts (hidden_contacts.hpp): it
-    /// need not be visible. 0: not predicted.
-    int predicted_side = 0;
-
-    bool is_impact() const { return border == Border::impact; }
-    bool is_predicted() const { return predicted_side != 0; }
-};
-
 /// Median of |jump|; NaN without impacts.
 double typical_jump(const std::vector<Candidate>& candidates);
 
@@ -46,13 +28,6 @@ double jump_to_height(const std::vector<Candidate>& candidates);
 /// No second impact is visible closer to an impact than this, in tau: the mass would have to
 /// reverse in that time.
 inline constexpr double closest_impacts = 0.25;
-
-/// A jump of the slope of x inside an interval.
-struct Kink {
-    double tau;
-    double jump;         ///< jump of x'
-    double improvement;  ///< decrease of the sum of squares, in variances of the noise
-};
 
 /// Samples of x, or of its residual, between two impacts.
 struct IntervalSamples {
@@ -64,10 +39,12 @@ struct IntervalSamples {
     double from, to;  ///< the interval, in the oscillator's tau
 };
 
-/// The best-fitting kink of an interval, if it fits far better than a motion without one. The
-/// motion has its own initial state and, with `own_forcing`, its own forcing and offset, so that no
-/// other knowledge is needed. `flow`: of the oscillator with a forcing of 1.
-std::optional<Kink> find_kink(const IntervalSamples& samples, const Flow& flow, bool own_forcing);
+/// The best-fitting kink of an interval, a jump of the slope of x, if it fits far better than a
+/// motion without one. The motion has its own initial state and, with `own_forcing`, its own
+/// forcing and offset, so that no other knowledge is needed. `flow`: of the oscillator with a
+/// forcing of 1.
+std::optional<Candidate> find_kink(
+    const IntervalSamples& samples, const Flow& flow, bool own_forcing);
 
 /// The record under search, and everything that stays the same during the search.
 struct ImpactSearchInput {
@@ -75,8 +52,7 @@ struct ImpactSearchInput {
     IdentificationProgress& progress;
     const Parameters& parameters = measurement.parameters;
     const MeasuredRecord& record = measurement.record;
-    const BadSamples bad = bad_samples(record);
-    const RecordStatistics statistics{record, bad};
+    const RecordStatistics statistics{record};
 
     /// False if the times of the impacts are given.
     bool searches() const { return measurement.impact_times.empty(); }
@@ -113,7 +89,7 @@ struct FirstCandidates {
 /// If the displacement is precise enough for its kinks to show all impacts, the kinks are the
 /// candidates, each with its nearest event. Otherwise, or with `events_first`, all events are
 /// candidates, and the kinks between them.
-FirstCandidates first_candidates(const ImpactSearchInput& in, bool events_first = false);
+FirstCandidates first_candidates(const ImpactSearchInput& in, bool events_first);
 
 /// Initial estimate of the pulses' extent.
 PulseExtent unknown_extent(const RecordStatistics& statistics);

@@ -53,16 +53,16 @@ struct StartAndForce {
     }
 };
 
-/// Starts of the pieces: the impacts, and further ones where impacts are far apart.
+/// Starts of the pieces: the borders, and further ones where impacts are far apart.
 std::vector<double> pieces_of(
-    const MeasuredRecord& r, const std::vector<double>& times, double longest) {
+    const MeasuredRecord& r, const std::vector<Candidate>& borders, double longest) {
     std::vector<double> starts = {r.tau.front()};
     const auto reach = [&](double to) {
         while (to - starts.back() > longest) starts.push_back(starts.back() + longest);
     };
-    for (const double tau : times) {
-        reach(tau);
-        if (tau > starts.back()) starts.push_back(tau);
+    for (const Candidate& c : borders) {
+        reach(c.tau);
+        if (c.tau > starts.back()) starts.push_back(c.tau);
     }
     reach(r.tau.back());
     return starts;
@@ -89,7 +89,7 @@ std::vector<PieceEquations> equations_of(
         StartAndForce equations;
         for (; k < r.tau.size() && r.tau[k] < end; ++k) {
             const auto m = parts.at(std::max(0.0, r.tau[k] - starts[i]), r.x.empty());
-            if (!r.x.empty() && !in.bad.x[k])
+            if (!r.x.empty() && !in.statistics.x.bad[k])
                 equations.add(
                     {m[0].x, m[1].x, m[2].x, m[3].x}, r.x[k] - x_offset, in.statistics.x.noise);
             // With a displacement the acceleration adds almost nothing. Without one it is used with
@@ -97,7 +97,7 @@ std::vector<PieceEquations> equations_of(
             if (r.x.empty())
                 equations.add(
                     {m[0].x_ddot, m[1].x_ddot, m[2].x_ddot, m[3].x_ddot}, r.x_ddot[k] - a_offset,
-                    in.statistics.x_ddot.noise);
+                    in.statistics.a.noise);
         }
         if (equations.samples > 4)
             all.push_back(equations.without_start(
@@ -124,13 +124,13 @@ double explained(const std::vector<PieceEquations>& pieces, double faster, doubl
 
 }  // namespace
 
-double scanned_frequency(const JointFitInput& in, const std::vector<double>& times) {
+double scanned_frequency(const JointFitInput& in, const std::vector<Candidate>& borders) {
     const MeasuredRecord& r = in.record;
     const Parameters& p = in.parameters;
     const double middle = 0.5 * (r.tau.front() + r.tau.back()),
                  length = r.tau.back() - r.tau.front();
     const std::vector<PieceEquations> pieces =
-        equations_of(in, pieces_of(r, times, longest_piece_cycles * p.cycle()));
+        equations_of(in, pieces_of(r, borders, longest_piece_cycles * p.cycle()));
     const double step = slip / (0.5 * length);
     const int steps = static_cast<int>(widest * p.Omega / step) + 1;
     const double given = explained(pieces, 0, middle);

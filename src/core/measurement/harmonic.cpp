@@ -1,4 +1,4 @@
-#include "core/measurement/harmonic.hpp"
+#include "core/measurement/measured_load.hpp"
 
 #include <Eigen/LU>
 #include <cmath>

@@ -76,14 +76,31 @@ constexpr long most_impacts = 120;
 // measured one.
 constexpr int many_runs = 100;
 
-/// Records the contacts of a run, in the run's own tau.
+/// Records the contacts of a run of the identified system from `tau` on, in the measurement's
+/// units.
 class RunContacts : public Observer {
 public:
-    void on_impact(const Impact& i) override { impacts.push_back({i}); }
+    RunContacts(const IdentifiedSystem& system, double tau) : system_(system), tau_(tau) {}
+
+    void on_impact(const Impact& of_run) override {
+        const Impact i = system_.measured(of_run, tau_);
+        impacts.push_back(
+            {{.tau = i.tau,
+              .side = i.side,
+              .x = i.x,
+              .x_dot_before = i.x_dot_before,
+              .x_dot_after = i.x_dot_after,
+              .x_ddot_before = i.x_ddot_before,
+              .y_dot_before = i.y_dot_before,
+              .y_dot_after = i.y_dot_after,
+              .is_hidden = true}});
+    }
     void on_stretch(const Stretch& s) override {
         if (s.sticking_side != 0) {
             const Oscillation end = s.flow.after(s.start, s.duration);
-            stuck_ = Release{s.tau + s.duration, end.x, end.x_dot};
+            stuck_ = Release{
+                system_.measured_time(s.tau + s.duration, tau_), end.x,
+                end.x_dot * system_.faster()};
         }
     }
     void on_release(double) override {
@@ -95,6 +112,8 @@ public:
     std::vector<RunImpact> impacts;
 
 private:
+    const IdentifiedSystem& system_;
+    const double tau_;
     std::optional<Release> stuck_;
 };
 
@@ -146,8 +165,8 @@ struct HiddenContactSearch {
         bool rests = false;
         for (std::size_t k = h.impacts.size(); k-- > 0;) {
             RunImpact& r = h.impacts[k];
-            rests = r.release || (rests && r.impact.side == h.impacts[k + 1].impact.side);
-            rests = rests && !r.shown && strength(r.impact) < weakest_reported * limits.tolerance;
+            rests = r.release || (rests && r.side == h.impacts[k + 1].side);
+            rests = rests && !r.shown && std::abs(r.jump()) < weakest_reported * limits.tolerance;
             r.comes_to_rest = rests;
         }
     }
@@ -168,9 +187,8 @@ struct HiddenContactSearch {
             return tau > from - artefact_range && tau < (r ? r->tau : from) + artefact_range;
         };
         return near(impacts[hidden.from].tau, hidden.release) ||
-               std::ranges::any_of(hidden.impacts, [&](const RunImpact& h) {
-                   return near(h.impact.tau, h.release);
-               });
+               std::ranges::any_of(
+                   hidden.impacts, [&](const RunImpact& h) { return near(h.tau, h.release); });
     }
 
     struct Velocities {
@@ -220,33 +238,32 @@ struct HiddenContactSearch {
         std::size_t from, const Velocities& after, double end) const {
         const IdentifiedImpact& m = impacts[from];
         if (!(end > m.tau)) return std::nullopt;
-        RunContacts run;
+        RunContacts run(system, m.tau);
         Observer* const observers[] = {&run};
         system.run(
             m.tau, {after.x_dot, m.x, after.y_dot, m.x - m.side * system.own().b},
             {.tau_end = end, .max_impacts = most_impacts}, observers);
-        HiddenContacts hidden{from, from, after.y_dot, nan, measured(run.release, m.tau)};
+        HiddenContacts hidden{from, from, after.y_dot, nan, run.release};
         std::optional<HiddenContacts> found;
         std::size_t shown = from + 1;
         int unseen = 0;
-        for (const RunImpact& of_run : run.impacts) {
-            RunImpact next{system.measured(of_run.impact, m.tau), measured(of_run.release, m.tau)};
-            const double apart = may_be_apart(m.tau, next.impact.tau);
-            for (; shown < impacts.size() && impacts[shown].tau < next.impact.tau - apart; ++shown)
+        for (RunImpact& next : run.impacts) {
+            const double apart = may_be_apart(m.tau, next.tau);
+            for (; shown < impacts.size() && impacts[shown].tau < next.tau - apart; ++shown)
                 // The run has no impact where one is measured.
                 if (!stands_for(shown, hidden)) return found;
             if (shown == impacts.size()) return found;
-            const bool is_there = impacts[shown].tau < next.impact.tau + apart &&
-                                  impacts[shown].side == next.impact.side;
-            if (is_there && leads_to(hidden, after.x_dot, impacts[shown], next.impact)) {
+            const bool is_there =
+                impacts[shown].tau < next.tau + apart && impacts[shown].side == next.side;
+            if (is_there && leads_to(hidden, after.x_dot, impacts[shown], next)) {
                 if (is_strong(shown) || !found) {
                     found = hidden;
-                    found->to = shown, found->y_dot_before = next.impact.y_dot_before;
+                    found->to = shown, found->y_dot_before = next.y_dot_before;
                 }
                 if (is_strong(shown)) return found;
             }
             if (is_there) next.shown = shown++;
-            else if (strength(next.impact) > limits.tolerance && ++unseen > limits.most_seen)
+            else if (std::abs(next.jump()) > limits.tolerance && ++unseen > limits.most_seen)
                 return found;
             hidden.impacts.push_back(next);
         }
@@ -254,28 +271,20 @@ struct HiddenContactSearch {
     }
 
     bool is_strong(std::size_t i) const {
-        return std::abs(impacts[i].x_dot_after - impacts[i].x_dot_before) >
-               strong * limits.tolerance;
+        return std::abs(impacts[i].jump()) > strong * limits.tolerance;
     }
     /// Largest distance between an impact of the run and the measured one.
     static double may_be_apart(double from, double to) {
         return same_moment + same_share * (to - from);
-    }
-    static double strength(const Impact& i) { return std::abs(i.x_dot_after - i.x_dot_before); }
-
-    std::optional<Release> measured(const std::optional<Release>& r, double tau) const {
-        if (!r) return r;
-        return Release{system.measured_time(r->tau, tau), r->x, r->x_dot * system.faster()};
     }
 
     /// Whether the next impact of the run agrees with the measured one, and the free motion from
     /// the last contact leads to its state. `x_dot`: after the first impact.
     bool leads_to(
         const HiddenContacts& hidden, double x_dot, const IdentifiedImpact& shown,
-        const Impact& next) const {
-        const double jump = shown.x_dot_after - shown.x_dot_before;
-        if (std::abs(next.x_dot_after - next.x_dot_before - jump) >
-            limits.tolerance + same_jump * std::abs(jump))
+        const RunImpact& next) const {
+        if (std::abs(next.jump() - shown.jump()) >
+            limits.tolerance + same_jump * std::abs(shown.jump()))
             return false;
         const IdentifiedImpact& from = impacts[hidden.from];
         Release last{from.tau, from.x, x_dot};
@@ -283,8 +292,8 @@ struct HiddenContactSearch {
         if (hidden.release) last = *hidden.release;
         if (!hidden.impacts.empty()) {
             const RunImpact& h = hidden.impacts.back();
-            side = h.impact.side;
-            last = h.release ? *h.release : Release{h.impact.tau, h.impact.x, h.impact.x_dot_after};
+            side = h.side;
+            last = h.release.value_or(Release{h.tau, h.x, h.x_dot_after});
         }
         if (!(last.tau < shown.tau)) return false;
         const OscillatorMotion end = system.free_motion(last, side, shown.tau, shown.side);
@@ -292,18 +301,6 @@ struct HiddenContactSearch {
                std::abs(end.x_dot - shown.x_dot_before) < limits.tolerance;
     }
 };
-
-IdentifiedImpact as_identified(const RunImpact& r) {
-    const Impact& i = r.impact;
-    return {
-        .tau = i.tau,
-        .side = i.side,
-        .x = i.x,
-        .x_dot_before = i.x_dot_before,
-        .x_dot_after = i.x_dot_after,
-        .x_ddot_before = i.x_ddot_before,
-        .is_hidden = true};
-}
 
 }  // namespace
 
@@ -324,9 +321,9 @@ long insert_hidden(
         all.back().release = next->release;
         all.back().y_dot_after = next->y_dot_after;
         for (const RunImpact& r : next->impacts) {
-            all.push_back(r.shown ? impacts[*r.shown] : as_identified(r));
-            IdentifiedImpact& last = all.back();
-            last.y_dot_before = r.impact.y_dot_before, last.y_dot_after = r.impact.y_dot_after;
+            IdentifiedImpact& last = all.emplace_back(r);
+            if (r.shown) last = impacts[*r.shown];
+            last.y_dot_before = r.y_dot_before, last.y_dot_after = r.y_dot_after;
             last.release = r.release, last.comes_to_rest = r.comes_to_rest;
         }
         i = next->to - 1;

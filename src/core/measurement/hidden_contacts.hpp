@@ -47,13 +47,9 @@ private:
     double faster_, phase_, tau_zero_;
 };
 
-/// An impact of a run, in the measurement's tau.
-struct RunImpact {
-    Impact impact;
-    /// End of the sticking phase, if the mass sticks after it.
-    std::optional<Release> release = {};
+/// An impact of a run, in the measurement's units.
+struct RunImpact : IdentifiedImpact {
     std::optional<std::size_t> shown = {};  ///< index of the measured impact; none: hidden
-    bool comes_to_rest = false;             ///< as in IdentifiedImpact
 };
 
 /// The contacts between the measured impacts `from` and `to`, at least one of them hidden.

@@ -37,21 +37,17 @@ ImpactFault fault_of(const IdentifiedImpact& i, double since, double pulse, doub
 }  // namespace
 
 void complete_impacts(const Parameters& p, std::vector<IdentifiedImpact>& impacts, double pulse) {
-    std::vector<double> jumps, errors;
-    for (const IdentifiedImpact& i : impacts)
-        if (!i.is_hidden) jumps.push_back(std::abs(i.x_dot_after - i.x_dot_before));
-    const double typical = median(jumps);
+    const double typical = median(values_of(
+        impacts, [](const IdentifiedImpact& i) { return i.is_hidden ? nan : std::abs(i.jump()); }));
     for (IdentifiedImpact& i : impacts) {
         // Eq. (4)
         i.R = -(i.x_dot_after - i.y_dot_after) / (i.x_dot_before - i.y_dot_before);
-        i.momentum_error =
-            (i.x_dot_after - i.x_dot_before + p.epsilon * (i.y_dot_after - i.y_dot_before)) /
-            typical;
-        if (!i.is_hidden) errors.push_back(i.momentum_error);
+        i.momentum_error = (i.jump() + p.epsilon * (i.y_dot_after - i.y_dot_before)) / typical;
     }
-    const double tolerance = std::min(
-        std::max(least_momentum_tolerance, momentum_sigmas * robust_deviation(errors)),
-        momentum_tolerance);
+    const double scatter = robust_deviation(values_of(
+        impacts, [](const IdentifiedImpact& i) { return i.is_hidden ? nan : i.momentum_error; }));
+    const double tolerance =
+        std::min(std::max(least_momentum_tolerance, momentum_sigmas * scatter), momentum_tolerance);
     for (std::size_t k = 0; k < impacts.size(); ++k)
         impacts[k].fault = fault_of(
             impacts[k],
@@ -72,8 +68,7 @@ double braking(const Parameters& p, const IdentifiedImpact& from, const Identifi
 bool flight_fits(
     const Parameters& p, const IdentifiedImpact& from, const IdentifiedImpact& to,
     double typical_speed) {
-    const Release leaves =
-        from.release ? *from.release : Release{from.tau, from.x, from.y_dot_after};
+    const Release leaves = from.release.value_or(Release{from.tau, from.x, from.y_dot_after});
     const double duration = to.tau - leaves.tau,
                  way = to.x - to.side * p.b - (leaves.x - from.side * p.b),
                  flown = 0.5 * (leaves.x_dot + to.y_dot_before) * duration,
@@ -96,12 +91,11 @@ std::vector<StickingPhase> sticking_phases(const std::vector<IdentifiedImpact>& 
 }
 
 Restitution restitution_of(const std::vector<IdentifiedImpact>& impacts, int side) {
-    std::vector<double> R, off;
+    std::vector<double> R;
     for (const IdentifiedImpact& i : impacts)
-        if (i.side == side && !i.is_left_out() && !i.is_hidden && !std::isnan(i.R))
-            R.push_back(i.R);
+        if (i.side == side && i.is_good_and_visible() && !std::isnan(i.R)) R.push_back(i.R);
     const double centre = median(R);
-    for (double r : R) off.push_back(r - centre);
+    const std::vector<double> off = values_of(R, [centre](double r) { return r - centre; });
     // Normally distributed values have a median that scatters sqrt(pi/2) times as much as their
     // mean.
     const double error = 1.25 * robust_deviation(off) / std::sqrt(static_cast<double>(off.size()));
@@ -122,6 +116,12 @@ constexpr double counted_in_full = 1.5, ignored = 6;
 // A motion between two impacts hides another one if it deviates by this fraction of the median jump
 // of x' and by this many times the typical deviation.
 constexpr double hidden_share = 0.05, hidden_sigmas = 10;
+
+/// Median speed of the oscillator before an impact.
+double typical_speed(const std::vector<IdentifiedImpact>& impacts) {
+    return median(
+        values_of(impacts, [](const IdentifiedImpact& i) { return std::abs(i.x_dot_before); }));
+}
 
 /// Equation for the forcing from x or x' at the end of a flight.
 struct Row {
@@ -189,15 +189,13 @@ ListedForcing fit_forcing(
             off[k] = rows[k].value - rows[k].by_forcing * f;
         scale = robust_deviation(off);
     }
-    std::vector<double> speeds;
     for (IdentifiedImpact& i : impacts) {
-        speeds.push_back(std::abs(i.x_dot_before));
         if (!std::isnan(i.x_ddot_before)) continue;
         const double angle = p.Omega * i.tau;
         i.x_ddot_before = f(0) * elementary::sin(angle) + f(1) * elementary::cos(angle) - i.x -
                           2 * p.zeta() * i.x_dot_before - p.epsilon * p.friction * i.side;
     }
-    return {f(0), f(1), scale / median(std::move(speeds))};
+    return {f(0), f(1), scale / typical_speed(impacts)};
 }
 
 namespace {
@@ -215,17 +213,12 @@ Parameters listed_system(
 
 HiddenContactLimits hidden_contact_limits(
     const ListedForcing& forcing, const std::vector<IdentifiedImpact>& impacts) {
-    std::vector<double> jumps, speeds, flights;
-    for (std::size_t i = 0; i < impacts.size(); ++i) {
-        jumps.push_back(std::abs(impacts[i].x_dot_after - impacts[i].x_dot_before));
-        speeds.push_back(std::abs(impacts[i].x_dot_before));
-        if (i > 0) flights.push_back(impacts[i].tau - impacts[i - 1].tau);
-    }
+    const auto jump = [](const IdentifiedImpact& i) { return std::abs(i.jump()); };
     return {
         .tolerance = std::max(
-            hidden_share * median(std::move(jumps)),
-            hidden_sigmas * forcing.misfit * median(std::move(speeds))),
-        .typical_flight = median(std::move(flights))};
+            hidden_share * median(values_of(impacts, jump)),
+            hidden_sigmas * forcing.misfit * typical_speed(impacts)),
+        .typical_flight = median(steps_of(impacts))};
 }
 
 }  // namespace

@@ -33,7 +33,7 @@ enum class ImpactFault {
 /// One impact with the results from the flights before and after it. Unknown values are NaN.
 struct IdentifiedImpact {
     double tau;
-    int side;
+    int side;  ///< sign of x - y; 0: unknown
     double x, x_dot_before, x_dot_after, x_ddot_before;
     double tau_error = nan;  ///< standard error of the time; NaN in a list
     /// NaN where there is no impact on that side.
@@ -51,6 +51,8 @@ struct IdentifiedImpact {
     bool comes_to_rest = false;
 
     bool is_left_out() const { return fault != ImpactFault::none; }
+    bool is_good_and_visible() const { return !is_left_out() && !is_hidden; }
+    double jump() const { return x_dot_after - x_dot_before; }
 };
 
 /// Sets R, momentum_error and fault of each impact from its velocities. Two impacts closer than

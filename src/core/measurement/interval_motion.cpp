@@ -14,14 +14,11 @@ std::array<Oscillation, 4> parts_of(double angle) {
     return {{{1, 0, 0, 0}, {0, 1, 0, 0}, {0, 0, sin, cos}, {0, 0, cos, -sin}}};
 }
 
-std::optional<LoadResponse::Excess> excess_of(const MeasuredLoad* load, const UnknownValues& v) {
-    return load ? std::optional<LoadResponse::Excess>(std::in_place, *load, v) : std::nullopt;
-}
-
 }  // namespace
 
 LoadedFlow::LoadedFlow(
-    double k, double c, double force, double mass, double Omega, const LoadResponse::Excess* excess)
+    double k, double c, double force, double mass, double Omega,
+    const std::optional<LoadResponse::Excess>& excess)
     : flow(k / mass, c / mass, force / mass, Omega) {
     if (excess) response.emplace(*excess, k / mass, c / mass, 1 / mass);
 }
@@ -35,7 +32,8 @@ OscillatorMotion LoadedFlow::load_at(double sigma, double f_s, double f_c) const
 }
 
 OscillatorFlows::OscillatorFlows(
-    const UnknownValues& v, bool moves, double mass, const LoadResponse::Excess* excess)
+    const UnknownValues& v, bool moves, double mass,
+    const std::optional<LoadResponse::Excess>& excess)
     : oscillator_moves(moves),
       force(elementary::hypot(v[Unknown::force_sin], v[Unknown::force_cos])),
       phase(elementary::atan2(v[Unknown::force_cos], v[Unknown::force_sin])),
@@ -43,20 +41,16 @@ OscillatorFlows::OscillatorFlows(
       parts(v[Unknown::stiffness], v[Unknown::damping], 1, mass, Omega, excess),
       by_stiffness(
           v[Unknown::stiffness] + small, v[Unknown::damping], force, mass, Omega,
-          moves ? excess : nullptr),
+          moves ? excess : std::nullopt),
       by_damping(
           v[Unknown::stiffness], v[Unknown::damping] + small, force, mass, Omega,
-          moves ? excess : nullptr) {}
+          moves ? excess : std::nullopt) {}
 
 IntervalFlows::IntervalFlows(
     const UnknownValues& values, bool moves, double epsilon, const MeasuredLoad* load)
-    : IntervalFlows(values, moves, epsilon, excess_of(load, values)) {}
-
-IntervalFlows::IntervalFlows(
-    const UnknownValues& values, bool moves, double epsilon,
-    const std::optional<LoadResponse::Excess>& excess)
-    : free(values, moves, 1, excess ? &*excess : nullptr),
-      stuck(values, moves, 1 + epsilon, excess ? &*excess : nullptr) {}
+    : excess(load ? std::make_optional<LoadResponse::Excess>(*load, values) : std::nullopt),
+      free(values, moves, 1, excess),
+      stuck(values, moves, 1 + epsilon, excess) {}
 
 IntervalMotion::IntervalMotion(
     const OscillatorFlows& f, const UnknownValues& v, double tau_middle, const FittedInterval& i)

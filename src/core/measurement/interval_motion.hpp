@@ -95,7 +95,7 @@ struct FittedInterval {
 struct LoadedFlow {
     LoadedFlow(
         double stiffness, double damping, double force, double mass, double Omega,
-        const LoadResponse::Excess* excess);
+        const std::optional<LoadResponse::Excess>& excess);
     /// Response to the load alone, tabulated from rest before the record; 0 without a load.
     OscillatorMotion load_at(double sigma, double force_sin, double force_cos) const;
 
@@ -106,10 +106,10 @@ struct LoadedFlow {
 /// Flows of the oscillator: with the values themselves, and with k and c each slightly increased.
 struct OscillatorFlows {
     /// `oscillator_moves`: whether derivatives by k and c are needed. `mass`: moving mass divided
-    /// by m1. `excess`: of a load; null: none.
+    /// by m1. `excess`: of a load, if there is one.
     OscillatorFlows(
         const UnknownValues& values, bool oscillator_moves, double mass = 1,
-        const LoadResponse::Excess* excess = nullptr);
+        const std::optional<LoadResponse::Excess>& excess = {});
 
     bool oscillator_moves;
     double force, phase, Omega;  ///< amplitude of the forcing, m, and its phase at tau_m
@@ -124,12 +124,8 @@ struct IntervalFlows {
         const MeasuredLoad* load);
     const OscillatorFlows& of(const FittedInterval& i) const { return i.sticks ? stuck : free; }
 
+    std::optional<LoadResponse::Excess> excess;
     OscillatorFlows free, stuck;
-
-private:
-    IntervalFlows(
-        const UnknownValues& values, bool oscillator_moves, double epsilon,
-        const std::optional<LoadResponse::Excess>& excess);
 };
 
 /// A motion with its derivatives.

@@ -81,10 +81,6 @@ void JointEquations::append(
     }
 }
 
-void JointEquations::add_prior(std::size_t unknown, double left, double weight) {
-    add({{unknown_at(unknown), 1}}, left, weight);
-}
-
 void JointEquations::gather() {
     const Eigen::Index first = unknown_at(0);
     for (std::size_t i = 0; i < own_.size(); ++i) {
@@ -170,7 +166,7 @@ public:
     MassFlight(const JointFitState& state, const Borders& impacts, std::size_t p)
         : p_(p),
           duration_(impacts[p + 1].tau - impacts[p].tau),
-          walls_((*state.sides)[p + 1] - (*state.sides)[p]),
+          walls_(impacts[p + 1].side - impacts[p].side),
           y_dot_(
               (impacts[p + 1].x - impacts[p].x - state.fit.values[Unknown::b] * walls_) /
               duration_),
@@ -206,19 +202,18 @@ struct MassResidual {
 
 /// Residuals of the impacts whose flights on both sides are known.
 std::vector<MassResidual> mass_residuals(const JointFitState& state, const Borders& impacts) {
-    const Sides& sides = *state.sides;
     std::vector<MassResidual> residuals;
     for (std::size_t i = 1; i + 1 < impacts.size(); ++i) {
         const FittedBorder& m = impacts[i];
-        if (!m.flies || sides[i - 1] == 0 || sides[i + 1] == 0) continue;
+        if (!m.flies || impacts[i - 1].side == 0 || impacts[i + 1].side == 0) continue;
         const double before = MassFlight(state, impacts, i - 1).y_dot() + m.braked_before,
                      after = MassFlight(state, impacts, i).y_dot() + m.braked_after,
                      approach = m.x_dot_before - before, w = std::abs(approach),
-                     fitted = state.fit.values[restitution_at(sides[i])];
+                     fitted = state.fit.values[restitution_at(m.side)];
         const Parameters& p = state.parameters;
-        const bool is_given = p.table_of(sides[i]) != nullptr;
-        const double R = is_given ? p.restitution(sides[i], w) : fitted,
-                     derivative = is_given ? p.restitution_derivative(sides[i], w) : fitted;
+        const bool is_given = p.table_of(m.side) != nullptr;
+        const double R = is_given ? p.restitution(m.side, w) : fitted,
+                     derivative = is_given ? p.restitution_derivative(m.side, w) : fitted;
         residuals.push_back(
             {i, m.jump() + state.fit.epsilon * (after - before),
              m.x_dot_after - after + R * approach, m.jump(), approach, R, derivative});
@@ -233,7 +228,7 @@ void add_mass_rows(
     JointEquations& e = state.equations;
     const std::size_t i = r.impact;
     const FittedBorder& m = impacts[i];
-    const Unknown wall = restitution_at((*state.sides)[i]);
+    const Unknown wall = restitution_at(m.side);
     const MassFlight first(state, impacts, i - 1), second(state, impacts, i);
     Eigen::VectorXd by_effects;
     const auto add = [&](double by_after, double by_before, double by_first, double by_second,
@@ -269,21 +264,19 @@ void add_mass_rows(
 
 void add_mass_flights(JointFitState& state, const Borders& borders) {
     const std::vector<MassResidual> residuals = mass_residuals(state, borders);
-    std::vector<double> momentum, restitution, jump, approach;
-    for (const MassResidual& r : residuals) {
-        momentum.push_back(r.momentum), restitution.push_back(r.restitution);
-        jump.push_back(std::abs(r.jump)), approach.push_back(std::abs(r.approach));
-    }
-    if (state.effects && !approach.empty())
-        state.effects->mean_speed = std::accumulate(approach.begin(), approach.end(), 0.0) /
-                                    static_cast<double>(approach.size());
+    const auto jump = [](const MassResidual& r) { return std::abs(r.jump); };
+    const auto speed = [](const MassResidual& r) { return std::abs(r.approach); };
+    const std::vector<double> speeds = values_of(residuals, speed);
+    if (state.effects && !speeds.empty())
+        state.effects->mean_speed =
+            std::accumulate(speeds.begin(), speeds.end(), 0.0) / static_cast<double>(speeds.size());
     // The scatter of the residuals, with a lower bound since no wall is perfectly constant.
     const double of_momentum = std::max(
-                     robust_deviation(std::move(momentum)),
-                     least_momentum * median(std::move(jump))),
+                     robust_deviation(values_of(residuals, &MassResidual::momentum)),
+                     least_momentum * median(values_of(residuals, jump))),
                  of_restitution = std::max(
-                     robust_deviation(std::move(restitution)),
-                     least_restitution * median(std::move(approach)));
+                     robust_deviation(values_of(residuals, &MassResidual::restitution)),
+                     least_restitution * median(speeds));
     for (const MassResidual& r : residuals)
         add_mass_rows(
             state, borders, r, state.weight(r.momentum, of_momentum, of_momentum),

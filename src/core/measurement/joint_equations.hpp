@@ -46,8 +46,6 @@ public:
     void add(
         const std::vector<Term>& row, double left, double weight,
         const Eigen::VectorXd* by_effects = nullptr);
-    /// Adds a prior: `left` is the prior mean minus the value.
-    void add_prior(std::size_t unknown, double left, double weight);
 
     Eigen::Index start_of(std::size_t interval) const {
         return 2 * static_cast<Eigen::Index>(interval);
@@ -92,13 +90,22 @@ private:
     Eigen::VectorXd right_;
 };
 
+/// Samples of one sensor.
+struct FittedSensor {
+    const std::vector<double>& samples;
+    std::vector<char> ignored;  ///< unusable samples; of the acceleration also those in pulses
+    const SensorStatistics& statistics;
+    double scale = infinity;  ///< of the residuals, for their weights
+};
+
 struct JointFitState : JointFitInput {
-    const std::vector<ImpactTime>& borders;  ///< between the intervals of `fit`
+    const std::vector<Candidate>& borders;  ///< between the intervals of `fit`
     UnknownValues prior_mean = given_unknowns(parameters);
-    UnknownValues prior = priors(parameters);       ///< standard deviations
-    std::vector<char> in_pulse = {};                ///< samples of the acceleration in pulses
-    double ridge = 0;                               ///< one over the largest step squared, 1/m^2
-    double scale_x = infinity, scale_a = infinity;  ///< of the residuals, for their weights
+    UnknownValues prior = priors(parameters);  ///< standard deviations
+    FittedSensor x{record.x, statistics.x.bad, statistics.x},
+        a{record.x_ddot, statistics.a.bad, statistics.a};
+    std::vector<char> in_pulse = {};  ///< samples of the acceleration in pulses
+    double ridge = 0;                 ///< one over the largest step squared, 1/m^2
     int scales_taken = 0;
     bool weights_trusted = false;  ///< large residuals are ignored
     /// The motion is still zero, so only unknowns that are linear in it are fitted.

@@ -37,12 +37,15 @@ constexpr double pulse_margin = 0.1;
 
 /// Marks the samples of the acceleration that lie in a pulse.
 std::vector<char> in_pulses(
-    const MeasuredRecord& r, const std::vector<ImpactTime>& impacts, double margin) {
+    const MeasuredRecord& r, const std::vector<Candidate>& borders, const PulseExtent& extent,
+    double margin) {
     std::vector<char> spoiled(r.tau.size(), 0);
-    for (const ImpactTime& i : impacts)
-        for (std::size_t k = first_index(r, i.tau - i.spoiled.before - margin);
-             k < r.tau.size() && r.tau[k] < i.tau + i.spoiled.after + margin; ++k)
+    for (const Candidate& c : borders) {
+        const PulseExtent e = c.is_impact() ? extent : PulseExtent{0, 0};
+        for (std::size_t k = first_index(r, c.tau - e.before - margin);
+             k < r.tau.size() && r.tau[k] < c.tau + e.after + margin; ++k)
             spoiled[k] = 1;
+    }
     return spoiled;
 }
 
@@ -59,19 +62,21 @@ void fix_undetermined(JointFitState& state) {
     if (state.record.x.empty() || (state.record.x_ddot.empty() && !any_pulse))
         fix({Unknown::x_delay});
     if (state.record.x_ddot.empty() || !any_pulse) fix({Unknown::pulse_lag});
-    if (!state.sides) fix({Unknown::b});
+    if (!state.with_mass) fix({Unknown::b});
     for (const int side : {1, -1})
-        if (!state.sides || std::count(state.sides->begin(), state.sides->end(), side) == 0 ||
+        if (!state.with_mass || std::ranges::count(state.borders, side, &Candidate::side) == 0 ||
             state.parameters.table_of(side))
             fix({restitution_at(side)});
 }
 
 JointFitState initial_state(
-    const JointFitInput& input, const std::vector<ImpactTime>& borders, const UnknownValues& values,
+    const JointFitInput& input, const std::vector<Candidate>& borders, const UnknownValues& values,
     const JointFit* before) {
     const MeasuredRecord& r = input.record;
     JointFitState state{input, borders};
-    state.in_pulse = in_pulses(r, borders, pulse_margin * input.statistics.step);
+    state.in_pulse = in_pulses(r, borders, input.spoiled.a, pulse_margin * input.statistics.step);
+    for (std::size_t k = 0; k < r.x_ddot.size(); ++k)
+        if (state.in_pulse[k]) state.a.ignored[k] = 1;
     JointFit& fit = state.fit;
     fit.tau_middle = 0.5 * (r.tau.front() + r.tau.back());
     fit.length = r.tau.back() - r.tau.front();
@@ -83,16 +88,16 @@ JointFitState initial_state(
     if (before) {
         state.weights_trusted = true;
         fit.intervals = before->intervals;
-        state.scale_x = std::max(before->noise_x, input.statistics.x.noise);
-        state.scale_a = std::max(before->noise_a, input.statistics.x_ddot.noise);
+        state.x.scale = std::max(before->x.noise, state.x.statistics.noise);
+        state.a.scale = std::max(before->a.noise, state.a.statistics.noise);
     } else {
         fit.intervals.push_back({r.tau.front() - largest_delay, 0, 0});
-        for (const ImpactTime& i : borders) fit.intervals.push_back({i.tau, 0, 0, i.sticks});
+        for (const Candidate& c : borders) fit.intervals.push_back({c.tau, 0, 0, c.sticks});
     }
     const double size = largest_step * quantile_of_moduli(r.x.empty() ? r.x_ddot : r.x, 1);
     state.ridge = 1 / std::max(size * size, 1e-12);
-    fit.x_residual.resize(r.x.size());
-    fit.a_residual.resize(r.x_ddot.size());
+    fit.x.left.resize(r.x.size());
+    fit.a.left.resize(r.x_ddot.size());
     fix_undetermined(state);
     return state;
 }
@@ -161,16 +166,15 @@ void apply_step(JointFitState& state) {
 
 /// Updates the scale of the residuals for the weights of the next step.
 void update_scales(JointFitState& state) {
-    std::vector<double> good;
-    good.reserve(state.record.tau.size());
-    for (std::size_t k = 0; k < state.fit.x_residual.size(); ++k)
-        if (!state.bad.x[k]) good.push_back(state.fit.x_residual[k]);
-    state.scale_x = std::max(robust_deviation(std::move(good)), state.statistics.x.noise);
-    good = {};
-    good.reserve(state.record.tau.size());
-    for (std::size_t k = 0; k < state.fit.a_residual.size(); ++k)
-        if (!state.bad.a[k] && !state.in_pulse[k]) good.push_back(state.fit.a_residual[k]);
-    state.scale_a = std::max(robust_deviation(std::move(good)), state.statistics.x_ddot.noise);
+    const auto update = [](FittedSensor& sensor, const std::vector<double>& left) {
+        std::vector<double> good;
+        good.reserve(left.size());
+        for (std::size_t k = 0; k < left.size(); ++k)
+            if (!sensor.ignored[k]) good.push_back(left[k]);
+        sensor.scale = std::max(robust_deviation(std::move(good)), sensor.statistics.noise);
+    };
+    update(state.x, state.fit.x.left);
+    update(state.a, state.fit.a.left);
     ++state.scales_taken;
     // The first scales belong to a motion of zero.
     state.weights_trusted = state.scales_taken > 2;
@@ -188,20 +192,18 @@ void keep_errors(JointFitState& state) {
 void test_effects(JointFitState& state) {
     EffectDerivatives derivatives(state);
     state.effects = &derivatives;
-    const UnknownValues plain = state.fit.errors;
     set_equations(state);
     if (!state.equations.solve()) return;
     // evaluate_residual() scaled the errors.
-    const double factor = plain[static_cast<std::size_t>(Unknown::Omega)] /
-                          state.equations.errors[static_cast<std::size_t>(Unknown::Omega)];
+    const double factor = state.fit.errors[Unknown::Omega] / state.equations.errors[Unknown::Omega];
     state.fit.effects =
         tested_effects(state, derivatives, std::isfinite(factor) && factor > 1 ? factor : 1);
-    for (const FittedEffect& e : state.fit.effects)
+    const auto widen = [&state](const UnknownValues& by) {
         for (std::size_t k = 0; k < unknowns; ++k)
-            state.fit.errors[k] = elementary::hypot(state.fit.errors[k], e.change[k]);
-    const UnknownValues given = propagated_uncertainty(state, derivatives);
-    for (std::size_t k = 0; k < unknowns; ++k)
-        state.fit.errors[k] = elementary::hypot(state.fit.errors[k], given[k]);
+            state.fit.errors[k] = elementary::hypot(state.fit.errors[k], by[k]);
+    };
+    for (const FittedEffect& e : state.fit.effects) widen(e.change);
+    widen(propagated_uncertainty(state, derivatives));
 }
 
 }  // namespace
@@ -226,28 +228,20 @@ MotionRow JointFitState::end_of(const IntervalFlows& flows, std::size_t k) const
 FittedImpact JointFitState::motion_at_border(std::size_t k, const MotionRow& end) const {
     const FittedInterval &from = fit.intervals[k], &to = fit.intervals[k + 1];
     const double next = k + 2 < fit.intervals.size() ? fit.intervals[k + 2].tau : to.tau;
-    return {
-        .tau = to.tau,
-        .border = borders[k].border,
-        .x = to.x,
-        .x_dot_before = end.value.x_dot,
-        .x_dot_after = to.x_dot,
-        .x_ddot_before = end.value.x_ddot,
-        .x_ddot_after = acceleration_at(to),
-        .x_jump = nan,
-        .x_jump_error = nan,
-        .x_dot_before_error = nan,
-        .x_dot_after_error = nan,
-        .tau_error = nan,
-        .braked_before = -parameters.friction * (to.tau - from.tau) * from.sliding.from_start,
-        .braked_after = parameters.friction * (next - to.tau) * to.sliding.to_end};
+    FittedImpact m{};
+    m.tau = to.tau, m.border = borders[k].border, m.side = borders[k].side;
+    m.x = to.x, m.x_dot_before = end.value.x_dot, m.x_dot_after = to.x_dot;
+    m.x_ddot_before = end.value.x_ddot, m.x_ddot_after = acceleration_at(to);
+    m.braked_before = -parameters.friction * (to.tau - from.tau) * from.sliding.from_start;
+    m.braked_after = parameters.friction * (next - to.tau) * to.sliding.to_end;
+    return m;
 }
 
 JointFit fit_jointly(
-    const JointFitInput& input, const std::vector<ImpactTime>& impacts, const UnknownValues& values,
+    const JointFitInput& input, const std::vector<Candidate>& borders, const UnknownValues& values,
     const JointFit* before) {
-    input.progress.check_impacts(impacts.size());
-    JointFitState state = initial_state(input, impacts, values, before);
+    input.progress.check_impacts(borders.size());
+    JointFitState state = initial_state(input, borders, values, before);
     for (int step = 0; step < most_steps; ++step) {
         input.progress.look();
         state.is_first_step = !before && step == 0;
@@ -264,12 +258,12 @@ JointFit fit_jointly(
     evaluate_impacts(state);
     evaluate_residual(state);
     state.fit.errors_within_model = state.fit.errors;
-    if (input.tests_effects && state.fit.converged) test_effects(state);
+    if (input.with_mass && state.fit.converged) test_effects(state);
     return std::move(state.fit);
 }
 
 bool explains(const JointFit& fit) {
-    return !(fit.misfit_x > misfit_limit) && !(fit.misfit_a > misfit_limit);
+    return !(fit.x.misfit > misfit_limit) && !(fit.a.misfit > misfit_limit);
 }
 
 std::vector<OscillatorMotion> motion_at(const JointFit& fit, const std::vector<double>& times) {

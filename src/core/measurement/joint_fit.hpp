@@ -4,6 +4,7 @@
 
 #include <vector>
 
+#include "core/measurement/identified_impact.hpp"
 #include "core/measurement/interval_motion.hpp"
 #include "core/measurement/measured_record.hpp"
 #include "core/measurement/progress.hpp"
@@ -24,29 +25,43 @@ struct PulseExtent {
     double before, after;
 };
 
-/// An impact, or another border between intervals, as input of the fit.
-struct ImpactTime {
-    double tau;
-    Border border;
-    bool sticks;  ///< the mass sticks to the wall until the next border, a release
-    /// Time according to its pulse, and its standard error; infinite without a usable pulse.
-    double pulse_tau = 0, pulse_error = infinity;
-    PulseExtent spoiled = {0, 0};  ///< where the pulse spoils the acceleration
+/// Time around an impact in which it spoils the samples.
+struct SpoiledExtents {
+    PulseExtent a{0, 0};  ///< in the acceleration
+    double x = 0;         ///< in the displacement, on either side
 };
 
-/// Motion at an impact, before and after it.
-struct FittedImpact {
-    double tau;
-    Border border;
-    double x, x_dot_before, x_dot_after, x_ddot_before, x_ddot_after;
+/// A possible impact, or another border between two intervals of motion. The joint fit uses its
+/// times, border, sticks and side, the search for impacts (search.hpp) the rest, too.
+struct Candidate {
+    double tau = 0;
+    double jump = 0;         ///< jump of x'; 0: unknown
+    double height = 0;       ///< height of its event in the acceleration; 0: none visible
+    double event = 0;        ///< time of that event
+    double improvement = 0;  ///< improvement by its kink, in variances of the noise
+    /// Time according to its pulse, and its standard error; infinite without a usable pulse.
+    double pulse_tau = 0, pulse_error = infinity;
+    Border border = Border::impact;
+    bool sticks = false;  ///< the mass sticks to the wall until the next border, a release
+    int side = 0;         ///< wall of the impact, or that the mass leaves; 0: unknown, or a gap
+    /// Whether the run of the identified system predicts it (hidden_contacts.hpp), with its wall:
+    /// it need not be visible.
+    bool is_predicted = false;
+
+    bool is_impact() const { return border == Border::impact; }
+};
+
+/// Fitted motion before and after an impact or another border; without the mass.
+struct FittedImpact : IdentifiedImpact {
+    Border border = Border::impact;
+    double x_ddot_after = nan;
     // Results of the adjacent intervals, each fitted separately:
-    double x_jump, x_jump_error;                   ///< jump of x, and its standard error
-    double x_dot_before_error, x_dot_after_error;  ///< standard errors of x' on either side
-    double tau_error;                              ///< standard error of the time, from all data
+    double x_jump = nan, x_jump_error = nan;  ///< jump of x, and its standard error
+    /// Standard errors of x' on either side.
+    double x_dot_before_error = nan, x_dot_after_error = nan;
     /// y' of the mass before and after it, less the mean of the flight: by a given friction.
     double braked_before = 0, braked_after = 0;
 
-    double jump() const { return x_dot_after - x_dot_before; }
     /// Standard error of the jump of x', from the adjacent intervals.
     double jump_error() const { return elementary::hypot(x_dot_before_error, x_dot_after_error); }
     bool is_impact() const { return border == Border::impact; }
@@ -84,6 +99,17 @@ struct FittedEffect {
     UnknownValues change;
 };
 
+/// Residual of one sensor; empty without it.
+struct SensorResidual {
+    /// Of each sample: of the displacement in the sensor's own scale, of the acceleration with
+    /// pulses and noise.
+    std::vector<double> left;
+    double noise = 0;  ///< its standard deviation; NaN without the sensor
+    /// Its standard deviation divided by that of its part unrelated to the motion
+    /// (joint_fit_residual.cpp): 1 if the fit explains everything. NaN without the sensor.
+    double misfit = 0;
+};
+
 /// Positions in m, derivatives by tau.
 struct JointFit {
     double tau_middle = 0, length = 1;  ///< of the record
@@ -95,21 +121,10 @@ struct JointFit {
     KnownForcing forcing;   ///< given amplitude and phase of the forcing
     std::vector<FittedInterval> intervals;
     std::vector<FittedImpact> impacts;  ///< one fewer than intervals
-    /// Residual of each sample: of the displacement in the sensor's own scale, of the acceleration
-    /// with pulses and noise. Empty without the sensor.
-    std::vector<double> x_residual, a_residual;
-    /// Standard deviations of the residuals; NaN without the sensor.
-    double noise_x = 0, noise_a = 0;
-    /// Standard deviation of the residual divided by that of its part unrelated to the motion
-    /// (joint_fit_residual.cpp): 1 if the fit explains everything.
-    double misfit_x = 0, misfit_a = 0;
-    std::vector<FittedEffect> effects = {};  ///< with JointFitInput::tests_effects
+    SensorResidual x, a;
+    std::vector<FittedEffect> effects = {};  ///< with JointFitInput::with_mass
     bool converged = false;
 };
-
-/// Wall of each border of a fit, +1 or -1, including the wall that a mass leaves at a release; 0
-/// for a gap.
-using Sides = std::vector<int>;
 
 /// Bound on the delay of the displacement, either sign, in tau.
 inline constexpr double largest_delay = 0.15;
@@ -119,30 +134,27 @@ struct JointFitInput {
     const Parameters& parameters;
     const MeasuredRecord& record;
     const RecordStatistics& statistics;
-    const BadSamples& bad;
     IdentificationProgress& progress;
-    /// Time before and after an impact in which the displacement is spoiled.
-    double x_spoiled = 0;
+    SpoiledExtents spoiled = {};
     FixedUnknowns fixed{};
     KnownForcing forcing = {};
-    const Sides* sides = nullptr;  ///< walls of the borders: the mass takes part; null: it does not
-    bool one_step = false;         ///< take one step from a previous fit: approximates its result
-    /// Test the effects outside the model. `mains`: frequencies of the mains, like Omega.
-    bool tests_effects = false;
-    std::vector<double> mains = {};
+    bool with_mass = false;  ///< the mass takes part; needs the walls of the borders
+    bool one_step = false;   ///< take one step from a previous fit: approximates its result
+    // For the effects outside the model, which are tested in a fit with the mass:
+    std::vector<double> mains = {};  ///< frequencies of the mains, like Omega
     GivenUncertainty uncertainty = {};
 };
 
-/// `impacts`: in order, within the record; JointFit::impacts has an entry for each. `values`:
-/// initial values. `before`: a fit of the same impacts whose motion is the initial one; null: start
+/// `borders`: in order, within the record; JointFit::impacts has an entry for each. `values`:
+/// initial values. `before`: a fit of the same borders whose motion is the initial one; null: start
 /// at rest.
 JointFit fit_jointly(
-    const JointFitInput& input, const std::vector<ImpactTime>& impacts, const UnknownValues& values,
+    const JointFitInput& input, const std::vector<Candidate>& borders, const UnknownValues& values,
     const JointFit* before);
 
 /// The Omega within 5 % of the given one at which a forcing of constant amplitude and phase
-/// explains the record best. `times`: of the impacts.
-double scanned_frequency(const JointFitInput& input, const std::vector<double>& times);
+/// explains the record best.
+double scanned_frequency(const JointFitInput& input, const std::vector<Candidate>& borders);
 
 /// Whether the residuals are no larger than the sensors' noise.
 bool explains(const JointFit& fit);

@@ -35,76 +35,53 @@ void clear_held(const JointFitState& state, UnknownRow& by_unknowns) {
         if (is_held(state, k)) by_unknowns(static_cast<Eigen::Index>(k)) = 0;
 }
 
-double relative_time(const JointFitState& state, std::size_t k) {
-    return (state.record.tau[k] - state.fit.tau_middle) / state.fit.length;
-}
-
 /// Whether the displacement at `tau` is spoiled by the kink of an impact.
 bool is_at_kink(const JointFitState& state, std::size_t interval, double tau) {
     const auto& i = state.fit.intervals;
-    return (interval > 0 && tau - i[interval].tau < state.x_spoiled) ||
-           (interval + 1 < i.size() && i[interval + 1].tau - tau < state.x_spoiled);
+    return (interval > 0 && tau - i[interval].tau < state.spoiled.x) ||
+           (interval + 1 < i.size() && i[interval + 1].tau - tau < state.spoiled.x);
 }
 
-void add_displacement(JointFitState& state, const IntervalFlows& flows) {
+/// Adds the samples of the displacement, or of the acceleration, and sets their residuals.
+void add_samples(JointFitState& state, const IntervalFlows& flows, bool of_x) {
+    const UnknownValues& v = state.fit.values;
+    const FittedSensor& sensor = of_x ? state.x : state.a;
+    std::vector<double>& residual = (of_x ? state.fit.x : state.fit.a).left;
+    const auto member = of_x ? &OscillatorMotion::x : &OscillatorMotion::x_ddot;
+    const Unknown offset = of_x ? Unknown::x_offset : Unknown::a_offset,
+                  drift = of_x ? Unknown::x_drift : Unknown::a_drift;
+    const double gain = of_x ? v[Unknown::x_gain] : 1, late = of_x ? v[Unknown::x_delay] : 0;
     Eigen::RowVector2d by_start;
     UnknownRow by_unknowns;
-    const MeasuredRecord& r = state.record;
-    const UnknownValues& v = state.fit.values;
-    const double gain = v[Unknown::x_gain], late = v[Unknown::x_delay];
-    each_motion(
-        state.fit, flows, r.tau, late, false,
-        [&](std::size_t k, std::size_t i, const MotionRow& row) {
-            state.progress.tick();
-            const double u = relative_time(state, k);
-            const double left =
-                r.x[k] - gain * row.value.x - v[Unknown::x_offset] - v[Unknown::x_drift] * u;
-            state.fit.x_residual[k] = left;
-            if (state.bad.x[k] || is_at_kink(state, i, r.tau[k] - late)) return;
-            take_derivatives(row, &OscillatorMotion::x, by_start, by_unknowns);
-            by_start *= gain;
-            by_unknowns *= gain;
-            element(by_unknowns, Unknown::x_offset) = 1;
-            element(by_unknowns, Unknown::x_drift) = u;
+    const auto add = [&](std::size_t k, std::size_t i, const MotionRow& row) {
+        state.progress.tick();
+        const double tau = state.record.tau[k], u = (tau - state.fit.tau_middle) / state.fit.length,
+                     left =
+                         sensor.samples[k] - gain * (row.value.*member) - v[offset] - v[drift] * u;
+        residual[k] = left;
+        if (sensor.ignored[k] || (of_x && is_at_kink(state, i, tau - late))) return;
+        take_derivatives(row, member, by_start, by_unknowns);
+        by_start *= gain;
+        by_unknowns *= gain;
+        element(by_unknowns, offset) = 1;
+        element(by_unknowns, drift) = u;
+        if (of_x) {
             element(by_unknowns, Unknown::x_gain) = row.value.x;
             element(by_unknowns, Unknown::x_delay) = -gain * row.value.x_dot;
-            clear_held(state, by_unknowns);
-            state.equations.add(
-                i, by_start, by_unknowns, left,
-                state.weight(left, state.statistics.x.noise, state.scale_x),
-                state.effects ? &state.effects->displacement(i, r.tau[k], row) : nullptr);
-        });
-}
-
-void add_acceleration(JointFitState& state, const IntervalFlows& flows) {
-    Eigen::RowVector2d by_start;
-    UnknownRow by_unknowns;
-    const MeasuredRecord& r = state.record;
-    const UnknownValues& v = state.fit.values;
-    each_motion(
-        state.fit, flows, r.tau, 0, true, [&](std::size_t k, std::size_t i, const MotionRow& row) {
-            state.progress.tick();
-            const double u = relative_time(state, k);
-            const double left =
-                r.x_ddot[k] - row.value.x_ddot - v[Unknown::a_offset] - v[Unknown::a_drift] * u;
-            state.fit.a_residual[k] = left;
-            if (state.in_pulse[k] || state.bad.a[k]) return;
-            take_derivatives(row, &OscillatorMotion::x_ddot, by_start, by_unknowns);
-            element(by_unknowns, Unknown::a_offset) = 1;
-            element(by_unknowns, Unknown::a_drift) = u;
-            clear_held(state, by_unknowns);
-            state.equations.add(
-                i, by_start, by_unknowns, left,
-                state.weight(left, state.statistics.x_ddot.noise, state.scale_a),
-                state.effects ? &state.effects->acceleration(i, r.tau[k], row) : nullptr);
-        });
+        }
+        clear_held(state, by_unknowns);
+        state.equations.add(
+            i, by_start, by_unknowns, left,
+            state.weight(left, sensor.statistics.noise, sensor.scale),
+            state.effects ? &state.effects->sample(of_x, i, tau, row) : nullptr);
+    };
+    each_motion(state.fit, flows, state.record.tau, late, !of_x, add);
 }
 
 /// Border k, at the end `row` of its first interval.
 FittedBorder fitted_border(const JointFitState& state, std::size_t k, const MotionRow& row) {
-    const ImpactTime& border = state.borders[k];
-    FittedBorder m{
-        state.motion_at_border(k, row), border.border == Border::impact && !border.sticks, {}, {}};
+    const Candidate& border = state.borders[k];
+    FittedBorder m{state.motion_at_border(k, row), border.is_impact() && !border.sticks, {}, {}};
     take_derivatives(row, &OscillatorMotion::x_dot, m.before_by_start, m.before_by_unknowns);
     clear_held(state, m.before_by_unknowns);
     if (state.effects)
@@ -152,13 +129,13 @@ void add_impacts(JointFitState& state, const IntervalFlows& flows) {
     JointEquations& equations = state.equations;
     std::vector<FittedBorder> borders;
     const RecordStatistics& statistics = state.statistics;
-    const double noise = state.record.x.empty() ? statistics.x_ddot.noise : statistics.x.noise;
+    const double noise = state.record.x.empty() ? statistics.a.noise : statistics.x.noise;
     const double weight = 1 / (continuity_share * continuity_share * noise * noise);
     for (std::size_t k = 0; k < state.borders.size(); ++k) {
         const FittedInterval &from = state.fit.intervals[k], &to = state.fit.intervals[k + 1];
         const MotionRow row = state.end_of(flows, k);
-        const ImpactTime& m = state.borders[k];
-        if (state.sides) borders.push_back(fitted_border(state, k, row));
+        const Candidate& m = state.borders[k];
+        if (state.with_mass) borders.push_back(fitted_border(state, k, row));
         if (m.border == Border::gap) continue;
         add_border_condition(
             state, k, row, &OscillatorMotion::x, row.value.x_dot - to.x_dot, true,
@@ -185,7 +162,7 @@ void add_impacts(JointFitState& state, const IntervalFlows& flows) {
         }
         equations.add(terms, left, 1 / (error * error));
     }
-    if (state.sides) add_mass_flights(state, borders);
+    if (state.with_mass) add_mass_flights(state, borders);
 }
 
 /// How the mass slides in a flight with y' = y_dot at its start; the direction changes where x' =
@@ -217,17 +194,16 @@ Sliding sliding_of(IntervalMotion& motion, double duration, double y_dot, double
 
 /// Sets how the mass slides in each flight, from the motion of the step before.
 void set_sliding(JointFitState& state, const IntervalFlows& flows) {
-    const Sides& sides = *state.sides;
     for (std::size_t k = 0; k + 1 < state.borders.size(); ++k) {
+        const int side = state.borders[k].side, next_side = state.borders[k + 1].side;
         FittedInterval& i = state.fit.intervals[k + 1];
         const FittedInterval& next = state.fit.intervals[k + 2];
         const double duration = next.tau - i.tau;
         const double deceleration = state.parameters.friction * duration,
                      lifted = deceleration * i.sliding.to_end;
         i.sliding = {};
-        if (!i.sticks && sides[k] != 0 && sides[k + 1] != 0 && duration > 0) {
-            const double way =
-                next.x - i.x - state.fit.values[Unknown::b] * (sides[k + 1] - sides[k]);
+        if (!i.sticks && side != 0 && next_side != 0 && duration > 0) {
+            const double way = next.x - i.x - state.fit.values[Unknown::b] * (next_side - side);
             IntervalMotion motion(flows.of(i), state.fit.values, state.fit.tau_middle, i);
             i.sliding = sliding_of(motion, duration, way / duration + lifted, deceleration);
         }
@@ -238,10 +214,11 @@ void set_sliding(JointFitState& state, const IntervalFlows& flows) {
 /// Priors; unknowns that keep their values get one that holds them.
 void add_priors(JointFitState& state) {
     for (std::size_t k = 0; k < unknowns; ++k) {
-        if (is_held(state, k)) state.equations.add_prior(k, 0, 1);
+        const std::vector<JointEquations::Term> value = {{state.equations.unknown_at(k), 1}};
+        if (is_held(state, k)) state.equations.add(value, 0, 1);
         else if (std::isfinite(state.prior[k]))
-            state.equations.add_prior(
-                k, state.prior_mean[k] - state.fit.values[k],
+            state.equations.add(
+                value, state.prior_mean[k] - state.fit.values[k],
                 1 / (state.prior[k] * state.prior[k]));
     }
 }
@@ -285,10 +262,10 @@ void set_equations(JointFitState& state) {
     state.equations = {state.fit.intervals.size(), state.ridge};
     if (state.effects) state.equations.collect_effects(state.effects->size());
     const IntervalFlows flows = state.flows();
-    if (state.sides && !state.is_first_step && (state.parameters.friction > 0 || state.effects))
+    if (state.with_mass && !state.is_first_step && (state.parameters.friction > 0 || state.effects))
         set_sliding(state, flows);
-    if (!state.record.x.empty()) add_displacement(state, flows);
-    if (!state.record.x_ddot.empty()) add_acceleration(state, flows);
+    if (!state.record.x.empty()) add_samples(state, flows, true);
+    if (!state.record.x_ddot.empty()) add_samples(state, flows, false);
     if (!state.is_first_step) add_impacts(state, flows);
     add_priors(state);
     if (!state.is_first_step) add_known_forcing(state);

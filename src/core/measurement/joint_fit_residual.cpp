@@ -22,14 +22,6 @@ namespace vines {
 
 namespace {
 
-struct ResidualStatistics {
-    double noise;   ///< standard deviation of the residual
-    double misfit;  ///< size of the residual relative to its noise alone; 1: nothing was missed
-    /// Factor on standard errors that assume white noise of SignalStatistics::noise: samples of
-    /// coloured noise carry less information.
-    double uncertainty;
-};
-
 // Length of a block in tau: short against the periods of the motion, 2 pi and 2 pi/Omega, and long
 // against the time constants of the filters of laboratory sensors.
 constexpr double block_tau = 0.3;
@@ -71,33 +63,36 @@ double deviation_of(const std::vector<double>& values) {
 
 double squared(double x) { return x * x; }
 
-/// Statistics of one sensor's residual; bad samples and samples in pulses are ignored.
-ResidualStatistics statistics_of(
-    const JointFitState& state, const std::vector<double>& residual, const SignalStatistics& signal,
-    const std::vector<char>& bad) {
+/// Sets noise and misfit of one sensor's residual, without unusable samples and those in pulses.
+/// Returns the factor on standard errors that assume white noise of SensorStatistics::noise:
+/// samples of coloured noise carry less information.
+double evaluate_sensor(
+    const JointFitState& state, const FittedSensor& sensor, SensorResidual& residual) {
+    residual.noise = residual.misfit = nan;
+    if (residual.left.empty()) return 1;
     std::vector<char> ignored(state.in_pulse);
     std::vector<double> clean;
-    clean.reserve(residual.size());
-    for (std::size_t k = 0; k < residual.size(); ++k) {
-        if (bad[k]) ignored[k] = 1;
-        if (!ignored[k]) clean.push_back(residual[k]);
+    clean.reserve(residual.left.size());
+    for (std::size_t k = 0; k < residual.left.size(); ++k) {
+        if (sensor.ignored[k]) ignored[k] = 1;
+        if (!ignored[k]) clean.push_back(residual.left[k]);
     }
-    const Blocks blocks = blocks_of(state.record.tau, residual, ignored, state.statistics.step);
+    const Blocks blocks =
+        blocks_of(state.record.tau, residual.left, ignored, state.statistics.step);
     const double all = squared(deviation_of(clean)), slow = squared(deviation_of(blocks.mean)),
                  differing = squared(third_difference_noise(blocks.tau, blocks.mean));
     // NaN, from too few blocks, counts as no misfit.
     const double missed = slow > differing ? slow - differing : 0;
-    return {
-        .noise = robust_deviation(clean),
-        .misfit =
-            std::sqrt(1 + missed / (std::max(all - missed, 0.0) + squared(signal.least_noise))),
-        .uncertainty =
-            slow > 0 ? std::sqrt(slow * static_cast<double>(blocks.samples)) / signal.noise : 1};
+    residual.noise = robust_deviation(clean);
+    residual.misfit = std::sqrt(
+        1 + missed / (std::max(all - missed, 0.0) + squared(sensor.statistics.least_noise)));
+    return slow > 0
+               ? std::sqrt(slow * static_cast<double>(blocks.samples)) / sensor.statistics.noise
+               : 1;
 }
 
 }  // namespace
 
-/// Appends the fitted states at each border to fit.impacts.
 void evaluate_impacts(JointFitState& state) {
     const IntervalFlows flows = state.flows();
     // Initial state of each interval fitted to its own samples alone, with the global parameters
@@ -135,18 +130,10 @@ void evaluate_impacts(JointFitState& state) {
 }
 
 void evaluate_residual(JointFitState& state) {
-    double error_factor = 1;
-    const auto evaluate = [&](const std::vector<double>& residual, const SignalStatistics& signal,
-                              const std::vector<char>& bad, double& noise, double& misfit) {
-        noise = misfit = nan;
-        if (residual.empty()) return;
-        const ResidualStatistics statistics = statistics_of(state, residual, signal, bad);
-        noise = statistics.noise, misfit = statistics.misfit;
-        error_factor = std::max(error_factor, statistics.uncertainty);
-    };
     JointFit& fit = state.fit;
-    evaluate(fit.x_residual, state.statistics.x, state.bad.x, fit.noise_x, fit.misfit_x);
-    evaluate(fit.a_residual, state.statistics.x_ddot, state.bad.a, fit.noise_a, fit.misfit_a);
+    const double of_x = evaluate_sensor(state, state.x, fit.x),
+                 of_a = evaluate_sensor(state, state.a, fit.a),
+                 error_factor = std::max({1.0, of_x, of_a});
     // The larger factor of both sensors, at least 1, applies to all errors.
     for (double& e : fit.errors) e *= error_factor;
     for (FittedImpact& i : fit.impacts) i.tau_error *= error_factor;

@@ -93,7 +93,7 @@ struct LaterSums {
 
 }  // namespace
 
-std::optional<Kink> find_kink(const IntervalSamples& in, const Flow& flow, bool own_forcing) {
+std::optional<Candidate> find_kink(const IntervalSamples& in, const Flow& flow, bool own_forcing) {
     const std::vector<KinkPoint> points = points_of(in);
     if (points.size() < fewest_kink_points + (own_forcing ? 2 * points_beside_kink : 0))
         return std::nullopt;
@@ -122,7 +122,7 @@ std::optional<Kink> find_kink(const IntervalSamples& in, const Flow& flow, bool 
     const Eigen::VectorXd own = solve(g);
     const double misfit = squares - g.dot(own);
     if (!(misfit > unsuspicious(points.size()))) return std::nullopt;
-    Kink best{0, 0, 0};
+    Candidate best;
     for (std::size_t c = points_beside_kink; c + points_beside_kink < points.size(); ++c) {
         const double tau = 0.5 * (points[c].tau + points[c - 1].tau);
         const Eigen::Vector2d kink = basis.kink(tau);
@@ -130,7 +130,8 @@ std::optional<Kink> find_kink(const IntervalSamples& in, const Flow& flow, bool 
         const double weight = kink.dot(mixed.head<2>()) - mixed.dot(solve(mixed)),
                      along = kink.dot(later[c].g) - mixed.dot(own);
         const double improvement = along * along / weight;
-        if (weight > 0 && improvement > best.improvement) best = {tau, along / weight, improvement};
+        if (weight > 0 && improvement > best.improvement)
+            best = {.tau = tau, .jump = along / weight, .improvement = improvement};
     }
     if (!(best.improvement > kink_improvement && best.improvement > kink_share * misfit))
         return std::nullopt;
@@ -149,29 +150,30 @@ using TimeSpan = std::pair<double, double>;
 
 void see_in_windows(
     const ImpactSearchInput& in, const Flow& flow, const TimeSpan& interval,
-    std::vector<Kink>& seen) {
+    std::vector<Candidate>& seen) {
     const auto [from, to] = interval;
     for (double begin = from; begin < to; begin += window_hop) {
         in.progress.look();
         const double end = std::min(to, begin + window);
         const auto missed = find_kink(
-            {in.record, in.record.x, in.bad.x, in.statistics.x.noise, 0, begin, end}, flow, true);
+            {in.record, in.record.x, in.statistics.x.bad, in.statistics.x.noise, 0, begin, end},
+            flow, true);
         if (missed) seen.push_back(*missed);
         if (end == to) return;
     }
 }
 
 /// Adds the best of kinks near each other; false if there is none.
-bool add_best(std::vector<Kink> seen, std::vector<Candidate>& candidates) {
-    std::ranges::sort(seen, std::greater(), &Kink::improvement);
+bool add_best(std::vector<Candidate> seen, std::vector<Candidate>& candidates) {
+    std::ranges::sort(seen, std::greater(), &Candidate::improvement);
     std::vector<double> added;  // in order of time
-    for (const Kink& m : seen) {
+    for (const Candidate& m : seen) {
         const auto after = std::ranges::lower_bound(added, m.tau);
         if ((after != added.end() && *after - m.tau < 0.5 * window) ||
             (after != added.begin() && m.tau - *(after - 1) < 0.5 * window))
             continue;
         added.insert(after, m.tau);
-        candidates.push_back({.tau = m.tau, .jump = m.jump, .improvement = m.improvement});
+        candidates.push_back(m);
     }
     return !added.empty();
 }
@@ -198,7 +200,7 @@ void add_kinks(const ImpactSearchInput& in, std::vector<Candidate>& candidates) 
     for (int round = 0; round < most_rounds_of_kinks; ++round) {
         std::ranges::sort(candidates, {}, &Candidate::tau);
         std::vector<TimeSpan> intervals = intervals_of(candidates, in.record);
-        std::vector<Kink> seen;
+        std::vector<Candidate> seen;
         for (const TimeSpan& i : intervals)
             if (!std::ranges::binary_search(looked_at, i)) see_in_windows(in, flow, i, seen);
         looked_at = std::move(intervals);

@@ -13,6 +13,7 @@
 
 #include "core/measurement/identified_impact.hpp"
 #include "core/measurement/measured_record.hpp"
+#include "core/measurement/unknowns.hpp"
 #include "core/stability/lyapunov.hpp"
 #include "core/stability/verdict.hpp"
 
@@ -52,23 +53,16 @@ Continuity continuity_of(
     const Parameters& parameters, const std::vector<IdentifiedImpact>& impacts,
     const std::vector<TimeGap>& gaps);
 
-/// The oscillator between impacts, in tau of the given omega0: x'' + damping x' + stiffness x =
-/// forcing.
-struct MeasuredOscillator {
-    double stiffness, damping;
-
-    /// With the given parameters.
-    static MeasuredOscillator given(const Parameters& p) { return {1, 2 * p.zeta()}; }
-    double zeta() const { return 0.5 * damping; }  ///< per unit of tau
-};
-
 class MeasuredExponents {
 public:
+    /// `values`: stiffness and damping of the oscillator, in tau of the given omega0.
     MeasuredExponents(
-        const Parameters& parameters, const MeasuredOscillator& oscillator,
+        const Parameters& parameters, const UnknownValues& values,
         const std::vector<IdentifiedImpact>& impacts, const std::vector<KnownStretch>& stretches,
         const ExponentOptions& options);
 
+    /// The oscillator's own damping, per unit of tau.
+    double zeta() const { return zeta_; }
     /// `qr` over all stretches; its clock stops between stretches.
     const TransferProduct& all() const { return all_; }
     /// `eigenvalues` and `raw_product` of the longest stretch.
@@ -91,6 +85,7 @@ private:
         double clock;
         SlowState state;
     };
+    double zeta_;
     TransferProduct all_, longest_;
     std::vector<StretchStart> starts_;
     std::vector<SlowAt> slow_;
@@ -100,17 +95,10 @@ private:
 struct IdentifiedExponents {
     MeasuredSlope slope;
     /// Chaotic if slope.low exceeds the oscillator's damping zeta; regular if slope.high is below
-    /// it and the record is representative.
+    /// it and the impacts represent the motion.
     Verdict verdict;
     bool weakens = false;  ///< not decided for this reason, although forced
 };
-/// Whether a slope below zeta characterises the motion, and not a synchronised stretch of a chaotic
-/// one. In windows of 100 impacts of Table 4's system at b = 11 mm 142 of 506 look regular, of 150
-/// impacts 2 of 335, of 170 or more none. In windows of 80 impacts, however, the jumps of the
-/// second half never agree within 2 %, in windows of 150 never within 9 %, while those of a
-/// periodic motion soon do (nine in ten jumps, relative to the typical jump at their wall). From
-/// six b between 10.8 and 13 mm, about 30,000 windows of 80 to 200 impacts.
-bool is_representative(const std::vector<IdentifiedImpact>& impacts);
 /// Whether the largest jump falls from quarter to quarter of the record, to less than half overall.
 /// An unforced motion then dies out; a forced one can be in a transient or in the falling part of a
 /// modulation. In windows of 30 impacts of Table 4's system at b = 15, 18 and 22 mm 80 of 677
@@ -119,7 +107,8 @@ bool weakens(const std::vector<IdentifiedImpact>& impacts);
 /// Whether the forcing is zero, or too weak to sustain the motion in the last quarter of the
 /// impacts.
 bool is_unforced(const Parameters& parameters, const std::vector<IdentifiedImpact>& impacts);
+/// `impacts`: those of the exponents.
 IdentifiedExponents judge_exponents(
-    const MeasuredOscillator& oscillator, const MeasuredExponents& exponents, bool representative);
+    const MeasuredExponents& exponents, const std::vector<IdentifiedImpact>& impacts);
 
 }  // namespace vines

@@ -1,5 +1,6 @@
-// The forcing as a channel of the record shows it: harmonics of one frequency, each with a constant
-// or slowly varying amplitude and phase. Modulation and sweeps of a shaker, and its harmonics.
+// The forcing as a channel of the record shows it, the acceleration of the base or a force: its
+// sine (harmonic.cpp), and harmonics of one frequency, each with a constant or slowly varying
+// amplitude and phase: modulation and sweeps of a shaker, and its harmonics.
 //
 // With sigma = tau - tau_m, tau_m the middle of the record, the channel shows the force
 //
@@ -19,12 +20,27 @@
 #include <complex>
 #include <functional>
 #include <memory>
+#include <optional>
 #include <vector>
 
-#include "core/measurement/harmonic.hpp"
 #include "core/measurement/unknowns.hpp"
 
 namespace vines {
+
+/// The dominant harmonic of a channel, offset + sin sin(omega t) + cos cos(omega t), in the given
+/// unit of time.
+struct Harmonic {
+    double omega;  ///< per unit of time
+    double sin, cos;
+};
+
+/// Fits one harmonic. The frequency comes from the mean crossings first, then from the phase drift
+/// between shorter pieces. Empty if the harmonic explains less than three quarters of the signal,
+/// or with fewer than five cycles. look() is called before each pass through the samples; an
+/// exception it throws passes through.
+std::optional<Harmonic> harmonic_of(
+    const std::vector<double>& time, const std::vector<double>& values,
+    const std::function<void()>& look = [] {});
 
 /// A channel of the forcing, with its samples in tau. `damping`: 2 zeta, for a base.
 struct ForcingChannel {

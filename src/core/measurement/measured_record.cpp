@@ -2,11 +2,14 @@
 
 #include <algorithm>
 #include <cmath>
+#include <complex>
+#include <numbers>
 
-#include "core/measurement/robust.hpp"
 #include "core/motion/elementary.hpp"
 
 namespace vines {
+
+namespace {
 
 double sample_interval(const MeasuredRecord& r) {
     std::vector<double> steps;
@@ -14,6 +17,8 @@ double sample_interval(const MeasuredRecord& r) {
     for (std::size_t k = 1; k < r.tau.size(); ++k) steps.push_back(r.tau[k] - r.tau[k - 1]);
     return median(std::move(steps));
 }
+
+}  // namespace
 
 std::size_t first_index(const MeasuredRecord& r, double tau) {
     return static_cast<std::size_t>(std::ranges::lower_bound(r.tau, tau) - r.tau.begin());
@@ -48,23 +53,24 @@ void mark_clipped(const std::vector<double>& v, std::vector<char>& bad) {
     for (const double end : {*low, *high}) {
         if (*low == *high || std::ranges::count(v, end) < clipped_times) continue;
         for (std::size_t k = 0; k < v.size(); ++k)
-            if (v[k] == end) bad[k] = clipped;
+            if (v[k] == end) bad[k] = 1;
     }
 }
 
-void mark_held(const std::vector<double>& v, std::vector<char>& bad) {
+/// Marks held samples as bad too; returns those that are not clipped.
+std::vector<char> mark_held(const std::vector<double>& v, std::vector<char>& bad) {
+    std::vector<char> held(v.size(), 0);
     std::size_t equal = 0;
     for (std::size_t k = 1; k < v.size(); ++k) equal += v[k] == v[k - 1];
-    if (v.empty() || static_cast<double>(equal) > coarse_share * static_cast<double>(v.size()))
-        return;
+    if (static_cast<double>(equal) > coarse_share * static_cast<double>(v.size())) return held;
     for (std::size_t k = 0; k < v.size();) {
         std::size_t end = k + 1;
         while (end < v.size() && v[end] == v[k]) ++end;
-        if (end - k >= held_samples)
-            for (std::size_t j = k; j < end; ++j)
-                if (!bad[j]) bad[j] = held;
+        for (std::size_t j = k; end - k >= held_samples && j < end; ++j)
+            if (!bad[j]) bad[j] = held[j] = 1;
         k = end;
     }
+    return held;
 }
 
 /// Cubic at sample k through two neighbours on each side (Lagrange).
@@ -92,27 +98,8 @@ void mark_outliers(const MeasuredRecord& r, std::vector<char>& bad) {
     const double limit = outlier_sigmas * robust_deviation(off);
     for (std::size_t k = 2; k + 2 < n; ++k)
         if (off[k] > limit && off[k] >= std::max({off[k - 2], off[k - 1], off[k + 1], off[k + 2]}))
-            bad[k] = outlier;
+            bad[k] = 1;
 }
-
-}  // namespace
-
-std::vector<char> BadSamples::a_without_clipped() const {
-    std::vector<char> rest(a);
-    for (char& b : rest) b = b > clipped;
-    return rest;
-}
-
-BadSamples bad_samples(const MeasuredRecord& r) {
-    BadSamples bad;
-    bad.x.assign(r.x.size(), 0), bad.a.assign(r.x_ddot.size(), 0);
-    mark_clipped(r.x, bad.x), mark_clipped(r.x_ddot, bad.a);
-    mark_held(r.x, bad.x), mark_held(r.x_ddot, bad.a);
-    mark_outliers(r, bad.x);
-    return bad;
-}
-
-namespace {
 
 // The parabola's error, as a fraction of the signal: smaller spikes cannot be seen.
 constexpr double background_share = 1e-3;
@@ -120,25 +107,127 @@ constexpr double background_share = 1e-3;
 // Lower bound in m: zero noise would mean infinite weight.
 constexpr double least_sensor_noise = 1e-12;
 
-}  // namespace
-
-double least_noise_of(const std::vector<double>& signal) {
+void set_noise(
+    const std::vector<double>& tau, const std::vector<double>& signal, SensorStatistics& s) {
+    s.noise = signal.empty()
+                  ? nan
+                  : std::max(third_difference_noise(tau, signal, s.bad), least_sensor_noise);
     const double middle = median(signal);
-    std::vector<double> off(signal);
-    for (double& value : off) value -= middle;
-    return background_share * robust_deviation(std::move(off));
+    const auto off = [middle](double value) { return value - middle; };
+    s.least_noise = background_share * robust_deviation(values_of(signal, off));
 }
 
-SignalStatistics::SignalStatistics(
-    const std::vector<double>& tau, const std::vector<double>& signal, const std::vector<char>& bad)
-    : noise(
-          signal.empty() ? nan
-                         : std::max(third_difference_noise(tau, signal, bad), least_sensor_noise)),
-      least_noise(least_noise_of(signal)) {}
+}  // namespace
 
-RecordStatistics::RecordStatistics(const MeasuredRecord& r, const BadSamples& bad)
-    : step(sample_interval(r)),
-      x(r.tau, r.x, bad.x),
-      x_ddot(r.tau, r.x_ddot, bad.a) {}
+RecordStatistics::RecordStatistics(const MeasuredRecord& r) : step(sample_interval(r)) {
+    x.bad.assign(r.x.size(), 0), a.bad.assign(r.x_ddot.size(), 0);
+    mark_clipped(r.x, x.bad), mark_clipped(r.x_ddot, a.bad);
+    mark_held(r.x, x.bad);
+    a_held = mark_held(r.x_ddot, a.bad);
+    mark_outliers(r, x.bad);
+    set_noise(r.tau, r.x, x), set_noise(r.tau, r.x_ddot, a);
+}
+
+namespace {
+
+// The record times exp(-i Omega tau) is averaged over overlapping blocks with a Hann window, which
+// suppress the motion; the spectrum of the averages shows the line and its neighbourhood.
+
+using Complex = std::complex<double>;
+
+// Half of a block in periods of the mains, and the range searched, relative to the frequency.
+constexpr double half_block_periods = 25, searched_range = 0.003;
+// A line exceeds the median of its neighbourhood and the noise by these factors; the neighbourhood
+// reaches this many resolutions, the line itself some.
+constexpr double stands_above = 6, above_noise = 2;
+constexpr int neighbourhood = 40, line_width = 3, trials_per_resolution = 8;
+
+double hann(double place) {
+    const double sine = elementary::sin(std::numbers::pi * place);
+    return sine * sine;
+}
+
+/// The channel near one frequency.
+class NearLine {
+public:
+    NearLine(const std::vector<double>& tau, const std::vector<double>& v, double Omega)
+        : length_(tau.back() - tau.front()),
+          hop_(half_block_periods * 2 * std::numbers::pi / Omega) {
+        const auto blocks = static_cast<std::size_t>(std::max(0.0, length_ / hop_ - 1));
+        std::vector<Complex> sums(blocks, 0);
+        std::vector<double> weights(blocks, 0);
+        for (std::size_t k = 0; k < tau.size(); ++k) {
+            const double place = (tau[k] - tau.front()) / hop_;
+            const Complex value = v[k] * elementary::phasor(-Omega * (tau[k] - tau.front()));
+            const auto last = static_cast<std::size_t>(place);
+            for (std::size_t j = last > 0 ? last - 1 : 0; j <= last && j < blocks; ++j) {
+                const double weight = hann(0.5 * (place - static_cast<double>(j)));
+                sums[j] += weight * value, weights[j] += weight;
+            }
+        }
+        for (std::size_t j = 0; j < blocks; ++j)
+            if (weights[j] > 0) {
+                const double at = static_cast<double>(j + 1) * hop_;
+                const double weight = hann(at / length_);
+                averages_.push_back({at, weight, 2.0 * sums[j] / weights[j]});
+                total_ += weight;
+            }
+    }
+
+    double resolution() const { return 2 * std::numbers::pi / length_; }
+    /// Amplitude and phase at Omega + faster, cos and -sin of the time since the start.
+    Complex at(double faster) const {
+        Complex sum = 0;
+        for (const Average& a : averages_)
+            sum += a.weight * a.value * elementary::phasor(-faster * a.tau);
+        return sum / total_;
+    }
+    bool is_empty() const { return averages_.size() < 3; }
+
+private:
+    struct Average {
+        double tau, weight;
+        Complex value;
+    };
+    double length_, hop_, total_ = 0;
+    std::vector<Average> averages_;
+};
+
+/// Removes the line near Omega; returns its frequency and amplitude, 0 if there is none.
+Hum remove_line(const std::vector<double>& tau, std::vector<double>& v, double Omega) {
+    const NearLine near(tau, v, Omega);
+    if (near.is_empty()) return {Omega, 0, false};
+    double best = 0, highest = 0;
+    const double step = near.resolution() / trials_per_resolution;
+    const int trials = static_cast<int>(searched_range * Omega / step) + 1;
+    for (int k = -trials; k <= trials; ++k)
+        if (const double height = elementary::modulus(near.at(k * step)); height > highest)
+            highest = height, best = k * step;
+    std::vector<double> around;
+    for (int k = line_width; k <= neighbourhood; ++k)
+        for (const int sign : {1, -1})
+            around.push_back(elementary::modulus(near.at(best + sign * k * near.resolution())));
+    const double noise = third_difference_noise(tau, v);
+    if (!(highest > stands_above * median(std::move(around)) && highest > above_noise * noise))
+        return {Omega, 0, false};
+    const Complex line = near.at(best);
+    for (std::size_t k = 0; k < tau.size(); ++k)
+        v[k] -= (line * elementary::phasor((Omega + best) * (tau[k] - tau.front()))).real();
+    return {Omega + best, highest, false};
+}
+
+}  // namespace
+
+std::vector<Hum> remove_hum(MeasuredRecord& r, const std::vector<double>& mains) {
+    std::vector<Hum> found;
+    for (const double Omega : mains)
+        for (std::vector<double>* channel : {&r.x, &r.x_ddot}) {
+            if (channel->empty()) continue;
+            Hum hum = remove_line(r.tau, *channel, Omega);
+            hum.in_displacement = channel == &r.x;
+            if (hum.amplitude > 0) found.push_back(hum);
+        }
+    return found;
+}
 
 }  // namespace vines

@@ -1,5 +1,5 @@
 // A record of the oscillator, the samples of one or two sensors, and its properties that do not
-// depend on impacts: gaps, unusable samples, and the noise of each sensor.
+// depend on impacts: gaps, unusable samples, the noise of each sensor, and hum of the mains.
 #pragma once
 
 #include <cstddef>
@@ -15,9 +15,6 @@ struct MeasuredRecord {
     std::vector<double> tau, x, x_ddot;
 };
 
-/// Median time between two samples, in tau; robust against gaps.
-double sample_interval(const MeasuredRecord& record);
-
 /// Index of the first sample at or after `tau`.
 std::size_t first_index(const MeasuredRecord& record, double tau);
 
@@ -31,39 +28,32 @@ struct TimeGap {
 /// Gaps: steps longer than three median steps.
 std::vector<TimeGap> time_gaps(const MeasuredRecord& record);
 
-/// Why a sample is unusable; 0: it is usable.
-enum BadSample : char { clipped = 1, held, outlier };
-
-/// One entry for each sample of each existing channel.
-struct BadSamples {
-    std::vector<char> x, a;
-
-    /// Samples of the acceleration in which no pulse is visible; a clipped sample still shows one.
-    std::vector<char> a_without_clipped() const;
-};
-
-BadSamples bad_samples(const MeasuredRecord& record);
-
-/// Lower bound for the noise of a signal. In a nearly noiseless record the residual is dominated by
-/// errors of the background or of the frequency.
-double least_noise_of(const std::vector<double>& signal);
-
-/// Noise of one sensor's signal.
-struct SignalStatistics {
-    /// `bad`: samples to ignore.
-    SignalStatistics(
-        const std::vector<double>& tau, const std::vector<double>& signal,
-        const std::vector<char>& bad);
-
-    double noise;        ///< standard deviation, at least least_sensor_noise; NaN without a signal
-    double least_noise;  ///< least_noise_of() the signal
+/// Properties of one sensor's signal.
+struct SensorStatistics {
+    std::vector<char> bad;  ///< marks unusable samples: clipped, held, or an outlier of x
+    double noise = 0;       ///< standard deviation, above zero; NaN without a signal
+    /// Lower bound for it. In a nearly noiseless record the residual is dominated by errors of the
+    /// background or of the frequency.
+    double least_noise = 0;
 };
 
 struct RecordStatistics {
-    RecordStatistics(const MeasuredRecord& record, const BadSamples& bad);
+    explicit RecordStatistics(const MeasuredRecord& record);
 
-    double step;  ///< sample_interval()
-    SignalStatistics x, x_ddot;
+    double step;  ///< median time between two samples, in tau; robust against gaps
+    SensorStatistics x, a;
+    /// Samples of the acceleration in which no pulse is visible; a clipped sample still shows one.
+    std::vector<char> a_held;
 };
+
+/// A line of constant frequency near 50 or 60 Hz. Its kinks would be taken for impacts.
+struct Hum {
+    double Omega, amplitude;  ///< amplitude in the unit of the channel
+    bool in_displacement;
+};
+
+/// Removes lines within .3 % of the given frequencies from both channels if they exceed twice the
+/// noise and are far above their neighbourhood. Returns them.
+std::vector<Hum> remove_hum(MeasuredRecord& record, const std::vector<double>& mains);
 
 }  // namespace vines

@@ -3,13 +3,205 @@
 #include <algorithm>
 #include <cassert>
 #include <cmath>
+#include <compare>
 
+#include "core/measurement/robust.hpp"
 #include "core/motion/elementary.hpp"
 #include "core/motion/record.hpp"
 
 namespace vines {
 
 namespace {
+
+// Largest scatter of the impacts' values of b, relative.
+constexpr double b_scatter = 0.5;
+// Tolerance of the given b relative to the fitted one, or in standard errors.
+constexpr double b_tolerance = 0.03, b_sigmas = 5;
+// Smaller differences are ignored: walls are set to a tenth of a millimetre.
+constexpr double least_of_b = 0.003;
+// Larger differences indicate another problem: no one measures b that badly.
+constexpr double most_of_b = 0.5;
+// Among the effects of tests/laboratory, none that leaves this many pulses without an impact leaves
+// a tenth of the impacts without a pulse; none scatters R by more than .006, or the momentum by
+// more than .018 of the typical jump. A motion that sticks in each cycle, evaluated as one that
+// does not, does either.
+constexpr double most_unseen = 0.15, most_dropped = 0.02, most_R_scatter = 0.035,
+                 most_momentum_scatter = 0.06;
+
+/// The mean y' of each flight is offset - b rate, from y = x - side b at both of its ends (43).
+struct Flight {
+    double offset, rate;
+    double y_dot(double b) const { return offset - b * rate; }
+};
+
+/// A value of b with its weight.
+struct WeightedB {
+    double b, weight;
+    auto operator<=>(const WeightedB&) const = default;
+};
+
+/// Values of b from each impact: x' + epsilon y' is conserved, and y' is linear in b.
+std::vector<WeightedB> b_of_impacts(
+    const Parameters& p, const std::vector<FittedImpact>& m, const std::vector<Flight>& flights) {
+    std::vector<WeightedB> estimates;
+    for (std::size_t i = 1; i < flights.size(); ++i) {
+        const double rate = flights[i].rate - flights[i - 1].rate;
+        const double b = (m[i].jump() / p.epsilon + flights[i].offset + m[i].braked_after -
+                          flights[i - 1].offset - m[i].braked_before) /
+                         rate;
+        if (std::isfinite(b)) estimates.push_back({b, std::abs(rate)});
+    }
+    return estimates;
+}
+
+double weighted_median(std::vector<WeightedB> values) {
+    double total = 0, sum = 0;
+    for (const WeightedB& v : values) total += v.weight;
+    std::ranges::sort(values);
+    const auto middle = std::ranges::find_if(
+        values, [&](const WeightedB& v) { return (sum += v.weight) >= 0.5 * total; });
+    return middle == values.end() ? nan : middle->b;
+}
+
+/// Weighted median of the impacts' values of b.
+void fit_b(
+    const Parameters& p, const std::vector<FittedImpact>& m, const std::vector<Flight>& flights,
+    Identification& found) {
+    const std::vector<WeightedB> estimates = b_of_impacts(p, m, flights);
+    if (estimates.empty()) {
+        found.b_fault = BFault::no_flight;
+        return;
+    }
+    const double b = weighted_median(estimates);
+    const auto off = [b](const WeightedB& s) { return s.b - b; };
+    if (!(b > 0)) found.b_fault = BFault::negative;
+    else if (!(robust_deviation(values_of(estimates, off)) < b_scatter * b))
+        found.b_fault = BFault::scattered;
+    else found.b_fitted = b;
+}
+
+/// Flights across a gap are unknown.
+std::vector<Flight> flights_of(
+    const std::vector<FittedImpact>& m, const std::vector<TimeGap>& gaps) {
+    std::vector<Flight> flights;
+    for (std::size_t i = 0; i + 1 < m.size(); ++i) {
+        const double from = m[i].tau, to = m[i + 1].tau, duration = to - from;
+        const bool over_gap =
+            std::ranges::any_of(gaps, [&](const TimeGap& g) { return g.overlaps(from, to); });
+        if (over_gap) flights.push_back({nan, nan});
+        else
+            flights.push_back(
+                {(m[i + 1].x - m[i].x) / duration, (m[i + 1].side - m[i].side) / duration});
+    }
+    return flights;
+}
+
+/// Uses b and epsilon of the parameters; R of each wall comes from its impacts. `pulse`: length of
+/// a pulse in tau; two impacts closer than that are one detected twice. Flights across a gap are
+/// unknown.
+Identification identify_impacts(
+    const Parameters& p, const std::vector<FittedImpact>& m, const std::vector<TimeGap>& gaps,
+    double pulse) {
+    Identification found;
+    const std::vector<Flight> flights = flights_of(m, gaps);
+    for (std::size_t i = 0; i < m.size(); ++i) {
+        IdentifiedImpact impact = m[i];
+        if (i > 0) impact.y_dot_before = flights[i - 1].y_dot(p.b) + m[i].braked_before;
+        if (i < flights.size()) impact.y_dot_after = flights[i].y_dot(p.b) + m[i].braked_after;
+        found.impacts.push_back(impact);
+    }
+    complete_impacts(p, found.impacts, pulse);
+    found.plus = restitution_of(found.impacts, 1);
+    found.minus = restitution_of(found.impacts, -1);
+    fit_b(p, m, flights, found);
+    return found;
+}
+
+/// Some impacts have no pulse and some pulses are not impacts; if both are frequent, the impacts
+/// are not at the pulses.
+bool pulses_disagree(const FoundImpacts& f) {
+    const auto n = static_cast<double>(f.fit.impacts.size());
+    return static_cast<double>(f.unseen) > most_unseen * n &&
+           static_cast<double>(f.dropped.size()) > most_dropped * n;
+}
+
+bool impacts_differ(const Parameters& p, const Identification& found) {
+    std::vector<double> R, momentum;
+    for (const IdentifiedImpact& i : found.impacts) {
+        const double w = std::abs(i.x_dot_before - i.y_dot_before),
+                     of_wall = p.table_of(i.side) ? p.restitution(i.side, w)
+                                                  : (i.side > 0 ? found.plus : found.minus).R;
+        if (std::isnan(i.R - of_wall)) continue;
+        R.push_back(i.R - of_wall);
+        momentum.push_back(i.momentum_error);
+    }
+    return robust_deviation(std::move(R)) > most_R_scatter ||
+           robust_deviation(std::move(momentum)) > most_momentum_scatter;
+}
+
+/// Empty if a verdict is possible.
+std::vector<Doubt> doubts_of(
+    const Parameters& p, const FoundImpacts& refined, const Identification& identification) {
+    std::vector<Doubt> doubts;
+    if (!refined.settled) doubts.push_back(Doubt::not_settled);
+    if (!explains(refined.fit)) doubts.push_back(Doubt::unexplained);
+    if (pulses_disagree(refined)) doubts.push_back(Doubt::pulses_disagree);
+    if (impacts_differ(p, identification)) doubts.push_back(Doubt::impacts_differ);
+    if (!b_agrees(p, identification)) doubts.push_back(Doubt::b_disagrees);
+    return doubts;
+}
+
+// Time of a difference, in tau: over longer times x'' changes, over shorter ones the noise of x
+// dominates.
+constexpr double difference_span = 0.2;
+
+/// Motion at an impact, seen from one side.
+struct SideEstimate {
+    double x, x_dot, x_ddot;
+};
+
+/// At tau, from the sample next to the pulse (`near`) and one further away (`far`).
+SideEstimate side_estimate(
+    const MeasuredRecord& r, double tau, std::ptrdiff_t near, std::ptrdiff_t far) {
+    const auto last = static_cast<std::ptrdiff_t>(r.tau.size()) - 1;
+    near = std::clamp<std::ptrdiff_t>(near, 0, last);
+    far = std::clamp<std::ptrdiff_t>(far, 0, last);
+    const double a = r.tau[near], b = r.tau[far], x_ddot = r.x_ddot[near];
+    const double x_dot =
+        near == far ? nan : (r.x[near] - r.x[far]) / (a - b) + x_ddot * (tau - 0.5 * (a + b));
+    const double s = tau - a;
+    return {r.x[near] + x_dot * s - 0.5 * x_ddot * s * s, x_dot, x_ddot};
+}
+
+/// Direct estimate (section 5 of the paper) of the motion at fitted impacts: x' from differences of
+/// x next to the pulse, extrapolated to the impact with x'' of the sample there. Needs both
+/// sensors. It amplifies the noise of x and serves for comparison.
+std::vector<FittedImpact> direct_motion(
+    const MeasuredRecord& r, const std::vector<FittedImpact>& impacts, double pulse) {
+    std::vector<FittedImpact> motions = impacts;
+    const auto sample = [&](double tau) {
+        return static_cast<std::ptrdiff_t>(first_index(r, tau));
+    };
+    for (std::size_t i = 0; i < impacts.size(); ++i) {
+        // Excludes the pulses of neighbouring impacts.
+        const double earliest = i > 0 ? impacts[i - 1].tau + 0.5 * pulse : r.tau.front(),
+                     latest =
+                         i + 1 < impacts.size() ? impacts[i + 1].tau - 0.5 * pulse : r.tau.back();
+        FittedImpact& m = motions[i];
+        const double begin = m.tau - 0.5 * pulse, end = m.tau + 0.5 * pulse;
+        const SideEstimate before = side_estimate(
+                               r, m.tau, sample(begin) - 1,
+                               sample(std::max(earliest, begin - difference_span))),
+                           after = side_estimate(
+                               r, m.tau, sample(end),
+                               sample(std::min(latest, end + difference_span)) - 1);
+        m.tau_error = nan;
+        m.x = 0.5 * (before.x + after.x);
+        m.x_dot_before = before.x_dot, m.x_dot_after = after.x_dot;
+        m.x_ddot_before = before.x_ddot, m.x_ddot_after = after.x_ddot;
+    }
+    return motions;
+}
 
 /// Far above the impacts in a record of minutes.
 constexpr long most_forward_impacts = 100000;
@@ -31,29 +223,22 @@ std::vector<KnownStretch> with_speeds(
 
 /// `stretches`: those of the fit, including hidden impacts.
 std::optional<DirectEstimate> direct_estimate(
-    const Measurement& m, double b, const MeasuredOscillator& oscillator,
-    const FoundImpacts& refined, const std::vector<HiddenContacts>& hidden,
-    const std::vector<KnownStretch>& stretches) {
+    const Measurement& m, double b, const FoundImpacts& refined,
+    const std::vector<HiddenContacts>& hidden, const std::vector<KnownStretch>& stretches) {
     if (m.record.x.empty() || m.record.x_ddot.empty()) return std::nullopt;
     Parameters p = m.parameters;
     p.b = b;
-    std::vector<double> times;
-    for (const FittedImpact& i : refined.fit.impacts) times.push_back(i.tau);
     const double pulse = refined.pulse.length();
-    std::vector<FittedImpact> motion = direct_motion(m.record, times, pulse);
-    for (std::size_t k = 0; k < motion.size(); ++k) {
-        motion[k].braked_before = refined.fit.impacts[k].braked_before;
-        motion[k].braked_after = refined.fit.impacts[k].braked_after;
-    }
-    Identification found = identify_impacts(p, motion, refined.side, refined.gaps, pulse);
+    Identification found = identify_impacts(
+        p, direct_motion(m.record, refined.fit.impacts, pulse), refined.gaps, pulse);
     if (!m.R_given) take_restitution(found.plus, found.minus, p);
     insert_hidden(hidden, found.impacts);
     complete_impacts(p, found.impacts, pulse);
     const MeasuredExponents faultless(
-        p, oscillator, found.impacts,
+        p, refined.fit.values, found.impacts,
         continuity_of(p, found.impacts, time_gaps(m.record)).stretches, qr_alone);
     std::vector<KnownStretch> known = with_speeds(found.impacts, stretches);
-    MeasuredExponents exponents(p, oscillator, found.impacts, known, m.direct_estimators);
+    MeasuredExponents exponents(p, refined.fit.values, found.impacts, known, m.direct_estimators);
     return DirectEstimate{
         std::move(found), faultless.all().qr(), std::move(known), std::move(exponents)};
 }
@@ -81,25 +266,39 @@ std::optional<ForwardRun> forward_run(
     return ForwardRun{first.tau, std::move(impacts.entries), lambda};
 }
 
-/// Identifies a record's impacts; `p` receives the fitted Omega, b and G.
-Identification identified(const FoundImpacts& refined, Parameters& p) {
-    const UnknownValues& v = refined.fit.values;
+/// Identifies a record's impacts, with R and b of a fit with the mass. `p` receives the fitted
+/// Omega and G, and the fitted b if the record contradicts the given one and b is not fixed.
+Identification identified(const FoundImpacts& f, Parameters& p) {
+    const UnknownValues &v = f.fit.values, &errors = f.fit.errors;
+    const auto identify = [&] {
+        return identify_impacts(p, f.fit.impacts, f.gaps, f.pulse.length());
+    };
     p.Omega = v[Unknown::Omega];
-    Identification found = identify_impacts(p, refined);
-    if (const double b = b_of(p, refined, found); b != p.b) {
+    Identification found = identify();
+    const bool is_b_fitted = f.with_mass && found.b_fault == BFault::none;
+    const double b = v[Unknown::b], off = std::abs(b - p.b);
+    if (is_b_fitted && !f.fit.fixed[Unknown::b] &&
+        off > b_sigmas * f.fit.errors_within_model[Unknown::b] && off > least_of_b * p.b &&
+        off < most_of_b * p.b) {
         p.b = b;
-        found = identify_impacts(p, refined);
+        found = identify();
     }
     p.G = G_of(p, v[Unknown::force_sin], v[Unknown::force_cos]);
+    const auto take = [&](Unknown u, double& value, double& error) {
+        if (f.with_mass && !f.fit.fixed[u]) value = v[u], error = errors[u];
+    };
+    if (is_b_fitted) take(Unknown::b, found.b_fitted, found.b_error);
+    take(Unknown::R_plus, found.plus.R, found.plus.error);
+    take(Unknown::R_minus, found.minus.R, found.minus.error);
     return found;
 }
 
 /// The exponents with their verdict: not decided for a measurement that is not sound, or whose
 /// impacts weaken although the motion is forced; none for a motion that dies out.
 IdentifiedExponents judged_exponents(
-    const Parameters& p, const MeasuredOscillator& oscillator, const MeasuredExponents& exponents,
+    const Parameters& p, const MeasuredExponents& exponents,
     const std::vector<IdentifiedImpact>& impacts, bool is_sound) {
-    IdentifiedExponents judged = judge_exponents(oscillator, exponents, is_representative(impacts));
+    IdentifiedExponents judged = judge_exponents(exponents, impacts);
     if (!is_sound) {
         judged.verdict = Verdict::not_decided;
     } else if (p.G == 0 || weakens(impacts)) {
@@ -127,6 +326,11 @@ void withhold_values(
 
 }  // namespace
 
+bool b_agrees(const Parameters& p, const Identification& i) {
+    return !std::isfinite(i.b_fitted) ||
+           std::abs(i.b_fitted - p.b) <= std::max(b_tolerance * p.b, b_sigmas * i.b_error);
+}
+
 double Measurement::step() const {
     return (record.tau.back() - record.tau.front()) / static_cast<double>(record.tau.size() - 1);
 }
@@ -135,7 +339,7 @@ MeasurementResult evaluate_measurement(const Measurement& m, const Identificatio
     IdentificationProgress progress(watch);
     assert(m.is_record() || m.impacts.size() >= 2);
     Parameters p = m.parameters;
-    MeasuredOscillator oscillator = MeasuredOscillator::given(p);
+    UnknownValues values = given_unknowns(p);
     std::optional<FoundImpacts> refined;
     Identification found;
     std::vector<Doubt> doubts = m.doubts;
@@ -143,7 +347,7 @@ MeasurementResult evaluate_measurement(const Measurement& m, const Identificatio
         refined = find_impacts(m, progress);
         const JointFit& fit = refined->fit;
         if (fit.impacts.size() < 2) throw TooFewImpacts{static_cast<long>(fit.impacts.size())};
-        oscillator = {fit.values[Unknown::stiffness], fit.values[Unknown::damping]};
+        values = fit.values;
         found = identified(*refined, p);
         doubts = doubts_of(p, *refined, found);
     } else {
@@ -155,28 +359,25 @@ MeasurementResult evaluate_measurement(const Measurement& m, const Identificatio
     std::optional<IdentifiedSystem> system;
     std::vector<HiddenContacts> hidden;
     if (refined) {
-        system.emplace(p, refined->fit.values, refined->fit.tau_middle);
+        system.emplace(p, values, refined->fit.tau_middle);
         hidden = hidden_contacts(*system, refined->hidden_contact_limits, found.impacts);
         insert_hidden(hidden, found.impacts);
         complete_impacts(p, found.impacts, refined->pulse.length());
     }
     progress.reach(IdentificationStage::exponents);
     Continuity continuity = continuity_of(p, found.impacts, time_gaps(m.record));
-    MeasuredExponents exponents(p, oscillator, found.impacts, continuity.stretches, m.estimators);
+    MeasuredExponents exponents(p, values, found.impacts, continuity.stretches, m.estimators);
     const bool is_sound = doubts.empty() && !continuity.is_incomplete();
-    const IdentifiedExponents judged =
-        judged_exponents(p, oscillator, exponents, found.impacts, is_sound);
+    const IdentifiedExponents judged = judged_exponents(p, exponents, found.impacts, is_sound);
     progress.look();
-    auto direct = refined
-                      ? direct_estimate(m, p.b, oscillator, *refined, hidden, continuity.stretches)
-                      : std::nullopt;
+    auto direct =
+        refined ? direct_estimate(m, p.b, *refined, hidden, continuity.stretches) : std::nullopt;
     auto forward =
         system ? forward_run(*system, found, m.record.tau.back(), progress) : std::nullopt;
     if (refined) withhold_values(doubts, continuity.is_incomplete(), *refined, found);
     return {
         .parameters = p,
         .found = std::move(found),
-        .oscillator = oscillator,
         .refined = std::move(refined),
         .continuity = std::move(continuity),
         .exponents = std::move(exponents),

@@ -1,13 +1,22 @@
-// Evaluation of a measurement: impacts, R, exponents and the verdict, with two results for
-// comparison (the paper's direct estimate, and a run of the identified system).
+// Evaluation of a measurement of the oscillator (section 5 of the paper), a record or a list of
+// impacts with their states: impacts, R, exponents and the verdict, with two results for comparison
+// (the paper's direct estimate, and a run of the identified system).
 //
-// A measurement is a record of the oscillator, or a list of impacts with their states.
-// Dimensionless as in identify.hpp.
+// The joint fit (unknowns.hpp, joint_fit.hpp) gives the oscillator's motion on both sides of each
+// detected impact (search.hpp). The jumps of x' and the flights of the mass between its contacts, y
+// = x - side b, give y', R and the transfer matrices; if the mass was part of the fit, R and b are
+// the fitted ones.
+//
+// Dimensionless time: tau = omega0 t, velocities in m per unit of tau, accelerations in m per unit
+// of tau^2.
 #pragma once
 
 #include <optional>
+#include <vector>
 
-#include "core/measurement/identify.hpp"
+#include "core/measurement/joint_fit.hpp"
+#include "core/measurement/measured_exponents.hpp"
+#include "core/measurement/search.hpp"
 
 namespace vines {
 
@@ -15,6 +24,28 @@ namespace vines {
 struct TooFewImpacts {
     long seen;
 };
+
+/// Why no b is fitted.
+enum class BFault {
+    none,
+    no_flight,  ///< no impact has a neighbour on the other wall
+    negative,   ///< b would be negative
+    scattered,  ///< the impacts give different values
+    doubtful    ///< the record or its impacts leave a doubt
+};
+
+struct Identification {
+    std::vector<IdentifiedImpact> impacts;
+    Restitution plus, minus;
+    /// The b that satisfies the momentum balance best, m; NaN if none does. Its standard error; NaN
+    /// if the mass was not part of the fit, since the impacts' errors are not independent.
+    double b_fitted = nan, b_error = nan;
+    BFault b_fault = BFault::none;
+};
+
+/// Whether the given b agrees with the momentum balance, within 3 % or five standard errors; true
+/// if no b is fitted.
+bool b_agrees(const Parameters& parameters, const Identification& identification);
 
 /// The paper's direct estimate: velocities from differences, and the results that follow.
 struct DirectEstimate {
@@ -39,7 +70,6 @@ struct MeasurementResult {
     /// b if it contradicts the given one.
     Parameters parameters;
     Identification found;
-    MeasuredOscillator oscillator;
     std::optional<FoundImpacts> refined;  ///< for a record
     Continuity continuity;
     MeasuredExponents exponents;

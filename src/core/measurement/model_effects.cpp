@@ -55,9 +55,8 @@ EffectDerivatives::EffectDerivatives(const JointFitState& state)
     add(Effect::stiffness_varies, 1);
     if (!state.record.x.empty()) add(Effect::displacement_drifts, slow_columns);
     if (both) add(Effect::high_pass, 1), add(Effect::clocks_differ, 1);
-    if (state.sides) add(Effect::friction, 1), add(Effect::R_varies, 1);
-    if (state.sides && state.uncertainty.any())
-        add(Effect::given_mass_ratio, 1), add(Effect::given_oscillator, 2);
+    add(Effect::friction, 1), add(Effect::R_varies, 1);
+    if (state.uncertainty.any()) add(Effect::given_mass_ratio, 1), add(Effect::given_oscillator, 2);
     for (std::size_t k = 0; k < state.mains.size(); ++k) add(Effect::hum, both ? 4 : 2);
     row_ = Eigen::VectorXd::Zero(size_);
     // A fit without a high pass takes its phase lead at the forcing frequency for a delay.
@@ -113,50 +112,41 @@ const Eigen::VectorXd& EffectDerivatives::motion(
     row_(first_of(Effect::stiffness_varies)) = 0.75 * squared * (row.by_stiffness.*member);
     if (const Eigen::Index at = first_of(Effect::given_oscillator); at >= 0)
         row_(at) = row.by_stiffness.*member, row_(at + 1) = row.by_damping.*member;
-    if (state_.sides) {
-        // The ball pulls with epsilon times its friction: the response to a constant force.
-        const OscillatorMotion& p = row.parts[0];
-        const double response = (member == &OscillatorMotion::x ? 1 : 0) - p.*member;
-        row_(first_of(Effect::friction)) =
-            state_.fit.epsilon * from.sliding.mean * response / v[Unknown::stiffness];
-    }
+    // The ball pulls with epsilon times its friction: the response to a constant force.
+    const double response = (member == &OscillatorMotion::x ? 1 : 0) - row.parts[0].*member;
+    row_(first_of(Effect::friction)) =
+        state_.fit.epsilon * from.sliding.mean * response / v[Unknown::stiffness];
     return row_;
 }
 
-const Eigen::VectorXd& EffectDerivatives::displacement(
-    std::size_t i, double tau, const MotionRow& row) {
-    const double gain = state_.fit.values[Unknown::x_gain],
-                 u = (tau - state_.fit.tau_middle) / state_.fit.length;
-    motion(i, tau - state_.fit.values[Unknown::x_delay], row, &OscillatorMotion::x);
-    row_ *= gain;
-    const Eigen::Index drift = first_of(Effect::displacement_drifts);
-    row_(drift) = u * u;
-    slow(u, drift + 1, 1);
-    if (const Eigen::Index at = first_of(Effect::clocks_differ); at >= 0)
-        row_(at) = -gain * row.value.x_dot * u;
-    for (std::size_t k = 0; k < state_.mains.size(); ++k) {
-        const Eigen::Index count = columns_.back().count,
-                           at = size_ - static_cast<Eigen::Index>(state_.mains.size() - k) * count;
-        const double angle = state_.mains[k] * (tau - state_.fit.tau_middle);
-        row_(at) = elementary::sin(angle), row_(at + 1) = elementary::cos(angle);
+const Eigen::VectorXd& EffectDerivatives::sample(
+    bool of_x, std::size_t i, double tau, const MotionRow& row) {
+    const UnknownValues& v = state_.fit.values;
+    const double since_middle = tau - state_.fit.tau_middle;
+    if (of_x) {
+        const double gain = v[Unknown::x_gain], u = since_middle / state_.fit.length;
+        motion(i, tau - v[Unknown::x_delay], row, &OscillatorMotion::x);
+        row_ *= gain;
+        const Eigen::Index drift = first_of(Effect::displacement_drifts);
+        row_(drift) = u * u;
+        slow(u, drift + 1, 1);
+        if (const Eigen::Index at = first_of(Effect::clocks_differ); at >= 0)
+            row_(at) = -gain * row.value.x_dot * u;
+    } else {
+        motion(i, tau, row, &OscillatorMotion::x_ddot);
+        // A high pass with corner h subtracts h/(s + h) of the acceleration; exact at the forcing
+        // frequency, where the acceleration is -Omega^2 x.
+        if (const Eigen::Index at = first_of(Effect::high_pass); at >= 0) {
+            const double ratio = corner_ / v[Unknown::Omega];
+            row_(at) = (corner_ * row.value.x - row.value.x_dot) / (1 + ratio * ratio);
+        }
     }
-    return row_;
-}
-
-const Eigen::VectorXd& EffectDerivatives::acceleration(
-    std::size_t i, double tau, const MotionRow& row) {
-    motion(i, tau, row, &OscillatorMotion::x_ddot);
-    // A high pass with corner h subtracts h/(s + h) of the acceleration; exact at the forcing
-    // frequency, where the acceleration is -Omega^2 x.
-    if (const Eigen::Index at = first_of(Effect::high_pass); at >= 0) {
-        const double ratio = corner_ / state_.fit.values[Unknown::Omega];
-        row_(at) = (corner_ * row.value.x - row.value.x_dot) / (1 + ratio * ratio);
-    }
+    // The last columns: two for each hum and sensor.
     for (std::size_t k = 0; k < state_.mains.size(); ++k) {
         const Eigen::Index count = columns_.back().count,
                            at = size_ - static_cast<Eigen::Index>(state_.mains.size() - k) * count +
-                                count - 2;
-        const double angle = state_.mains[k] * (tau - state_.fit.tau_middle);
+                                (of_x ? 0 : count - 2);
+        const double angle = state_.mains[k] * since_middle;
         row_(at) = elementary::sin(angle), row_(at + 1) = elementary::cos(angle);
     }
     return row_;
@@ -209,56 +199,40 @@ std::vector<FittedEffect> tested_effects(
     return found;
 }
 
-namespace {
-
-/// Standard errors due to the noise of a channel of the forcing: in its harmonics, and in the slow
-/// variations of its fundamental.
-UnknownValues load_uncertainty(const JointFitState& state, const EffectDerivatives& effects) {
-    UnknownValues errors{};
-    if (!state.forcing.load) return errors;
+UnknownValues propagated_uncertainty(const JointFitState& state, const EffectDerivatives& effects) {
     const UnknownValues& v = state.fit.values;
     const double amplitude = elementary::hypot(v[Unknown::force_sin], v[Unknown::force_cos]);
-    const Eigen::MatrixXd& by = state.equations.effects.solved;
-    const auto add = [&](Effect effect, Eigen::Index skipped, Eigen::Index count, double error) {
-        for (std::size_t k = 0; k < unknowns; ++k)
-            if (!state.fit.fixed[k])
-                errors[k] = elementary::hypot(
-                    errors[k], error * amplitude *
-                                   by.row(state.equations.unknown_at(k))
-                                       .segment(effects.first_of(effect) + skipped, count)
-                                       .norm());
-    };
-    const MeasuredLoad& load = *state.forcing.load;
-    add(Effect::second_harmonic, 0, 2, load.error_of(2));
-    add(Effect::third_harmonic, 0, 2, load.error_of(3));
-    // The mean square of a slow harmonic is 1/2.
-    add(Effect::forcing_varies, 1, forcing_columns - 1, std::numbers::sqrt2 * load.error_of(1));
-    return errors;
-}
-
-}  // namespace
-
-UnknownValues propagated_uncertainty(const JointFitState& state, const EffectDerivatives& effects) {
-    UnknownValues errors = load_uncertainty(state, effects);
+    const MeasuredLoad* load = state.forcing.load.get();
+    const GivenUncertainty& given = state.uncertainty;
     const Eigen::Index mass = effects.first_of(Effect::given_mass_ratio),
                        oscillator = effects.first_of(Effect::given_oscillator);
-    if (mass < 0) return errors;
-    const GivenUncertainty& given = state.uncertainty;
-    const UnknownValues& v = state.fit.values;
-    const Eigen::MatrixXd& by = state.equations.effects.solved;
+    UnknownValues errors{};
     for (std::size_t k = 0; k < unknowns; ++k) {
         if (state.fit.fixed[k]) continue;
-        const Eigen::Index row = state.equations.unknown_at(k);
+        const auto by = state.equations.effects.solved.row(state.equations.unknown_at(k));
+        const auto add = [&](double error) { errors[k] = elementary::hypot(errors[k], error); };
+        const auto add_columns = [&](Eigen::Index first, Eigen::Index count, double error) {
+            add(error * amplitude * by.segment(first, count).norm());
+        };
+        if (load) {
+            add_columns(effects.first_of(Effect::second_harmonic), 2, load->error_of(2));
+            add_columns(effects.first_of(Effect::third_harmonic), 2, load->error_of(3));
+            // Slow variations of the fundamental: the mean square of a slow harmonic is 1/2.
+            add_columns(
+                effects.first_of(Effect::forcing_varies) + 1, forcing_columns - 1,
+                std::numbers::sqrt2 * load->error_of(1));
+        }
+        if (mass < 0) continue;
         // The fit determines stiffness and damping where it is free to do so.
-        const double ratio = state.fit.epsilon * by(row, mass),
-                     stiffness = state.fit.fixed[Unknown::stiffness] ? by(row, oscillator) : 0,
+        const double ratio = state.fit.epsilon * by(mass),
+                     stiffness = state.fit.fixed[Unknown::stiffness] ? by(oscillator) : 0,
                      damping = state.fit.fixed[Unknown::damping]
-                                   ? v[Unknown::damping] * by(row, oscillator + 1)
+                                   ? v[Unknown::damping] * by(oscillator + 1)
                                    : 0;
-        for (const double e :
+        for (const double error :
              {given.m2 * ratio, given.m1 * (ratio + stiffness + damping), given.k1 * stiffness,
               given.c1 * damping})
-            errors[k] = elementary::hypot(errors[k], e);
+            add(error);
     }
     return errors;
 }

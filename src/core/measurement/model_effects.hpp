@@ -26,7 +26,7 @@ struct EffectColumns {
     Eigen::Index first, count;
 };
 
-/// Derivatives of samples and states by the sizes of the effects, of one fit.
+/// Derivatives of samples and states by the sizes of the effects, of a fit with the mass.
 class EffectDerivatives {
 public:
     explicit EffectDerivatives(const JointFitState& state);
@@ -34,10 +34,9 @@ public:
     Eigen::Index size() const { return size_; }
     const std::vector<EffectColumns>& columns() const { return columns_; }
 
-    /// Derivatives of the displacement and of the acceleration at sample time tau, `row` being the
+    /// Derivatives of the displacement, or of the acceleration, at sample time tau, `row` being the
     /// motion of interval i there.
-    const Eigen::VectorXd& displacement(std::size_t i, double tau, const MotionRow& row);
-    const Eigen::VectorXd& acceleration(std::size_t i, double tau, const MotionRow& row);
+    const Eigen::VectorXd& sample(bool of_x, std::size_t i, double tau, const MotionRow& row);
     /// Derivatives of x, x' or x'' of the motion of interval i at tau.
     const Eigen::VectorXd& motion(
         std::size_t i, double tau, const MotionRow& row, double OscillatorMotion::* member);

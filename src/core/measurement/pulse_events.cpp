@@ -27,19 +27,16 @@ constexpr double most_bins = 4096;
 /// Decay of events, relative to their highest sample, in bins of one step before and after it.
 class Fading {
 public:
-    explicit Fading(const ImpactSearchInput& in)
-        : in_(in),
-          step_(std::max(in.statistics.step, looked_after / most_bins)),
-          before_(static_cast<std::size_t>(looked_before / step_) + 2),
-          after_(static_cast<std::size_t>(looked_after / step_) + 2) {}
-
-    void learn(
-        const PulseSignal& signal, const std::vector<char>& bad,
-        const std::vector<std::size_t>& peaks) {
-        const std::vector<double>& tau = in_.record.tau;
-        std::vector<std::vector<double>> before(before_.size()), after(after_.size());
+    /// Learns from the events at `peaks`.
+    Fading(
+        const ImpactSearchInput& in, const PulseSignal& signal, const std::vector<char>& bad,
+        const std::vector<std::size_t>& peaks)
+        : step_(std::max(in.statistics.step, looked_after / most_bins)) {
+        const std::vector<double>& tau = in.record.tau;
+        std::vector<std::vector<double>> before(bin_limit(looked_before)),
+            after(bin_limit(looked_after));
         for (const std::size_t p : peaks) {
-            in_.progress.look();
+            in.progress.look();
             const double height = std::abs(signal.value[p]);
             // Subtracts noise, which would make all of a low event visible.
             const auto share = [&](std::size_t k) {
@@ -50,8 +47,7 @@ public:
             for (std::size_t k = p; k-- > 0 && tau[p] - tau[k] < looked_before;)
                 if (!bad[k]) before[bin(tau[p] - tau[k])].push_back(share(k));
         }
-        hull(std::move(before), before_);
-        hull(std::move(after), after_);
+        before_ = hull(std::move(before)), after_ = hull(std::move(after));
     }
 
     /// Largest height at a time s after an event's peak, relative to the peak.
@@ -71,9 +67,12 @@ public:
 private:
     std::size_t bin(double s) const { return static_cast<std::size_t>(s / step_ + 0.5); }
 
-    /// Makes the decay monotonic: a ringing can beat with the sampling. `seen`: one entry for each
-    /// bin.
-    static void hull(std::vector<std::vector<double>> seen, std::vector<double>& fading) {
+    std::size_t bin_limit(double s) const { return static_cast<std::size_t>(s / step_) + 2; }
+
+    /// The monotonic decay through the shares seen in each bin: a ringing can beat with the
+    /// sampling.
+    static std::vector<double> hull(std::vector<std::vector<double>> seen) {
+        std::vector<double> fading(seen.size());
         double highest = 0;
         for (std::size_t b = fading.size(); b-- > 0;) {
             if (seen[b].size() >= fewest_of_bin)
@@ -83,9 +82,9 @@ private:
         }
         // The sample next to the peak can be nearly as high.
         for (std::size_t b = 0; b < std::min<std::size_t>(2, fading.size()); ++b) fading[b] = 1;
+        return fading;
     }
 
-    const ImpactSearchInput& in_;
     const double step_;
     std::vector<double> before_, after_;
 };
@@ -144,10 +143,9 @@ PulseEvents pulse_events(
     const std::vector<double>& tau = in.record.tau;
     const double step = in.statistics.step, sigmas = in.measurement.threshold;
     const std::vector<std::size_t> order = standing_out(signal, bad, sigmas);
-    Fading fading(in);
     // Learns from the highest samples within the range of an event.
-    fading.learn(
-        signal, bad, unexplained(in, order, [](std::size_t, std::size_t) { return true; }));
+    const Fading fading(
+        in, signal, bad, unexplained(in, order, [](std::size_t, std::size_t) { return true; }));
     const std::vector<std::size_t> peaks =
         unexplained(in, order, [&](std::size_t p, std::size_t k) {
             return std::abs(signal.value[k]) <

@@ -184,7 +184,7 @@ PulseSignal smooth_background(const ImpactSearchInput& in) {
         masked = mask_of(background.residual(), found.noise);
         if (masked == background.masked()) break;
     }
-    found.noise = std::max(found.noise, in.statistics.x_ddot.least_noise);
+    found.noise = std::max(found.noise, in.statistics.a.least_noise);
     found.value = background.residual();
     return found;
 }
@@ -210,7 +210,7 @@ public:
           known_(to - from),
           usable_(to - from) {
         const MeasuredRecord& r = in.record;
-        const BadSamples& bad = in.bad;
+        const std::vector<char>&bad_x = in.statistics.x.bad, &bad_a = in.statistics.a.bad;
         const double middle = 0.5 * (r.tau[from] + r.tau[to - 1]),
                      length = r.tau[to - 1] - r.tau[from];
         std::size_t before = from, after = from;
@@ -225,8 +225,8 @@ public:
             rows_.row(row) << r.x[k], (r.x[right] - r.x[left]) / (r.tau[right] - r.tau[left]), 1,
                 (r.tau[k] - middle) / length, elementary::sin(angle), elementary::cos(angle);
             a_(row) = r.x_ddot[k];
-            known_[k - from] = !bad.x[k] && !bad.x[left] && !bad.x[right];
-            usable_[k - from] = known_[k - from] && !bad.a[k];
+            known_[k - from] = !bad_x[k] && !bad_x[left] && !bad_x[right];
+            usable_[k - from] = known_[k - from] && !bad_a[k];
         }
     }
 
@@ -279,7 +279,6 @@ private:
 
 PulseSignal pulse_signal(const ImpactSearchInput& in) {
     const MeasuredRecord& r = in.record;
-    const BadSamples& bad = in.bad;
     const std::size_t n = r.tau.size();
     if (r.x.empty()) return smooth_background(in);
     PulseSignal signal{std::vector<double>(n), nan};
@@ -312,8 +311,8 @@ PulseSignal pulse_signal(const ImpactSearchInput& in) {
     }
     std::vector<double> quiet;
     for (std::size_t k = 0; k < n; ++k)
-        if (!bad.a[k]) quiet.push_back(signal.value[k]);
-    signal.noise = std::max(robust_deviation(std::move(quiet)), in.statistics.x_ddot.least_noise);
+        if (!in.statistics.a.bad[k]) quiet.push_back(signal.value[k]);
+    signal.noise = std::max(robust_deviation(std::move(quiet)), in.statistics.a.least_noise);
     return signal;
 }
 

@@ -27,57 +27,44 @@ constexpr double looked_at = 0.8, of_noise = 1.28, stands_out = 1.4;
 constexpr std::size_t kink_bins = 12, fewest_of_kink_bin = 9;
 constexpr double half_within = 0.6745, kink_stands_out = 1.5;
 
-/// Absolute residuals, binned by the time since the impact, from -before on.
-class ResidualBins {
-public:
-    ResidualBins(const ImpactSearchInput& in, const JointFit& fit)
-        : width_(std::max(in.statistics.step, farthest_after / most_extent_bins)) {
-        const MeasuredRecord& r = in.record;
-        for (std::size_t i = 0; i < fit.impacts.size(); ++i) {
-            if (!fit.impacts[i].is_impact()) continue;
-            const double tau = fit.impacts[i].tau;
-            const double end =
-                i + 1 < fit.impacts.size() ? fit.impacts[i + 1].tau - farthest_before : infinity;
-            const double begin = i > 0 ? 0.5 * (fit.impacts[i - 1].tau + tau) : -infinity;
-            for (std::size_t k = first_index(r, std::max(begin, tau - farthest_before));
-                 k < r.tau.size() && r.tau[k] < std::min(end, tau + farthest_after); ++k) {
-                const auto bin =
-                    static_cast<std::size_t>((r.tau[k] - tau + farthest_before) / width_);
-                if (bin >= moduli_.size()) moduli_.resize(bin + 1);
-                moduli_[bin].push_back(std::abs(fit.a_residual[k]));
-            }
+/// Residuals of the acceleration in bins of the time since the impact, from -farthest_before on.
+std::vector<std::vector<double>> residuals_since_impact(
+    const MeasuredRecord& r, const JointFit& fit, double width) {
+    std::vector<std::vector<double>> bins;
+    for (std::size_t i = 0; i < fit.impacts.size(); ++i) {
+        if (!fit.impacts[i].is_impact()) continue;
+        const double tau = fit.impacts[i].tau;
+        const double end =
+            i + 1 < fit.impacts.size() ? fit.impacts[i + 1].tau - farthest_before : infinity;
+        const double begin = i > 0 ? 0.5 * (fit.impacts[i - 1].tau + tau) : -infinity;
+        for (std::size_t k = first_index(r, std::max(begin, tau - farthest_before));
+             k < r.tau.size() && r.tau[k] < std::min(end, tau + farthest_after); ++k) {
+            const auto bin = static_cast<std::size_t>((r.tau[k] - tau + farthest_before) / width);
+            if (bin >= bins.size()) bins.resize(bin + 1);
+            bins[bin].push_back(fit.a.left[k]);
         }
     }
-    std::size_t size() const { return moduli_.size(); }
-    double width() const { return width_; }
-    double begin(std::size_t bin) const {
-        return static_cast<double>(bin) * width_ - farthest_before;
-    }
-    bool stands_out_from(double noise, std::size_t bin) const {
-        return moduli_[bin].size() > 3 &&
-               quantile_of_moduli(moduli_[bin], looked_at) > stands_out * of_noise * noise;
-    }
-
-private:
-    const double width_;
-    std::vector<std::vector<double>> moduli_;
-};
+    return bins;
+}
 
 }  // namespace
 
 PulseExtent pulse_extent(const ImpactSearchInput& in, const JointFit& fit) {
-    const ResidualBins bins(in, fit);
+    const double width = std::max(in.statistics.step, farthest_after / most_extent_bins);
+    const std::vector<std::vector<double>> bins = residuals_since_impact(in.record, fit, width);
     // Noise of the background outside pulses: the quieter half of the record.
-    const double noise = robust_deviation(fit.a_residual);
+    const double noise = robust_deviation(fit.a.left);
     PulseExtent extent{in.statistics.step, in.statistics.step};
     double silent_since = 0;
     for (std::size_t b = 0; b < bins.size(); ++b) {
-        const double begin = bins.begin(b);
+        const double begin = static_cast<double>(b) * width - farthest_before;
         if (begin > 0 && begin - silent_since > longest_silence) break;
-        if (!bins.stands_out_from(noise, b)) continue;
+        const bool is_pulse = bins[b].size() > 3 && quantile_of_moduli(bins[b], looked_at) >
+                                                        stands_out * of_noise * noise;
+        if (!is_pulse) continue;
         if (begin < 0) extent.before = std::max(extent.before, -begin);
-        extent.after = std::max(extent.after, begin + bins.width());
-        silent_since = std::max(silent_since, begin + bins.width());
+        extent.after = std::max(extent.after, begin + width);
+        silent_since = std::max(silent_since, begin + width);
     }
     return extent;
 }
@@ -93,10 +80,11 @@ double kink_extent(const ImpactSearchInput& in, const JointFit& fit) {
         for (std::size_t k = first_index(r, tau - reach);
              k < r.tau.size() && r.tau[k] < tau + reach; ++k) {
             const auto b = static_cast<std::size_t>(std::abs(r.tau[k] - tau) / bin);
-            if (b < left.size() && !in.bad.x[k]) left[b].push_back(std::abs(fit.x_residual[k]));
+            if (b < left.size() && !in.statistics.x.bad[k])
+                left[b].push_back(std::abs(fit.x.left[k]));
         }
     }
-    const double noise = robust_deviation(fit.x_residual);
+    const double noise = robust_deviation(fit.x.left);
     double extent = 0;
     for (std::size_t b = 0; b < left.size(); ++b)
         if (left[b].size() >= fewest_of_kink_bin &&
@@ -142,8 +130,8 @@ std::vector<PulseSample> samples_of(
                      end = i + 1 < times.size() ? times[i + 1] - extent.before : infinity;
         for (std::size_t k = first_index(r, std::max(start, tau + begin));
              k < r.tau.size() && r.tau[k] < std::min(end, tau + begin + length); ++k) {
-            if (in.bad.a[k]) continue;
-            samples.push_back({r.tau[k] - tau - begin, fit.a_residual[k] / jump, jump * jump});
+            if (in.statistics.a.bad[k]) continue;
+            samples.push_back({r.tau[k] - tau - begin, fit.a.left[k] / jump, jump * jump});
             total += jump * jump;
         }
     }
@@ -164,9 +152,8 @@ public:
         return s.value - ((1 - share) * value_(k) + share * value_(k + 1));
     }
     double scatter_of(const std::vector<PulseSample>& samples) const {
-        std::vector<double> left;
-        for (const PulseSample& s : samples) left.push_back(left_of(s));
-        return std::max(robust_deviation(std::move(left)), 1e-300);
+        const auto left = [this](const PulseSample& s) { return left_of(s); };
+        return std::max(robust_deviation(values_of(samples, left)), 1e-300);
     }
     /// The same for each of `bins` bins of width `width`, without the noise; that of all samples
     /// for a bin with few.
@@ -283,7 +270,7 @@ PulseTemplate::PulseTemplate(
     const double together = static_cast<double>(jumps.size()) * spacing_ / step,
                  kink_error = median(std::move(kink_errors));
     time_error_ = std::isfinite(kink_error) ? kink_error / std::sqrt(together) : 0;
-    scatter_ = curve.scatters_of(samples, bins, bin_, fit.noise_a / median(std::move(jumps)));
+    scatter_ = curve.scatters_of(samples, bins, bin_, fit.a.noise / median(std::move(jumps)));
 }
 
 double PulseTemplate::at(double s) const {

@@ -29,7 +29,7 @@ public:
         const ImpactSearchInput& in, const PulseTemplate& pulse, const JointFit& fit,
         std::size_t impact, double centre, double other)
         : record_(in.record),
-          bad_(in.bad.a),
+          bad_(in.statistics.a.bad),
           pulse_(pulse),
           fit_(fit),
           impact_(fit.impacts[impact]),
@@ -93,9 +93,9 @@ private:
                 change =
                     0.5 * (pulse_.at(since + 0.5 * spacing()) - pulse_.at(since - 0.5 * spacing())),
                          noise = elementary::hypot(
-                             fit_.noise_a,
+                             fit_.a.noise,
                              height * elementary::hypot(pulse_.scatter(since), change));
-            const Scaled sample{p / noise, fit_.a_residual[s] / noise};
+            const Scaled sample{p / noise, fit_.a.left[s] / noise};
             samples_.push_back(sample);
             // An outlier, which no plausible height explains, would spoil the fitted one.
             if (std::abs(sample.value - height * sample.pulse) >

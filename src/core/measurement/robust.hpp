@@ -1,9 +1,27 @@
 // Robust statistics: outliers hardly change them. NaN values are ignored.
 #pragma once
 
+#include <functional>
 #include <vector>
 
 namespace vines {
+
+/// f of each element of a list, a member or a function; NaN for those that do not count.
+template <class Element, class F>
+std::vector<double> values_of(const std::vector<Element>& list, const F& f) {
+    std::vector<double> values;
+    values.reserve(list.size());
+    for (const Element& element : list) values.push_back(std::invoke(f, element));
+    return values;
+}
+
+/// Times from each element of a list to the next.
+template <class Element>
+std::vector<double> steps_of(const std::vector<Element>& list) {
+    std::vector<double> steps;
+    for (std::size_t k = 1; k < list.size(); ++k) steps.push_back(list[k].tau - list[k - 1].tau);
+    return steps;
+}
 
 /// Median; NaN without values.
 double median(std::vector<double> values);

@@ -1,6 +1,6 @@
-// The order of the search: candidates, the forcing's frequency, a fit of the displacement alone,
-// fits of both sensors with the pulses, the oscillator, the mass, and contacts that no sample
-// shows.
+// The order of the search and its fits: candidates, the forcing's frequency, a fit of the
+// displacement alone, fits of both sensors with the pulses, the oscillator, the mass, and contacts
+// that no sample shows.
 #include "core/measurement/search.hpp"
 
 #include <algorithm>
@@ -25,6 +25,133 @@ constexpr int most_hidden_rounds = 3;
 constexpr double hiding_gap = 0.5;
 // Largest standard error of a known velocity, in typical jumps of x'.
 constexpr double most_velocity_error = 0.5;
+// Standard error of an impact's time as its pulse shows it, in sampling steps.
+constexpr double event_steps = 0.1;
+// Alignments of the pulses with their template after each fit.
+constexpr int alignments = 3;
+// Largest fraction of a typical flight that a pulse can spoil before and after an impact: the rest
+// of the acceleration is needed for the fit.
+constexpr double most_spoiled = 0.35;
+// The record contradicts the given oscillator if a value is off by this many standard errors, and k
+// or c by more than these fractions.
+constexpr double contradiction = 5, least_of_stiffness = 3e-4, least_of_damping = 0.01;
+// Plausible deviations from the given values: stiffness is known far better, damping to a factor.
+constexpr double most_of_stiffness = 0.04, most_of_damping = 2.5, slack_of_damping = 0.005;
+// Standard errors from which on the sign of a jump of x' is certain.
+constexpr double side_sigmas = 3;
+// Fits with the mass, repeated if the given R and b are far off.
+constexpr int most_runs_with_mass = 3;
+
+/// Median delay of events relative to their impacts.
+double event_delay(const ImpactSearch& s) {
+    const double late = median(values_of(
+        s.candidates, [](const Candidate& c) { return c.height != 0 ? c.event - c.tau : nan; }));
+    return std::isnan(late) ? 0 : late;
+}
+
+/// Whether stiffness and damping are near the given ones.
+bool is_plausible(const ImpactSearch& s, const UnknownValues& v) {
+    const UnknownValues given = given_unknowns(s.parameters);
+    const double c = v[Unknown::damping], given_c = given[Unknown::damping];
+    return std::abs(v[Unknown::stiffness] - given[Unknown::stiffness]) < most_of_stiffness &&
+           c < most_of_damping * given_c + slack_of_damping &&
+           c > given_c / most_of_damping - slack_of_damping;
+}
+
+/// Sets the walls of the impacts. The wall pushes x back, so the jump of x' shows its side; if it
+/// is uncertain, the pulse does.
+void assign_walls(ImpactSearch& s) {
+    for (std::size_t i = 0; i < s.candidates.size(); ++i) {
+        Candidate& c = s.candidates[i];
+        FittedImpact& m = s.found.fit.impacts[i];
+        const bool by_pulse = c.height != 0 && !(std::abs(c.jump) > side_sigmas * m.jump_error());
+        if (!c.is_predicted && c.border != Border::gap)
+            c.side = (by_pulse ? c.height : c.jump) > 0 ? -1 : 1;
+        m.side = c.side;
+    }
+}
+
+/// Input of a joint fit of the candidates.
+JointFitInput fit_input(const ImpactSearch& s) {
+    return {
+        .parameters = s.parameters,
+        .record = s.displacement ? *s.displacement : s.record,
+        .statistics = s.statistics,
+        .progress = s.progress,
+        .spoiled = {s.displacement ? PulseExtent{0, 0} : s.spoiled.a, s.spoiled.x},
+        .fixed = s.fixed,
+        .forcing = s.measurement.forcing,
+        .mains = s.measurement.mains,
+        .uncertainty = s.measurement.uncertainty};
+}
+
+void fit_motion(ImpactSearch& s) {
+    JointFit& last = s.found.fit;
+    last.x.left = {}, last.a.left = {};  // releases a value per sample
+    last =
+        fit_jointly(fit_input(s), s.candidates, s.values, s.candidates_changed ? nullptr : &last);
+    s.candidates_changed = false;
+    s.values = last.values;
+    for (std::size_t i = 0; i < s.candidates.size(); ++i) {
+        s.candidates[i].tau = last.impacts[i].tau;
+        s.candidates[i].jump = last.impacts[i].jump();
+    }
+}
+
+/// Limits the extent of pulses to a fraction of a typical flight.
+void limit_pulse_extent(ImpactSearch& s) {
+    const double most = most_spoiled * median(steps_of(s.candidates));
+    s.spoiled.a = {std::min(s.spoiled.a.before, most), std::min(s.spoiled.a.after, most)};
+}
+
+/// Frees stiffness and damping if the record contradicts the given values; returns whether it does.
+bool release_oscillator(ImpactSearch& s) {
+    if (!s.may_release_oscillator || !s.fixed.oscillator() || s.measurement.fixed.oscillator())
+        return false;
+    JointFitInput free = fit_input(s);
+    free.fixed = s.measurement.fixed;
+    free.one_step = true;
+    const JointFit trial = fit_jointly(free, s.candidates, s.values, &s.found.fit);
+    const UnknownValues given = given_unknowns(s.parameters);
+    const auto contradicts = [&](Unknown u, double least) {
+        return std::abs(trial.values[u] - given[u]) >
+               std::max(contradiction * trial.errors[u], least * given[u]);
+    };
+    if (!contradicts(Unknown::stiffness, least_of_stiffness) &&
+        !contradicts(Unknown::damping, least_of_damping))
+        return false;
+    if (!is_plausible(s, trial.values)) return false;
+    s.fixed = s.measurement.fixed;
+    s.values = trial.values;
+    return true;
+}
+
+/// Returns to the given oscillator if the fitted one is implausible, which indicates another
+/// problem; returns whether it is.
+bool restore_given_oscillator(ImpactSearch& s) {
+    if (s.fixed.oscillator() || is_plausible(s, s.values)) return false;
+    const UnknownValues given = given_unknowns(s.parameters);
+    s.may_release_oscillator = false;
+    s.fixed[Unknown::stiffness] = s.fixed[Unknown::damping] = true;
+    s.values[Unknown::stiffness] = given[Unknown::stiffness];
+    s.values[Unknown::damping] = given[Unknown::damping];
+    s.candidates_changed = true;
+    return true;
+}
+
+/// Fits with the mass: once the impacts are known it refines their times, R and b.
+void fit_with_mass(ImpactSearch& s) {
+    JointFitInput with_mass = fit_input(s);
+    with_mass.with_mass = true;
+    JointFit fit = s.found.fit;
+    for (int run = 0; run < most_runs_with_mass && !(run > 0 && fit.converged); ++run) {
+        fit.x.left = {}, fit.a.left = {};
+        fit = fit_jointly(with_mass, s.candidates, fit.values, &fit);
+    }
+    s.mass_values = fit.values;
+    s.found.with_mass = fit.converged;
+    if (fit.converged) s.found.fit = std::move(fit);
+}
 
 std::vector<TimeGap> hiding_gaps(const MeasuredRecord& r) {
     std::vector<TimeGap> gaps = time_gaps(r);
@@ -52,16 +179,14 @@ void find_candidates(ImpactSearch& s, bool events_first) {
 }
 
 void find_frequency(ImpactSearch& s) {
-    std::vector<double> times;
-    for (const Candidate& c : s.candidates) times.push_back(c.tau);
     const MeasuredLoad* load = s.measurement.forcing.load.get();
-    s.values[Unknown::Omega] = load ? load->Omega : scanned_frequency(fit_input(s), times);
+    s.values[Unknown::Omega] = load ? load->Omega : scanned_frequency(fit_input(s), s.candidates);
 }
 
 /// Number of impacts without an event in the acceleration.
 std::ptrdiff_t unseen_count(const ImpactSearch& s) {
     return std::ranges::count_if(s.candidates, [](const Candidate& c) {
-        return c.height == 0 && c.is_impact() && !c.is_predicted();
+        return c.height == 0 && c.is_impact() && !c.is_predicted;
     });
 }
 
@@ -69,12 +194,15 @@ std::ptrdiff_t unseen_count(const ImpactSearch& s) {
 /// errors of the acceleration.
 void fit_displacement_first(ImpactSearch& s) {
     s.displacement = {s.record.tau, s.record.x, {}};
+    for (Candidate& c : s.candidates)
+        if (c.height != 0) c.pulse_tau = c.event, c.pulse_error = event_steps * s.statistics.step;
     fit_motion_and_pulses(s);
     release_oscillator(s);
     // If nearly all impacts have a pulse, none needs to be found.
     fit_until_settled(s, 20 * unseen_count(s) > impact_count(s) ? 2 : 1);
     if (restore_given_oscillator(s)) fit_until_settled(s, 1);
     s.displacement.reset();
+    for (Candidate& c : s.candidates) c.pulse_error = infinity;
 }
 
 /// Sets velocities to NaN that no data determine: next to the ends of the record and to its gaps,
@@ -90,10 +218,11 @@ void clear_unknown_velocities(ImpactSearch& s) {
     }
 }
 
-/// The result: the visible impacts, and the times without one.
+/// The result: the visible impacts, and the times of pulses, or given times, without one.
 void report_impacts(ImpactSearch& s) {
-    for (const RejectedCandidate& d : s.rejected)
-        if (d.is_shown && std::ranges::none_of(s.candidates, [&](const Candidate& c) {
+    for (const Candidate& d : s.rejected)
+        if ((d.height != 0 || !s.searches()) &&
+            std::ranges::none_of(s.candidates, [&](const Candidate& c) {
                 return std::abs(c.tau - d.tau) < closest_impacts;
             }))
             s.found.dropped.push_back(d.tau);
@@ -103,9 +232,8 @@ void report_impacts(ImpactSearch& s) {
     clear_unknown_velocities(s);
     std::vector<FittedImpact> impacts;
     for (std::size_t i = 0; i < s.candidates.size(); ++i) {
-        if (!s.candidates[i].is_impact() || s.candidates[i].is_predicted()) continue;
+        if (!s.candidates[i].is_impact() || s.candidates[i].is_predicted) continue;
         impacts.push_back(s.found.fit.impacts[i]);
-        s.found.side.push_back(s.sides[i]);
     }
     s.found.fit.impacts = std::move(impacts);
     s.found.extent = s.spoiled.a;
@@ -144,6 +272,31 @@ double contradicting_share(const FoundImpacts& f) {
 }
 
 }  // namespace
+
+void fit_motion_and_pulses(ImpactSearch& s) {
+    fit_motion(s);
+    const JointFit& fit = s.found.fit;
+    if (!s.record.x.empty()) s.spoiled.x = kink_extent(s, fit);
+    if (s.record.x_ddot.empty() || s.displacement) return;
+    s.spoiled.a = pulse_extent(s, fit);
+    limit_pulse_extent(s);
+    std::vector<double> times = values_of(fit.impacts, &FittedImpact::tau);
+    const double late = event_delay(s);
+    // The template sharpens the times, and these the template.
+    for (int alignment = 0; alignment < alignments; ++alignment) {
+        s.found.pulse = PulseTemplate(s, fit, times, s.spoiled.a);
+        for (std::size_t i = 0; i < s.candidates.size(); ++i) {
+            Candidate& c = s.candidates[i];
+            if (!c.is_impact()) continue;
+            s.progress.tick();
+            const double other = c.height != 0 ? c.event - late : fit.impacts[i].tau;
+            const PulseTime m = pulse_time(s, s.found.pulse, fit, i, other);
+            c.pulse_tau = m.tau, times[i] = m.with_x;
+            c.pulse_error = elementary::hypot(m.error, s.found.pulse.time_error());
+        }
+    }
+    s.values[Unknown::pulse_lag] = 0;
+}
 
 FoundImpacts find_impacts(const Measurement& m, IdentificationProgress& progress) {
     progress.reach(IdentificationStage::spikes);

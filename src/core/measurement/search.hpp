@@ -9,22 +9,9 @@
 
 namespace vines {
 
-/// A fitted impact at a wall, without the mass.
-inline IdentifiedImpact at_wall(const FittedImpact& m, int side) {
-    return {
-        .tau = m.tau,
-        .side = side,
-        .x = m.x,
-        .x_dot_before = m.x_dot_before,
-        .x_dot_after = m.x_dot_after,
-        .x_ddot_before = m.x_ddot_before,
-        .tau_error = m.tau_error};
-}
-
 struct FoundImpacts {
     JointFit fit;
     bool with_mass = false;     ///< the mass was part of the fit: its R and b are fitted
-    std::vector<int> side;      ///< wall of each impact: sign of x - y
     std::vector<TimeGap> gaps;  ///< gaps of the record that can hide an impact
     PulseTemplate pulse;
     PulseExtent extent{0, 0};

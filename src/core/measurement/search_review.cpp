@@ -1,8 +1,10 @@
 // Review of a fit: drops candidates that are not impacts, and adds impacts that were overlooked,
-// round by round until nothing changes.
+// round by round until nothing changes. Then a run of the identified system predicts contacts that
+// no sample shows, and these become candidates of the next fit.
 #include <algorithm>
 #include <cmath>
 
+#include "core/measurement/hidden_contacts.hpp"
 #include "core/measurement/search_state.hpp"
 
 namespace vines {
@@ -43,7 +45,7 @@ public:
     /// 0 for an impact; otherwise larger for weaker evidence.
     double weakness(std::size_t i) const {
         const Candidate& c = candidates_[i];
-        if (!c.is_impact() || c.is_predicted() || !is_none(i)) return 0;
+        if (!c.is_impact() || c.is_predicted || !is_none(i)) return 0;
         return 1 / (std::abs(c.jump) / fit_.impacts[i].jump_error() + 1e-9);
     }
 
@@ -52,7 +54,7 @@ public:
     /// it flies at most fastest_flight times its typical speed.
     bool follow_too_soon(std::size_t i) const {
         const Candidate &a = candidates_[i], &b = candidates_[i + 1];
-        if (!a.is_impact() || !b.is_impact() || a.is_predicted() || b.is_predicted()) return false;
+        if (!a.is_impact() || !b.is_impact() || a.is_predicted || b.is_predicted) return false;
         const bool one_wall = a.jump * b.jump > 0;
         // The jump next to a false candidate can be far too large.
         const double jump = std::min(std::abs(a.jump + b.jump), typical_);
@@ -117,15 +119,14 @@ std::vector<Candidate> overlooked_pulses(const ImpactSearch& s) {
     const JointFit& fit = s.found.fit;
     const PulseExtent& extent = s.spoiled.a;
     const MeasuredRecord& r = s.record;
-    std::vector<char> passed_over = s.bad.a_without_clipped();
+    std::vector<char> passed_over = s.statistics.a_held;
     for (const FittedImpact& i : fit.impacts) {
         const double from = i.tau - std::max(extent.before, closest_impacts),
                      to = i.tau + std::max(extent.after, closest_impacts);
         for (std::size_t k = first_index(r, from); k < r.tau.size() && r.tau[k] < to; ++k)
             passed_over[k] = 1;
     }
-    std::vector<Candidate> found =
-        pulse_events(s, {fit.a_residual, fit.noise_a}, passed_over).events;
+    std::vector<Candidate> found = pulse_events(s, {fit.a.left, fit.a.noise}, passed_over).events;
     const auto impacts = static_cast<double>(fit.impacts.size());
     if (static_cast<double>(found.size()) > most_overlooked * impacts) found.clear();
     return found;
@@ -135,7 +136,7 @@ void add_overlooked_kinks(const ImpactSearch& s, std::vector<Candidate>& found) 
     const JointFit& fit = s.found.fit;
     const UnknownValues& v = fit.values;
     const IntervalFlows flows(v, false, fit.epsilon, fit.forcing.load.get());
-    const double noise = std::max(fit.noise_x, s.statistics.x.noise);
+    const double noise = std::max(fit.x.noise, s.statistics.x.noise);
     for (std::size_t i = 0; i < fit.intervals.size(); ++i) {
         s.progress.look();
         const double from = fit.intervals[i].tau + s.spoiled.x,
@@ -143,7 +144,7 @@ void add_overlooked_kinks(const ImpactSearch& s, std::vector<Candidate>& found) 
                                                         : s.record.tau.back()) -
                           s.spoiled.x;
         const auto missed = find_kink(
-            {s.record, fit.x_residual, s.bad.x, noise, v[Unknown::x_delay], from, to},
+            {s.record, fit.x.left, s.statistics.x.bad, noise, v[Unknown::x_delay], from, to},
             flows.of(fit.intervals[i]).parts.flow, false);
         if (missed)
             found.push_back({.tau = missed->tau, .jump = missed->jump / v[Unknown::x_gain]});
@@ -154,11 +155,8 @@ void add_overlooked_kinks(const ImpactSearch& s, std::vector<Candidate>& found) 
 bool drop_false_impacts(ImpactSearch& s) {
     const std::vector<char> none = false_candidates(s);
     std::vector<Candidate> kept;
-    for (std::size_t i = 0; i < s.candidates.size(); ++i) {
-        const Candidate& c = s.candidates[i];
-        if (none[i]) s.rejected.push_back({c.tau, c.height != 0 || !s.searches()});
-        else kept.push_back(c);
-    }
+    for (std::size_t i = 0; i < s.candidates.size(); ++i)
+        (none[i] ? s.rejected : kept).push_back(s.candidates[i]);
     const bool any = kept.size() < s.candidates.size();
     s.candidates = std::move(kept);
     return any;
@@ -169,11 +167,11 @@ bool drop_false_impacts(ImpactSearch& s) {
 /// any.
 bool add_overlooked_impacts(ImpactSearch& s) {
     std::vector<Candidate> overlooked;
-    if (!s.found.fit.a_residual.empty()) overlooked = overlooked_pulses(s);
+    if (!s.found.fit.a.left.empty()) overlooked = overlooked_pulses(s);
     if (!s.record.x.empty()) add_overlooked_kinks(s, overlooked);
     bool any = false;
     for (const Candidate& c : overlooked) {
-        const auto times = std::ranges::count_if(s.rejected, [&](const RejectedCandidate& d) {
+        const auto times = std::ranges::count_if(s.rejected, [&](const Candidate& d) {
             return std::abs(d.tau - c.tau) < same_steps * s.statistics.step;
         });
         if (times >= most_rejections || is_in_gap(s, c.tau)) continue;
@@ -206,6 +204,141 @@ void fit_until_settled(ImpactSearch& s, int least_rounds) {
         if (s.found.settled && round >= least_rounds) return;
     }
     if (!s.found.settled) fit_motion_and_pulses(s);
+}
+
+namespace {
+
+// Later rounds need more changes than this fraction of the impacts.
+constexpr double few_changes = 0.02;
+// An impact is certain if its jump of x' agrees with its pulse within this fraction. The jump of a
+// candidate that replaces several hidden impacts does not.
+constexpr double kept_promise = 0.3;
+// Tolerance in x and x' for reaching an impact, relative to the typical jump.
+constexpr double hidden_tolerance = 0.05;
+
+/// Candidates and impacts that the measurement itself shows, without predicted ones.
+struct ShownImpacts {
+    std::vector<Candidate> candidates = {};
+    std::vector<IdentifiedImpact> impacts = {};
+    std::vector<char> doubtful = {};  ///< for each impact: can be an artefact of hidden contacts
+    double jump_error = 0;            ///< median standard error of the jumps of x'
+};
+
+ShownImpacts shown_impacts(const ImpactSearch& s) {
+    ShownImpacts shown;
+    const double ratio = jump_to_height(s.candidates);
+    std::vector<double> errors;
+    for (std::size_t i = 0; i < s.candidates.size(); ++i) {
+        const Candidate& c = s.candidates[i];
+        if (c.is_predicted) continue;
+        shown.candidates.push_back(c);
+        shown.candidates.back().sticks = false;
+        if (!c.is_impact()) continue;
+        const FittedImpact& m = s.found.fit.impacts[i];
+        shown.impacts.push_back(m);
+        const double promised = ratio * std::abs(c.height);
+        shown.doubtful.push_back(
+            s.searches() && !(std::abs(std::abs(m.jump()) - promised) <
+                              kept_promise * promised + 2 * m.jump_error()));
+        errors.push_back(m.jump_error());
+    }
+    shown.jump_error = median(std::move(errors));
+    return shown;
+}
+
+/// The given system with the identified Omega, b and R.
+Parameters identified_parameters(const ImpactSearch& s) {
+    const UnknownValues& v = s.mass_values;
+    Parameters p = s.parameters;
+    p.Omega = v[Unknown::Omega];
+    p.b = v[Unknown::b];
+    p.R_plus = std::clamp(v[Unknown::R_plus], 0.0, 1.0);
+    p.R_minus = std::clamp(v[Unknown::R_minus], 0.0, 1.0);
+    return p;
+}
+
+/// Removes measured candidates at which the run has no impact.
+std::vector<Candidate> confirmed_candidates(
+    const std::vector<Candidate>& shown, const std::vector<HiddenContacts>& hidden) {
+    std::vector<Candidate> kept;
+    auto next = hidden.begin();
+    std::size_t impact = 0;
+    for (const Candidate& c : shown) {
+        if (!c.is_impact()) {
+            kept.push_back(c);
+            continue;
+        }
+        while (next != hidden.end() && next->to <= impact) ++next;
+        const bool is_between = next != hidden.end() && impact > next->from;
+        if (!is_between || std::ranges::any_of(next->impacts, [&](const RunImpact& r) {
+                return r.shown == impact;
+            }))
+            kept.push_back(c);
+        ++impact;
+    }
+    return kept;
+}
+
+/// Adds the hidden contacts that need an interval. At the end of a chatter the centre of mass
+/// moves as if both masses stuck together. `side`: wall of the impact before.
+void add_predicted(
+    const ImpactSearch& s, const HiddenContacts& h, int side, double error,
+    std::vector<Candidate>& all) {
+    const auto release = [&](const std::optional<Release>& r, int wall) {
+        if (r)
+            all.push_back(
+                {.tau = r->tau, .border = Border::release, .side = wall, .is_predicted = true});
+    };
+    release(h.release, side);
+    double before = -infinity;
+    for (const RunImpact& r : h.impacts) {
+        if (!r.shown && std::abs(r.jump()) > error && r.tau - before > 3 * s.statistics.step)
+            all.push_back({.tau = r.tau, .jump = r.jump(), .side = r.side, .is_predicted = true});
+        before = r.tau;
+        release(r.release, r.side);
+    }
+}
+
+/// Number of differences between these candidates and the current ones.
+std::size_t differences_to(const ImpactSearch& s, const std::vector<Candidate>& all) {
+    const auto same = [&](const Candidate& a, const Candidate& b) {
+        return a.border == b.border && a.sticks == b.sticks && a.is_predicted == b.is_predicted &&
+               (a.side == b.side || !a.is_predicted) && std::abs(a.tau - b.tau) < s.statistics.step;
+    };
+    std::size_t matched = 0, i = 0, k = 0;
+    while (i < all.size() && k < s.candidates.size())
+        if (same(all[i], s.candidates[k])) ++matched, ++i, ++k;
+        else all[i].tau < s.candidates[k].tau ? ++i : ++k;
+    return all.size() + s.candidates.size() - 2 * matched;
+}
+
+}  // namespace
+
+bool add_hidden_contacts(ImpactSearch& s) {
+    if (!(s.mass_values[Unknown::b] > 0)) return false;
+    const ShownImpacts shown = shown_impacts(s);
+    const double typical = typical_jump(s.candidates);
+    const IdentifiedSystem system(
+        identified_parameters(s), s.found.fit.values, s.found.fit.tau_middle);
+    s.found.hidden_contact_limits = {
+        .tolerance = hidden_tolerance * typical,
+        .typical_flight = (s.record.tau.back() - s.record.tau.front()) /
+                          static_cast<double>(shown.impacts.size()),
+        .most_seen = s.searches() ? HiddenContactLimits{}.most_seen : 0,
+        .gaps = s.found.gaps};
+    const std::vector<HiddenContacts> hidden =
+        hidden_contacts(system, s.found.hidden_contact_limits, shown.impacts, shown.doubtful);
+    std::vector<Candidate> all = confirmed_candidates(shown.candidates, hidden);
+    for (const HiddenContacts& h : hidden)
+        add_predicted(s, h, shown.impacts[h.from].side, shown.jump_error, all);
+    std::ranges::sort(all, {}, &Candidate::tau);
+    for (std::size_t i = 1; i < all.size(); ++i)
+        if (all[i].border == Border::release) all[i - 1].sticks = true;
+    const double least =
+        s.hidden_rounds++ == 0 ? 0 : few_changes * static_cast<double>(s.candidates.size());
+    s.candidates_changed = static_cast<double>(differences_to(s, all)) > least;
+    if (s.candidates_changed) s.candidates = std::move(all);
+    return s.candidates_changed;
 }
 
 }  // namespace vines

@@ -118,10 +118,9 @@ void settled_motion(Report& report, const Experiment& settled, double of_figure_
 
 /// Exponents of a record with transfer matrices of given parameters.
 IdentifiedExponents judged_by(const Experiment& e, const Parameters& p) {
-    const MeasuredOscillator oscillator = MeasuredOscillator::given(p);
     const MeasuredExponents exponents(
-        p, oscillator, e.result.found.impacts, e.result.continuity.stretches, qr_alone);
-    return judge_exponents(oscillator, exponents, is_representative(e.result.found.impacts));
+        p, given_unknowns(p), e.result.found.impacts, e.result.continuity.stretches, qr_alone);
+    return judge_exponents(exponents, e.result.found.impacts);
 }
 IdentifiedExponents by_closed_form(const Experiment& e) {
     Parameters p = e.result.parameters;

@@ -97,8 +97,8 @@ TEST_CASE(
         CAPTURE(corner);
         const MeasurementResult r =
             identified(measured(motion, {.low_pass_x = corner, .low_pass_a = corner}));
-        CHECK(r.refined->fit.misfit_x < 1.1);
-        CHECK(r.refined->fit.misfit_a < 1.1);
+        CHECK(r.refined->fit.x.misfit < 1.1);
+        CHECK(r.refined->fit.a.misfit < 1.1);
         CHECK(r.judged.verdict == Verdict::chaotic);
     }
 }

@@ -37,9 +37,9 @@ TEST_CASE(
             const Continuity c = continuity_of(motion.parameters, impacts, {});
             CHECK(c.left_out == 0);
             CHECK(c.share == doctest::Approx(share).epsilon(0.35));
-            const MeasuredOscillator oscillator = MeasuredOscillator::given(motion.parameters);
             const MeasuredExponents e(
-                motion.parameters, oscillator, impacts, c.stretches, all_estimators);
+                motion.parameters, given_unknowns(motion.parameters), impacts, c.stretches,
+                all_estimators);
             CHECK(
                 std::abs(e.all().qr()[0] - lambda1) <
                 (b == 0.009 ? 3e-4 : 0.05 * lambda1 * (1 + 10 * share)));
@@ -49,8 +49,7 @@ TEST_CASE(
             CHECK(
                 e.moment(e.all().end_tau()) ==
                 doctest::Approx(impacts[c.stretches.back().last].tau).epsilon(1e-12));
-            const IdentifiedExponents judged =
-                judge_exponents(oscillator, e, is_representative(impacts));
+            const IdentifiedExponents judged = judge_exponents(e, impacts);
             CHECK(judged.verdict == (b == 0.009 ? Verdict::regular : Verdict::chaotic));
             CHECK(judged.slope.value == doctest::Approx(lambda1).epsilon(b == 0.009 ? 0.05 : 0.2));
             // No product across a gap exists: these use the longest stretch.
@@ -75,7 +74,6 @@ TEST_CASE("nine of ten 90 % intervals of the slope contain the long-run exponent
         const TrueMotion motion = settled_motion(0.015, 0.85, 0.85, windows * c.seconds);
         const std::vector<IdentifiedImpact> all = listed(motion.impacts);
         const double lambda1 = motion.exponents.qr()[0];
-        const MeasuredOscillator oscillator = MeasuredOscillator::given(motion.parameters);
         int held = 0;
         double width = 0;
         auto from = all.begin();
@@ -87,7 +85,7 @@ TEST_CASE("nine of ten 90 % intervals of the slope contain the long-run exponent
             from = to;
             complete_impacts(motion.parameters, some, 0);
             const MeasuredExponents e(
-                motion.parameters, oscillator, some,
+                motion.parameters, given_unknowns(motion.parameters), some,
                 continuity_of(motion.parameters, some, {}).stretches, qr_alone);
             const MeasuredSlope s = e.slope();
             held += s.low < lambda1 && lambda1 < s.high;
@@ -111,7 +109,7 @@ TEST_CASE("a list of impacts without a chatter and its sticking phase is complet
     set_flight_velocities(motion.parameters, list);
     complete_impacts(motion.parameters, list, 0);
     const MeasuredExponents exponents(
-        motion.parameters, MeasuredOscillator::given(motion.parameters), list,
+        motion.parameters, given_unknowns(motion.parameters), list,
         continuity_of(motion.parameters, list, {}).stretches, qr_alone);
     CHECK(exponents.all().qr()[0] == doctest::Approx(motion.exponents.qr()[0]).epsilon(0.01));
 }
@@ -136,7 +134,7 @@ TEST_CASE("impacts missing from a list are inserted at their true times, and no 
         set_flight_velocities(p, list);
         complete_impacts(p, list, 0);
         const MeasuredExponents e(
-            p, MeasuredOscillator::given(p), list, continuity_of(p, list, {}).stretches, qr_alone);
+            p, given_unknowns(p), list, continuity_of(p, list, {}).stretches, qr_alone);
         const double lambda1 = motion.exponents.qr()[0];
         CHECK(std::abs(e.all().qr()[0] - lambda1) < 0.03 * std::abs(lambda1));
     }
@@ -154,13 +152,10 @@ TEST_CASE("a chaotic motion that is synchronised for a while is not called regul
                     all.begin() + static_cast<std::ptrdiff_t>(from),
                     all.begin() + static_cast<std::ptrdiff_t>(from + n));
                 complete_impacts(motion.parameters, some, 0);
-                const MeasuredOscillator oscillator = MeasuredOscillator::given(motion.parameters);
                 const MeasuredExponents e(
-                    motion.parameters, oscillator, some,
+                    motion.parameters, given_unknowns(motion.parameters), some,
                     continuity_of(motion.parameters, some, {}).stretches, qr_alone);
-                CHECK(
-                    judge_exponents(oscillator, e, is_representative(some)).verdict !=
-                    Verdict::regular);
+                CHECK(judge_exponents(e, some).verdict != Verdict::regular);
             }
     }
 }

@@ -5,7 +5,7 @@
 #include <numbers>
 
 #include "../../laboratory/unmodelled.hpp"
-#include "core/measurement/hum.hpp"
+#include "core/measurement/measured_record.hpp"
 #include "core/motion/elementary.hpp"
 
 using namespace vines;
