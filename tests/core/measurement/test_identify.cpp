@@ -38,7 +38,7 @@ void check(const Experiment& m, const MeasurementResult& r) {
         const Impact* nearest = &nearest_impact(m, fitted[k].tau);
         time_errors.push_back(std::abs(nearest->tau - fitted[k].tau) / m.omega0);
         CHECK(time_errors.back() < 1e-3);  // no false impacts
-        CHECK(r.refined->side[k] == nearest->side);
+        CHECK(fitted[k].side == nearest->side);
         velocity_errors.push_back(
             std::max(
                 std::abs(fitted[k].x_dot_before - nearest->x_dot_before),
