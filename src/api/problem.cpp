@@ -71,6 +71,8 @@ std::string Problem::body(const std::string& request_id) const {
 
 std::string_view reason_phrase(int status) {
     switch (status) {
+        case 200: return "OK";
+        case 304: return "Not Modified";
         case 400: return "Bad Request";
         case 401: return "Unauthorized";
         case 403: return "Forbidden";

@@ -55,8 +55,7 @@ std::optional<Response> body_refusal(const Head& head, std::size_t limit) {
     return std::nullopt;
 }
 
-}  // namespace
-
+/// The refusal of a head that is unacceptable from any client. route: null if no route matches.
 std::optional<Response> request_refusal(
     const Head& head, const Route* route, const std::vector<Route>& routes,
     std::size_t body_limit) {
@@ -65,7 +64,7 @@ std::optional<Response> request_refusal(
         return problem_response(
             416, "this service does not send parts of an answer; leave out the Range header");
     if (!route) {
-        const std::string path = api::shortened(std::string(head.path()));
+        const std::string path = api::shortened(head.path());
         const std::string methods = allowed_methods(routes, head.path());
         if (methods.empty())
             return problem_response(404, fmt::format("there is nothing at {}", path));
@@ -76,6 +75,8 @@ std::optional<Response> request_refusal(
     }
     return body_refusal(head, std::max(body_limit, route->body_limit));
 }
+
+}  // namespace
 
 // --- API keys ---
 
@@ -158,6 +159,12 @@ bool is_name(const std::string& host) {
            !whole_number(labels.back());
 }
 
+/// True for localhost, names below it, and loopback addresses: 127.0.0.1, [::1].
+bool is_loopback(std::string_view host) {
+    return host == "localhost" || host.ends_with(".localhost") || host == "[::1]" ||
+           host == "::1" || (is_address(host) && host.substr(0, 4) == "127.");
+}
+
 /// DNS rebinding: an attacker's page has a host name with a dot, registered by the attacker, who
 /// can make it resolve to this machine. Names without a dot and addresses of this machine are
 /// therefore safe.
@@ -166,8 +173,8 @@ bool is_allowed_host(std::string_view host, const AccessOptions& options) {
         return name == "*" || lower_case(name) == host;
     };
     return is_loopback(host) || host.find_first_of(".:") == std::string_view::npos ||
-           host == host_of(in_url(options.listens_on)) ||
-           (!is_loopback(options.listens_on) && is_address(host)) ||
+           host == host_of(in_url(options.host)) ||
+           (!is_loopback(options.host) && is_address(host)) ||
            std::any_of(options.hosts.begin(), options.hosts.end(), allows);
 }
 
@@ -212,26 +219,7 @@ Response key_refusal() {
     return response;
 }
 
-}  // namespace
-
-bool is_loopback(std::string_view host) {
-    return host == "localhost" || host.ends_with(".localhost") || host == "[::1]" ||
-           host == "::1" || (is_address(host) && host.substr(0, 4) == "127.");
-}
-
-bool is_origin(std::string_view text) {
-    if (!text.starts_with("http://") && !text.starts_with("https://")) return false;
-    const std::string_view authority = text.substr(text.find("//") + 2),
-                           port = authority.substr(host_length(authority));
-    const std::string host = host_of(authority);
-    return (is_address(host) || is_name(host)) &&
-           (port.empty() || whole_number(port.substr(1), 1, 65535));
-}
-
-std::string in_url(const std::string& address) {
-    return address.find(':') == std::string::npos ? address : "[" + address + "]";
-}
-
+/// The refusal by host name, origin or key.
 std::optional<Response> access_refusal(
     const Head& head, const Route* route, std::string_view key, const AccessOptions& options) {
     const std::string host = host_of(head.host);
@@ -249,9 +237,44 @@ std::optional<Response> access_refusal(
     return std::nullopt;
 }
 
+/// True for a CORS preflight of an allowed origin (Fetch, 3.2.2).
 bool is_preflight(const Head& head, const AccessOptions& options) {
     return head.method == "OPTIONS" && head.has("access-control-request-method") &&
            is_allowed_origin(head, options);
+}
+
+}  // namespace
+
+bool is_origin(std::string_view text) {
+    if (!text.starts_with("http://") && !text.starts_with("https://")) return false;
+    const std::string_view authority = text.substr(text.find("//") + 2),
+                           port = authority.substr(host_length(authority));
+    const std::string host = host_of(authority);
+    return (is_address(host) || is_name(host)) &&
+           (port.empty() || whole_number(port.substr(1), 1, 65535));
+}
+
+std::string in_url(const std::string& address) {
+    return address.find(':') == std::string::npos ? address : "[" + address + "]";
+}
+
+void check_head(
+    Exchange& exchange, const std::string& peer, const std::vector<Route>& routes,
+    const AccessOptions& options) {
+    // Its content is in its headers.
+    static const Route preflight = {
+        .name = "preflight",
+        .answer = [](Request&) { return Response{.body = "{}\n"}; },
+        .on_event_loop = true};
+    const Head& head = exchange.request.head;
+    Sender& sender = exchange.request.sender;
+    sender.address = client_address(head, peer, options.proxies);
+    if (options.keys) sender.key = options.keys->name_of(head.header("authorization"));
+    exchange.route = find_route(routes, head.method, head.path());
+    exchange.refused = access_refusal(head, exchange.route, sender.key, options);
+    if (exchange.refused) return;
+    if (is_preflight(head, options)) exchange.route = &preflight;
+    exchange.refused = request_refusal(head, exchange.route, routes, options.payload_limit);
 }
 
 std::vector<std::pair<std::string, std::string>> cors_headers(

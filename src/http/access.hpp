@@ -22,11 +22,6 @@ namespace vines::http {
 const Route* find_route(
     const std::vector<Route>& routes, std::string_view method, std::string_view path);
 
-/// The refusal of a head that is unacceptable from any client; nothing if it is acceptable.
-/// route: null if no route matches; body_limit: bytes, for routes without their own limit.
-std::optional<Response> request_refusal(
-    const Head& head, const Route* route, const std::vector<Route>& routes, std::size_t body_limit);
-
 /// The keys of a file, one per line; empty lines and lines that start with # are skipped.
 class ApiKeys {
 public:
@@ -61,30 +56,27 @@ private:
 };
 
 struct AccessOptions {
-    std::string listens_on = "127.0.0.1";  ///< address of the listening socket
+    std::string host = "127.0.0.1";  ///< address to listen on
     /// Host names accepted in addition to loopback names and names without a dot; "*": any.
     std::vector<std::string> hosts;
     /// Origins whose pages may use the service, such as https://example.org; "*": all.
     std::vector<std::string> origins;
     std::shared_ptr<const ApiKeys> keys;  ///< null: requests need none
     Networks proxies;                     ///< whose X-Forwarded-For is believed
+    std::size_t payload_limit = 1 << 20;  ///< largest body of a route without its own limit, bytes
 };
 
-/// Problem 421 for a request to a host name that is not this server's, as in DNS rebinding; 403 for
-/// a cross-origin request, unless its origin is allowed or it follows a link (but not into a
-/// frame); 401 for a route that needs a key, without a valid one. Nothing if the request is
-/// allowed. route: null if no route matches; key: name of the request's API key.
-std::optional<Response> access_refusal(
-    const Head& head, const Route* route, std::string_view key, const AccessOptions& options);
-
-/// True for a CORS preflight of an allowed origin (Fetch, 3.2.2).
-bool is_preflight(const Head& head, const AccessOptions& options);
+/// Sets the sender of an exchange, its route and, if its head is unacceptable, its refusal: problem
+/// 421 for a host name that is not this server's, as in DNS rebinding; 403 for a cross-origin
+/// request, unless its origin is allowed or it follows a link (but not into a frame); 401 for a
+/// route that needs a key, without a valid one; others for what is unacceptable from any client.
+/// peer: the other end's address. The routes must outlive the exchange.
+void check_head(
+    Exchange& exchange, const std::string& peer, const std::vector<Route>& routes,
+    const AccessOptions& options);
 
 std::vector<std::pair<std::string, std::string>> cors_headers(
     const Head& head, const AccessOptions& options);
-
-/// True for localhost, names below it, and loopback addresses: 127.0.0.1, [::1].
-bool is_loopback(std::string_view host);
 
 /// True for http:// or https://, a host (a name, an IPv4 address, or an IPv6 address in brackets)
 /// and optionally a port from 1 to 65535.

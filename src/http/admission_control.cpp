@@ -16,25 +16,35 @@ constexpr auto give_up_check = std::chrono::milliseconds(50);
 // Grace periods at once per slot: they share its core.
 constexpr int graces_per_slot = 4;
 
+// Bodies up to this size need no permit. Larger ones run together up to `bodies_at_once` bytes, or
+// one alone. While they are read and computed they take up to fifteen times their size, one of the
+// largest up to 340 MB. Bytes.
+constexpr std::size_t immediate_body = 1 << 20, bodies_at_once = 16 << 20;
+
 }  // namespace
 
-/// Gives each free slot to the next in the queue, and wakes only that thread.
-void AdmissionControl::assign_slots() {
-    while (free_ > 0 && !(foreground_.empty() && background_.empty())) {
-        Waiter& next = **(foreground_.empty() ? background_ : foreground_).pop();
-        --free_;
+/// Grants what is free to the next in the queues, and wakes only these threads.
+void AdmissionControl::assign() {
+    const auto grant_next = [](Queue& queue) -> Waiter& {
+        Waiter& next = **queue.pop();
         next.granted = true;
         next.changed.notify_one();
-    }
+        return next;
+    };
+    for (; free_ > 0 && !(foreground_.empty() && background_.empty()); --free_)
+        grant_next(foreground_.empty() ? background_ : foreground_);
     foreground_waits_ = !foreground_.empty();
     background_waits_ = !background_.empty();
+    while (!bodies_.empty() &&
+           (bodies_in_work_ == 0 || bodies_in_work_ + bodies_.front()->bytes <= bodies_at_once))
+        bodies_in_work_ += grant_next(bodies_).bytes;
 }
 
-/// Ends a wait; returns whether it got a slot.
+/// Ends a wait; returns whether it was granted.
 bool AdmissionControl::end_wait(Queue& queue, Waiter& waiter) {
     if (waiter.granted) return true;
     queue.remove(&waiter);
-    assign_slots();
+    assign();
     return false;
 }
 
@@ -44,8 +54,13 @@ void AdmissionControl::displace_last(Queue& queue) {
     last.changed.notify_one();
 }
 
-/// Waits until the waiter is granted what it waits for, is displaced, or gives up.
-void AdmissionControl::wait(Lock& lock, Waiter& waiter, const std::function<bool()>& gives_up) {
+/// Waits in a queue until the waiter is granted what it waits for, is displaced, or gives up.
+/// Returns whether it was granted.
+bool AdmissionControl::wait(
+    Lock& lock, Queue& queue, const std::string& client, Waiter& waiter,
+    const std::function<bool()>& gives_up) {
+    queue.push(client, &waiter);
+    assign();
     bool given_up = false;
     while (!waiter.granted && !waiter.displaced && !given_up) {
         waiter.changed.wait_for(lock, give_up_check);
@@ -54,6 +69,7 @@ void AdmissionControl::wait(Lock& lock, Waiter& waiter, const std::function<bool
         given_up = gives_up();
         lock.lock();
     }
+    return end_wait(queue, waiter);
 }
 
 bool AdmissionControl::is_full() const {
@@ -85,10 +101,7 @@ AdmissionControl::Slot AdmissionControl::acquire(
         displace_last(foreground_);
     }
     Waiter waiter;
-    foreground_.push(client, &waiter);
-    assign_slots();
-    wait(lock, waiter, gives_up);
-    return Slot(end_wait(foreground_, waiter) ? this : nullptr);
+    return Slot(wait(lock, foreground_, client, waiter, gives_up) ? this : nullptr);
 }
 
 AdmissionControl::Slot AdmissionControl::acquire_background(
@@ -96,21 +109,21 @@ AdmissionControl::Slot AdmissionControl::acquire_background(
     std::unique_lock lock(mutex_);
     Waiter waiter;
     background_.push(client, &waiter);
-    assign_slots();
+    assign();
     // The wait registers with the token before it checks the condition, so that no stop is missed.
     // The thread that requests the stop must not hold the mutex, and cannot.
     waiter.changed.wait(lock, stop, [this, &waiter] { return waiter.granted || sweeps_stopped_; });
     if (!end_wait(background_, waiter)) return nullptr;
     if (!sweeps_stopped_) return Slot(this);
     ++free_;
-    assign_slots();
+    assign();
     return nullptr;
 }
 
 void AdmissionControl::release() {
     const std::lock_guard lock(mutex_);
     ++free_;
-    assign_slots();
+    assign();
 }
 
 AdmissionControl::SweepSlot AdmissionControl::acquire_sweep(const std::string& client) {
@@ -135,11 +148,6 @@ bool AdmissionControl::sweeps_left() const {
 
 namespace {
 
-// Bodies up to this size need no permit. Larger ones run together up to `bodies_at_once` bytes, or
-// one alone. While they are read and computed they take up to fifteen times their size, one of the
-// largest up to 340 MB. Bytes.
-constexpr std::size_t immediate_body = 1 << 20, bodies_at_once = 16 << 20;
-
 // Larger bodies that wait, and their bytes; each occupies a worker.
 constexpr std::size_t most_waiting_bodies = 32, most_waiting_bytes = 256 << 20;
 
@@ -161,36 +169,19 @@ bool AdmissionControl::make_space(const std::string& client, std::size_t bytes) 
     return true;
 }
 
-void AdmissionControl::assign_body_permits() {
-    while (!bodies_.empty() &&
-           (bodies_in_work_ == 0 || bodies_in_work_ + bodies_.front()->bytes <= bodies_at_once)) {
-        Waiter& next = **bodies_.pop();
-        bodies_in_work_ += next.bytes;
-        next.granted = true;
-        next.changed.notify_one();
-    }
-}
-
 AdmissionControl::BodyPermit AdmissionControl::acquire_body(
     const std::string& client, std::size_t bytes, const std::function<bool()>& gives_up) {
     if (bytes <= immediate_body) return {this, [](void*) {}};
     std::unique_lock lock(mutex_);
     if (!make_space(client, bytes)) return nullptr;
     Waiter body{.bytes = bytes};
-    bodies_.push(client, &body);
-    assign_body_permits();
-    wait(lock, body, gives_up);
-    if (!body.granted) {
-        bodies_.remove(&body);
-        assign_body_permits();
-        return nullptr;
-    }
+    if (!wait(lock, bodies_, client, body, gives_up)) return nullptr;
     lock.unlock();
     return {this, [this, bytes](void*) {
                 trim_memory();
                 const std::lock_guard ending(mutex_);
                 bodies_in_work_ -= bytes;
-                assign_body_permits();
+                assign();
             }};
 }
 

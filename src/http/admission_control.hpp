@@ -115,12 +115,13 @@ private:
 
     bool is_full() const;
     bool has_sweeps_left() const { return static_cast<int>(sweeps_.size()) < limits_.sweeps; }
-    void assign_slots();
+    void assign();
     bool end_wait(Queue& queue, Waiter& waiter);
     static void displace_last(Queue& queue);
-    static void wait(Lock& lock, Waiter& waiter, const std::function<bool()>& gives_up);
+    bool wait(
+        Lock& lock, Queue& queue, const std::string& client, Waiter& waiter,
+        const std::function<bool()>& gives_up);
     bool make_space(const std::string& client, std::size_t bytes);
-    void assign_body_permits();
 
     const AdmissionLimits limits_;
     mutable std::mutex mutex_;

@@ -35,9 +35,9 @@ std::string client_address(const Head& head, const std::string& peer, const Netw
 std::string owner_of(const std::string& address);
 
 struct Sender {
-    std::string address;
+    std::string address = {};
     std::string key = {};  ///< name of the API key, if any
-    /// The unit of fairness.
+    /// The unit of fairness: whose turn a request takes.
     std::string client() const { return key.empty() ? owner_of(address) : "key " + key; }
 };
 

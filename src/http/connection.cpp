@@ -1,7 +1,6 @@
 #include "http/connection.hpp"
 
 #include <sys/socket.h>
-#include <unistd.h>
 
 #include <array>
 #include <cerrno>
@@ -51,25 +50,24 @@ void send_continue(int socket) {
 }  // namespace
 
 Connection::Connection(
-    int socket, std::string peer, const HeadCheck& check_head, MemoryBudget& memory)
+    int socket, std::string peer, const RequestHandler& handler, MemoryBudget& memory)
     : socket_(socket),
       peer_(std::move(peer)),
       owner_(owner_of(peer_)),
-      check_head_(check_head),
-      held_(memory),
-      sender_{.address = peer_},
-      waiting_since_(Clock::now()),
-      deadline_(waiting_since_ + head_time) {}
+      handler_(handler),
+      memory_(memory) {
+    wait_for_head(head_time);
+}
 
 Connection::~Connection() {
     if (delivery_) delivery_->outbox->cancel();
-    ::close(socket_);
+    memory_.count(held_, 0);
 }
 
 Connection::Progress Connection::advance() {
     try {
         const Progress progress = read_on();
-        if (progress == Progress::complete) complete_since_ = Clock::now();
+        if (progress == Progress::complete) exchange_->since = Clock::now();
         return progress;
     } catch (const std::bad_alloc&) {  // only this connection fails
         bytes_ = {};
@@ -84,61 +82,55 @@ Connection::Progress Connection::read_on() {
         const Progress progress = read_request();
         if (progress != Progress::waits || taken >= max_read) return progress;
         if (half_closed_) return Progress::ended;
-        const std::optional<std::size_t> size = receive(socket_, piece.data(), piece.size());
+        const std::optional<std::size_t> size = receive(socket(), piece.data(), piece.size());
         if (!size) return Progress::waits;
         half_closed_ = *size == 0;
-        if (bytes_.empty() && !half_closed_ && !head_) begin_request();
+        if (bytes_.empty() && !half_closed_ && !exchange_) wait_for_head(head_time);
         bytes_.append(piece.data(), *size);
-        held_.set(bytes_.capacity());
-        if (head_ && bytes_.size() >= expected_) expect_more();
+        hold(0);
+        if (exchange_ && bytes_.size() >= expected_) expect_more();
         taken += *size;
     }
 }
 
 Connection::Progress Connection::read_request() {
-    if (refused_) return Progress::complete;
     try {
-        if (!head_ && !bytes_.empty() && reader_.read(bytes_)) begin_body();
+        if (!exchange_ && !bytes_.empty() && reader_.read(bytes_)) begin_body();
     } catch (const api::Problem& problem) {
         refuse(problem_response(problem));
     }
-    if (!refused_ && exceeds_memory()) refused_ = memory_refusal();
-    if (refused_) return Progress::complete;
-    const bool whole = head_ && bytes_.size() >= head_->content_length;
+    if (!exchange_) return Progress::waits;
+    if (!exchange_->refused && exceeds_memory()) exchange_->refused = memory_refusal();
+    const bool whole = exchange_->refused || bytes_.size() >= body_size();
     return whole ? Progress::complete : Progress::waits;
 }
 
 /// Large bodies only: the number of connections bounds the small ones.
-bool Connection::exceeds_memory() const {
-    return head_ && head_->content_length > small_body && held_.memory().is_full();
-}
+bool Connection::exceeds_memory() const { return body_size() > small_body && memory_.is_full(); }
 
 Connection::Clock::time_point Connection::deadline(bool memory_is_scarce) const {
-    const bool is_large = head_ && !delivery_ && head_->content_length > small_body;
+    const bool is_large = exchange_ && !delivery_ && body_size() > small_body;
     return memory_is_scarce && is_large ? deadline_ - (body_time - scarce_body_time) : deadline_;
 }
 
-void Connection::begin_request() {
+void Connection::wait_for_head(Clock::duration time) {
     waiting_since_ = Clock::now();
-    deadline_ = waiting_since_ + head_time;
+    deadline_ = waiting_since_ + time;
 }
 
-void Connection::begin_waiting() {
-    waiting_since_ = Clock::now();
-    deadline_ = waiting_since_ + (bytes_.empty() ? Clock::duration(idle_time) : head_time);
-    hold(0);
+void Connection::begin_exchange() {
+    exchange_.emplace();
+    exchange_->request.head = reader_.take();
+    exchange_->request.sender.address = peer_;
 }
 
 void Connection::begin_body() {
-    head_ = reader_.take();
+    begin_exchange();
     bytes_.erase(0, reader_.size());
-    CheckedHead admitted = check_head_(*head_, peer_);
-    route_ = admitted.route;
-    sender_ = std::move(admitted.sender);
-    refused_ = std::move(admitted.refused);
-    if (refused_ || bytes_.size() >= head_->content_length) return;
+    handler_.check_head(*exchange_, peer_);
+    if (exchange_->refused || bytes_.size() >= body_size()) return;
     expect_more();
-    if (head_->expects_continue) send_continue(socket_);
+    if (exchange_->request.head.expects_continue) send_continue(socket());
 }
 
 void Connection::expect_more() {
@@ -147,26 +139,19 @@ void Connection::expect_more() {
 }
 
 void Connection::refuse(Response refusal) {
-    refused_ = std::move(refusal);
-    if (!head_) head_ = reader_.take();
-    complete_since_ = Clock::now();
+    if (!exchange_) begin_exchange();
+    exchange_->refused = std::move(refusal);
+    exchange_->since = Clock::now();
 }
 
 Exchange Connection::take() {
-    Exchange exchange;
-    exchange.since = complete_since_;
-    if (refused_) {
-        exchange.refused = std::exchange(refused_, {});
-        bytes_.clear();
-    }
-    exchange.head = std::move(*std::exchange(head_, {}));
-    exchange.route = std::exchange(route_, nullptr);
-    exchange.sender = std::exchange(sender_, {.address = peer_});
-    const std::size_t length = exchange.refused ? 0 : exchange.head.content_length;
+    const std::size_t length = exchange_->refused ? 0 : body_size();
+    if (exchange_->refused) bytes_.clear();
     // Moves the large buffer out with the body.
     std::string rest = bytes_.substr(length);
     bytes_.resize(length);
-    exchange.body = std::exchange(bytes_, std::move(rest));
+    exchange_->request.body = std::exchange(bytes_, std::move(rest));
+    Exchange exchange = *std::exchange(exchange_, {});
     reader_ = HeadReader();
     served_ = true;
     return exchange;
@@ -178,8 +163,9 @@ void Connection::deliver(std::size_t max_bytes) {
     const Delivery delivery = *std::exchange(delivery_, {});
     delivery.ended(state);
     aborted_ = state == Outbox::State::broken;
-    if (delivery.keep_alive && !aborted_) begin_waiting();
-    else begin_closing();
+    if (!delivery.keep_alive || aborted_) return begin_closing();
+    wait_for_head(bytes_.empty() ? Clock::duration(idle_time) : head_time);
+    hold(0);
 }
 
 void Connection::begin_closing() {
@@ -188,9 +174,9 @@ void Connection::begin_closing() {
     hold(0);
     if (aborted_) {
         const linger reset{1, 0};
-        ::setsockopt(socket_, SOL_SOCKET, SO_LINGER, &reset, sizeof reset);
+        ::setsockopt(socket(), SOL_SOCKET, SO_LINGER, &reset, sizeof reset);
     } else {
-        ::shutdown(socket_, SHUT_WR);
+        ::shutdown(socket(), SHUT_WR);
     }
     deadline_ = Clock::now() + (aborted_ ? Clock::duration(0) : lingering_time);
 }
@@ -199,7 +185,7 @@ bool Connection::finish_closing() {
     if (aborted_) return true;
     std::array<char, 65536> piece;
     for (std::size_t taken = 0; taken < max_read;) {
-        const std::optional<std::size_t> size = receive(socket_, piece.data(), piece.size());
+        const std::optional<std::size_t> size = receive(socket(), piece.data(), piece.size());
         if (!size) return false;
         taken += *size;
         dropped_ += *size;

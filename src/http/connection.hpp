@@ -11,23 +11,13 @@
 #include <optional>
 #include <string>
 
-#include "http/client.hpp"
 #include "http/head.hpp"
 #include "http/memory.hpp"
 #include "http/message.hpp"
 #include "http/outbox.hpp"
+#include "program/descriptor.hpp"
 
 namespace vines::http {
-
-/// A complete request, or the refusal of one; nothing is read after a refused request.
-struct Exchange {
-    Head head;
-    std::string body;
-    const Route* route = nullptr;  ///< can be null if refused
-    std::optional<Response> refused = {};
-    Sender sender = {};
-    std::chrono::steady_clock::time_point since = {};  ///< time at which the request was complete
-};
 
 /// An answer on its way to its client.
 struct Delivery {
@@ -37,14 +27,20 @@ struct Delivery {
     std::function<void(Outbox::State)> ended = {};  ///< called once: sent or broken
 };
 
-/// Decision by a request's head, before its body is read: its route, or a refusal.
-struct CheckedHead {
-    const Route* route = nullptr;
-    std::optional<Response> refused = {};
-    Sender sender = {};
+using Task = std::function<void()>;
+class Connection;
+
+/// The server's part of an exchange. Its functions are called from several threads.
+class RequestHandler {
+public:
+    virtual ~RequestHandler() = default;
+    /// Decides by the head, before the body is read: sets the route and the sender, and refuses an
+    /// unacceptable request. peer: the other end's address.
+    virtual void check_head(Exchange& exchange, const std::string& peer) const = 0;
+    /// Computes the answer and begins its delivery. Returns the rest of the work, which adds to the
+    /// outbox, if the answer is computed while it is sent.
+    virtual Task answer(Connection& connection, Exchange exchange) = 0;
 };
-/// peer: the other end's address.
-using HeadCheck = std::function<CheckedHead(const Head&, const std::string& peer)>;
 
 // Longest time between an answer and the next request.
 inline constexpr std::chrono::seconds idle_time(60);
@@ -54,9 +50,9 @@ class Connection {
 public:
     using Clock = std::chrono::steady_clock;
 
-    /// Takes ownership of a non-blocking socket; check_head and the budget must outlive the
+    /// Takes ownership of a non-blocking socket; the handler and the budget must outlive the
     /// connection. peer: the other end's address.
-    Connection(int socket, std::string peer, const HeadCheck& check_head, MemoryBudget& memory);
+    Connection(int socket, std::string peer, const RequestHandler& handler, MemoryBudget& memory);
     ~Connection();
     Connection(const Connection&) = delete;
     Connection& operator=(const Connection&) = delete;
@@ -69,7 +65,9 @@ public:
     /// Reads the bytes that have arrived, up to 256 KiB, without blocking.
     Progress advance();
     /// True if the event loop itself answers the complete request, however busy the workers are.
-    bool is_answered_on_loop() const { return refused_ || route_->on_event_loop; }
+    bool is_answered_on_loop() const {
+        return exchange_->refused || exchange_->route->on_event_loop;
+    }
     /// Returns the complete request and removes its bytes from the buffer.
     Exchange take();
     /// Turns the incomplete request into a refused one, to be returned by take().
@@ -79,7 +77,7 @@ public:
     /// while memory is scarce.
     Clock::time_point deadline(bool memory_is_scarce = false) const;
     /// True if no byte of a next request has arrived.
-    bool is_idle() const { return bytes_.empty() && !head_ && !delivery_ && !is_closing(); }
+    bool is_idle() const { return bytes_.empty() && !exchange_ && !delivery_ && !is_closing(); }
     /// True if idle after at least one answer.
     bool is_idle_keep_alive() const { return is_idle() && served_; }
     /// Start of the current wait for the client.
@@ -93,11 +91,8 @@ public:
     /// request, or closes: with a reset if the answer is broken off, so that the client does not
     /// take the part for the whole.
     void deliver(std::size_t max_bytes = std::numeric_limits<std::size_t>::max());
-    bool can_send_more() const { return delivery_->outbox->can_send_more(); }
-    void break_off() { delivery_->outbox->cancel(); }  ///< deliver() then ends the delivery
-    bool client_is_slow(bool scarce) {
-        return delivery_->outbox->client_is_slow(Clock::now(), scarce);
-    }
+    /// Of the answer; deliver() ends the delivery once it is cancelled.
+    Outbox& outbox() const { return *delivery_->outbox; }
 
     /// Starts a lingering close: closes the sending side, and discards what the client still sends
     /// for up to 3 s or 64 MiB. Closing with unread bytes would reset the connection, and the
@@ -107,36 +102,34 @@ public:
     /// Discards received bytes; true once the client has closed too, or sent too much.
     bool finish_closing();
 
-    int socket() const { return socket_; }
+    int socket() const { return socket_.number(); }
     const std::string& peer() const { return peer_; }
     const std::string& owner() const { return owner_; }  ///< owner_of(peer())
-    /// The request's sender, valid once its head is complete.
-    const Sender& sender() const { return sender_; }
+    /// The client of the complete request, see Sender.
+    std::string client() const { return exchange_->request.sender.client(); }
 
     /// Sets the bytes of answers held for the client; received bytes are added.
-    void hold(std::size_t bytes) { held_.set(bytes + bytes_.capacity()); }
+    void hold(std::size_t bytes) { memory_.count(held_, bytes + bytes_.capacity()); }
 
 private:
     Progress read_on();
     Progress read_request();
     bool exceeds_memory() const;
-    void begin_request();
+    std::size_t body_size() const { return exchange_->request.head.content_length; }
+    void wait_for_head(Clock::duration time);
+    void begin_exchange();
     void begin_body();
     void expect_more();
-    void begin_waiting();
 
-    const int socket_;
+    const Descriptor socket_;
     const std::string peer_, owner_;
-    const HeadCheck& check_head_;
-    MemoryShare held_;
+    const RequestHandler& handler_;
+    MemoryBudget& memory_;
+    std::size_t held_ = 0;
     std::string bytes_;  // received, not yet taken
     HeadReader reader_;
-    std::optional<Head> head_;  // once complete; bytes_ then holds its body
-    const Route* route_ = nullptr;
-    Sender sender_;
-    Clock::time_point complete_since_;
-    std::size_t expected_ = 0;  // size of the body that must be reached before the deadline
-    std::optional<Response> refused_;
+    std::optional<Exchange> exchange_;  // once the head is complete; bytes_ then holds its body
+    std::size_t expected_ = 0;          // size of the body that must be reached before the deadline
     std::optional<Delivery> delivery_;
     bool half_closed_ = false;  // the client has closed its sending side
     bool closing_ = false, aborted_ = false, served_ = false;

@@ -1,15 +1,19 @@
 #include "http/encoding.hpp"
 
+#include <fmt/chrono.h>
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <cstdint>
 #include <cstring>
+#include <ctime>
+#include <iterator>
 #include <stdexcept>
 #include <utility>
 
 #include "api/problem.hpp"
 #include "api/schema/field.hpp"
+#include "http/connection.hpp"
 #include "http/head.hpp"
 
 namespace vines::http {
@@ -143,14 +147,149 @@ bool matches_tag(std::string_view if_none_match, std::string_view tag) {
 }
 
 bool compress(Response& response, const Request& request, const std::function<bool()>& gives_up) {
-    if (response.body.size() < compress_from || !accepts_gzip(request.accept_encoding)) return true;
+    const Head& head = request.head;
+    if (response.body.size() < compress_from || !accepts_gzip(head.header("accept-encoding")))
+        return true;
     // The tag belongs to the uncompressed body.
-    if (response.tag.empty() && request.method != "POST") response.tag = entity_tag(response.body);
+    if (response.tag.empty() && head.method != "POST") response.tag = entity_tag(response.body);
     std::optional<std::string> gzipped = gzip(response.body, gives_up);
     if (!gzipped) return false;
     response.uncompressed_size = response.body.size();
     response.body = std::move(*gzipped);
     return true;
+}
+
+// --- Completing a response ---
+
+namespace {
+
+std::string server_timing(const Timing& timing) {
+    std::string text;
+    for (const auto& [name, ms] : timing)
+        text += fmt::format("{}{};dur={:.3f}", text.empty() ? "" : ", ", name, ms);
+    return text;
+}
+
+/// Sets ETag and Cache-Control; 304 if the client has the answer. was_304: its tag is known to
+/// match.
+void set_validators(const Head& head, bool was_304, Response& response) {
+    const bool reads = head.method == "GET" || head.method == "HEAD";
+    if (!reads || (response.status != 200 && !was_304)) return;
+    const std::string tag = response.tag.empty() ? entity_tag(response.body) : response.tag;
+    response.headers.emplace_back("ETag", tag);
+    // Cached for a year, or revalidated with the tag.
+    response.headers.emplace_back(
+        "Cache-Control", response.immutable ? "max-age=31536000, immutable" : "no-cache");
+    const std::string_view having = head.header("if-none-match");
+    if (was_304 || having == "*" || matches_tag(having, tag)) response.status = 304;
+}
+
+/// Compresses a body for a client that accepts it, and says so.
+void set_encoding(const Head& head, bool was_304, Response& response) {
+    const bool is_zipped = response.uncompressed_size > 0;
+    const bool zips = response.compressible || is_zipped || !response.gzipped.empty() ||
+                      response.body.size() >= compress_from;
+    if (zips || was_304) response.headers.emplace_back("Vary", "Accept-Encoding");
+    response.compressible = zips && accepts_gzip(head.header("accept-encoding"));
+    if (!response.compressible || response.status == 304) return;
+    response.headers.emplace_back("Content-Encoding", "gzip");
+    if (response.stream || is_zipped) return;
+    response.body = response.gzipped.empty() ? gzip(response.body) : std::string(response.gzipped);
+}
+
+}  // namespace
+
+void complete(const Request& request, Response& response) {
+    const Head& head = request.head;
+    auto& headers = response.headers;
+    headers.emplace_back(
+        "Date", fmt::format("{:%a, %d %b %Y %T GMT}", fmt::gmtime(std::time(nullptr))));
+    headers.emplace_back("X-Request-ID", request.id);
+    if (response.problem) response.body = response.problem->body(request.id);
+    if (!response.timing.empty())
+        headers.emplace_back("Server-Timing", server_timing(response.timing));
+    // Without it a browser could guess the type and run the bytes as a script.
+    headers.emplace_back("X-Content-Type-Options", "nosniff");
+    const bool was_304 = response.status == 304;
+    if (!response.stream) set_validators(head, was_304, response);
+    set_encoding(head, was_304, response);
+}
+
+// --- Writing it ---
+
+namespace {
+
+/// Status line and headers.
+std::string head_text(const Head& head, bool keep_alive, const Response& response) {
+    std::string text =
+        fmt::format("HTTP/1.1 {} {}\r\n", response.status, api::reason_phrase(response.status));
+    const auto add = [&text](std::string_view name, std::string_view value) {
+        fmt::format_to(std::back_inserter(text), "{}: {}\r\n", name, value);
+    };
+    for (const auto& [name, value] : response.headers) add(name, value);
+    if (keep_alive) add("Keep-Alive", fmt::format("timeout={}, max=1000000", idle_time.count()));
+    else add("Connection", "close");
+    const bool is_304 = response.status == 304;
+    if (!is_304 || response.body.empty()) add("Content-Type", response.content_type);
+    if (response.stream && head.takes_chunks) add("Transfer-Encoding", "chunked");
+    else if (!response.stream && !is_304)
+        add("Content-Length", std::to_string(response.body.size()));
+    return text + "\r\n";
+}
+
+/// Sends the pieces of a stream as chunks (RFC 9112, 7.1), or in HTTP/1.0 as they are.
+class PieceWriter : public Writer {
+public:
+    /// silent: see Response.
+    PieceWriter(Outbox& outbox, bool in_chunks, bool silent)
+        : outbox_(outbox),
+          in_chunks_(in_chunks),
+          silent_(silent) {}
+    bool write(std::string_view text) override {
+        return text.empty() || send(text);  // an empty chunk ends the stream
+    }
+    bool connected() override {
+        return !(silent_ ? outbox_.client_has_closed() : outbox_.is_broken());
+    }
+    bool end() { return !in_chunks_ || send(""); }
+
+private:
+    bool send(std::string_view text) {
+        outbox_.add(
+            in_chunks_ ? fmt::format("{:x}\r\n{}\r\n", text.size(), text) : std::string(text));
+        outbox_.send();
+        return outbox_.wait_for_space();
+    }
+
+    Outbox& outbox_;
+    const bool in_chunks_, silent_;
+};
+
+class GzipWriter : public Writer {
+public:
+    explicit GzipWriter(Writer& out) : out_(out) {}
+    bool write(std::string_view text) override { return out_.write(gzip_.add(text)); }
+    bool connected() override { return out_.connected(); }
+    bool end() { return out_.write(gzip_.add({}, true)); }
+
+private:
+    Writer& out_;
+    Gzip gzip_;
+};
+
+}  // namespace
+
+bool write(const Head& head, bool keep_alive, Response response, Outbox& outbox) {
+    outbox.add(head_text(head, keep_alive, response));  // waits for the bytes that follow it
+    if (head.method == "HEAD" || response.status == 304) return true;
+    if (!response.stream) {
+        outbox.add(std::move(response.body));
+        return true;
+    }
+    PieceWriter out(outbox, head.takes_chunks, response.silent);
+    if (!response.compressible) return response.stream(out) && out.end();
+    GzipWriter zipped(out);
+    return response.stream(zipped) && zipped.end() && out.end();
 }
 
 }  // namespace vines::http

@@ -1,5 +1,5 @@
 // The form in which an answer is sent (RFC 9110, 8): its format, chosen by Accept; its compression,
-// chosen by Accept-Encoding; its ETag.
+// chosen by Accept-Encoding; its ETag; its bytes.
 #pragma once
 
 #include <zlib.h>
@@ -14,6 +14,7 @@
 
 #include "api/format/encode.hpp"
 #include "http/message.hpp"
+#include "http/outbox.hpp"
 
 namespace vines::http {
 
@@ -61,5 +62,13 @@ inline constexpr std::size_t compress_from = 65536;
 /// answer is computed, because a large body takes longer to compress than to send. False if
 /// gives_up() returned true; it is polled before each MB.
 bool compress(Response& response, const Request& request, const std::function<bool()>& gives_up);
+
+/// Completes a response: ETag (304 if the client has it), compression if the body is large and the
+/// client accepts it, the request's id. A stream has neither length nor ETag.
+void complete(const Request& request, Response& response);
+
+/// Adds a completed response to the outbox; a stream is computed meanwhile, and waits for its
+/// client. False if it was broken off. keep_alive: as announced to the client.
+bool write(const Head& head, bool keep_alive, Response response, Outbox& outbox);
 
 }  // namespace vines::http

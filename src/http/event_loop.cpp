@@ -87,18 +87,17 @@ void remove(int poll, int socket) { ::epoll_ctl(poll, EPOLL_CTL_DEL, socket, nul
 
 }  // namespace
 
-EventLoop::EventLoop(int listening, const ConnectionLimits& limits, Handlers handlers)
+EventLoop::EventLoop(
+    int listening, const ConnectionLimits& limits, Networks proxies, RequestHandler& handler)
     : listening_(listening),
-      handlers_(std::move(handlers)),
+      handler_(handler),
       max_connections_(std::min(limits.connections, files_for_connections())),
       max_per_client_(limits.per_client),
-      proxies_(limits.proxies),
+      proxies_(std::move(proxies)),
       poll_(::epoll_create1(EPOLL_CLOEXEC)),
       wake_(::eventfd(0, EFD_CLOEXEC | EFD_NONBLOCK)),
       memory_(limits.held_bytes),
-      workers_(limits.workers, limits.waiting, [this](Owned connection) {
-          work(std::move(connection));
-      }) {
+      workers_(limits.workers, [this](Owned connection) { work(std::move(connection)); }) {
     ::fcntl(listening_, F_SETFL, ::fcntl(listening_, F_GETFL) | O_NONBLOCK);
     add(poll_.number(), wake_.number());
     listen(true);
@@ -171,8 +170,8 @@ void EventLoop::accept(int most) {
         }
         if (socket < 0 && errno != EAGAIN) return listen(false);  // out of memory
         if (socket < 0) return;
-        auto connection = std::make_unique<Connection>(
-            socket, numeric(peer, size), handlers_.check_head, memory_);
+        auto connection =
+            std::make_unique<Connection>(socket, numeric(peer, size), handler_, memory_);
         if (is_at_limit(*connection) && !(other = eviction_candidate(connection->owner())))
             continue;  // closes the new one
         if (other) close(other->socket());
@@ -235,7 +234,7 @@ void EventLoop::handle(int socket, bool failed) {
     const Owned& connection = connections_[static_cast<std::size_t>(socket)];
     if (!connection) return;  // closed after the event
     if (connection->is_delivering()) {
-        if (failed) connection->break_off();
+        if (failed) connection->outbox().cancel();
         deliver(*connection);
     } else if (!connection->is_closing()) read(*connection);
     else if (connection->finish_closing()) close(socket);
@@ -256,23 +255,20 @@ void EventLoop::read(Connection& connection) {
 
 void EventLoop::hand_over(Owned connection) {
     ++with_workers_;
-    const std::string client = connection->sender().client();
+    const std::string client = connection->client();
     std::optional<Owned> refused = workers_.add(client, std::move(connection));
-    if (refused) refuse(*std::move(refused));
-}
-
-void EventLoop::refuse(Owned connection) {
+    if (!refused) return;
     --with_workers_;
-    connection->refuse(problem_response(api::Problem::unavailable(
+    Connection& one = **refused;
+    one.refuse(problem_response(api::Problem::unavailable(
         "threads", "all worker threads are busy and their queue is full")));
-    Connection& refused = *connection;
-    watch(std::move(connection));
-    answer_here(refused);
+    watch(*std::move(refused));
+    answer_here(one);
 }
 
 /// True if the connection waits for a next request.
 bool EventLoop::answer_here(Connection& connection) {
-    handlers_.answer(connection, connection.take());
+    handler_.answer(connection, connection.take());
     ++delivering_;
     connection.deliver();
     if (connection.is_delivering()) wait_for(poll_.number(), EPOLL_CTL_MOD, connection);
@@ -283,7 +279,7 @@ bool EventLoop::answer_here(Connection& connection) {
 void EventLoop::deliver(Connection& connection) {
     connection.deliver(max_sent);
     if (connection.is_delivering()) {
-        if (connection.can_send_more()) ready_.push_back(connection.socket());
+        if (connection.outbox().can_send_more()) ready_.push_back(connection.socket());
         return;
     }
     --delivering_;
@@ -344,8 +340,9 @@ void EventLoop::expire_deliveries() {
     const bool scarce = memory_.is_full() || was_scarce(connections_scarce_);
     const bool streams = scarce || workers_.jobs_wait() || was_scarce(streams_scarce_);
     for (const Owned& c : connections_)
-        if (c && c->is_delivering() && c->client_is_slow(c->is_streaming() ? streams : scarce)) {
-            c->break_off();
+        if (c && c->is_delivering() &&
+            c->outbox().client_is_slow(Clock::now(), c->is_streaming() ? streams : scarce)) {
+            c->outbox().cancel();
             deliver(*c);
         }
 }
@@ -353,9 +350,9 @@ void EventLoop::expire_deliveries() {
 bool EventLoop::is_done() const { return closing_ && count_ == 0 && with_workers_ == 0; }
 
 void EventLoop::work(Owned connection) {
-    const std::string client = connection->sender().client();
+    const std::string client = connection->client();
     for (;;) {
-        Task rest = handlers_.answer(*connection, connection->take());
+        Task rest = handler_.answer(*connection, connection->take());
         if (rest) return finish_stream(std::move(connection), std::move(rest));
         connection->deliver();
         if (connection->is_delivering() || connection->is_closing()) break;
@@ -365,7 +362,7 @@ void EventLoop::work(Owned connection) {
         if (progress == Connection::Progress::ended) connection->begin_closing();
         if (progress != Connection::Progress::complete) break;
         // Others have waited longer, or the thread is another client's, behind a proxy.
-        const std::string next = connection->sender().client();
+        const std::string next = connection->client();
         if (workers_.jobs_wait() || next != client)
             return workers_.put_back(next, std::move(connection));
     }

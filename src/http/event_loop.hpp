@@ -20,30 +20,20 @@
 
 namespace vines::http {
 
-using Task = std::function<void()>;
-
-/// The server's callbacks. They are called from several threads.
-struct Handlers {
-    HeadCheck check_head;
-    /// Computes the answer and begins its delivery. Returns the rest of the work, which adds to the
-    /// outbox, if the answer is computed while it is sent.
-    std::function<Task(Connection&, Exchange)> answer;
-};
-
 struct ConnectionLimits {
-    std::size_t connections = 4096;
-    std::size_t per_client = 1024;  ///< connections of one client that is no proxy
-    Networks proxies;
-    int workers = 64;
-    std::size_t waiting = 64;            ///< requests queued for a worker
+    std::size_t connections = 4096;  ///< open ones, including idle ones
+    std::size_t per_client = 1024;   ///< connections of one client that is no proxy
+    /// Threads, of which a stream that is read slowly occupies one; as many requests wait for one.
+    int workers = 128;
     std::size_t held_bytes = 512 << 20;  ///< bytes of requests and answers, see MemoryBudget
 };
 
 class EventLoop {
 public:
-    /// listening: a listening socket, which becomes non-blocking. Throws std::system_error if no
-    /// worker thread can be started.
-    EventLoop(int listening, const ConnectionLimits& limits, Handlers handlers);
+    /// listening: a listening socket, which becomes non-blocking. The handler must outlive the
+    /// loop. Throws std::system_error if no worker thread can be started.
+    EventLoop(
+        int listening, const ConnectionLimits& limits, Networks proxies, RequestHandler& handler);
 
     /// Runs until stop() has been called and all connections are closed.
     void run();
@@ -77,7 +67,6 @@ private:
     void handle(int socket, bool failed = false);
     void read(Connection& connection);
     void hand_over(Owned connection);
-    void refuse(Owned connection);
     bool answer_here(Connection& connection);
     void deliver(Connection& connection);
     void expire_deliveries();
@@ -93,7 +82,7 @@ private:
     void wake() const;
 
     const int listening_;
-    const Handlers handlers_;
+    RequestHandler& handler_;
     const std::size_t max_connections_, max_per_client_;
     const Networks proxies_;
     const Descriptor poll_, wake_;

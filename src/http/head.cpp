@@ -4,6 +4,7 @@
 
 #include <cstdint>
 #include <random>
+#include <regex>
 #include <tuple>
 
 #include "api/problem.hpp"
@@ -225,38 +226,20 @@ namespace {
 
 constexpr std::size_t max_id_length = 64;
 
-bool is_hexadecimal(std::string_view text) {
-    return text.find_first_not_of("0123456789abcdef") == std::string_view::npos;
-}
-
 bool is_word(std::string_view text) {
     return !text.empty() && text.size() <= max_id_length && consists_of(text, "._-");
-}
-
-bool is_zero(std::string_view digits) {
-    return digits.find_first_not_of('0') == std::string_view::npos;
-}
-
-/// Removes `number` hexadecimal digits and the dash after them from the front of a text; returns
-/// the digits, or nothing if they are missing.
-std::string_view next_digits(std::string_view& text, std::size_t number) {
-    const std::string_view digits = text.substr(0, number);
-    const bool ends = text.size() <= number || text[number] == '-';
-    text.remove_prefix(std::min(text.size(), number + 1));
-    return digits.size() == number && ends && is_hexadecimal(digits) ? digits : std::string_view();
 }
 
 /// The trace-id of VERSION-TRACE-PARENT-FLAGS (2, 32, 16 and 2 digits; later versions can have more
 /// fields); empty if the header is invalid.
 std::string_view trace_of(std::string_view traceparent) {
     constexpr std::size_t whole = 55;
-    std::string_view rest = traceparent;
-    const std::string_view version = next_digits(rest, 2), trace = next_digits(rest, 32),
-                           parent = next_digits(rest, 16), flags = next_digits(rest, 2);
-    const bool is_known =
-        version == "00" ? traceparent.size() == whole : !version.empty() && version != "ff";
-    return is_known && !is_zero(trace) && !is_zero(parent) && !flags.empty() ? trace
-                                                                             : std::string_view();
+    static const std::regex form(
+        "(?!ff)[0-9a-f]{2}-(?!0{32})[0-9a-f]{32}-(?!0{16})[0-9a-f]{16}-[0-9a-f]{2}-?");
+    const std::string_view known = traceparent.substr(0, whole + 1);
+    if (!std::regex_match(known.begin(), known.end(), form)) return {};
+    if (known.starts_with("00") && known.size() > whole) return {};
+    return known.substr(3, 32);
 }
 
 }  // namespace

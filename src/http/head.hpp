@@ -14,11 +14,11 @@
 namespace vines::http {
 
 struct Head {
-    std::string method;
-    std::string target;  ///< path and query
-    std::string host;    ///< authority: of Host, or of a target in absolute form
+    std::string method = {};
+    std::string target = {};  ///< path and query
+    std::string host = {};    ///< authority: of Host, or of a target in absolute form
     /// Names in lower case, values without surrounding blanks.
-    std::vector<std::pair<std::string, std::string>> headers;
+    std::vector<std::pair<std::string, std::string>> headers = {};
     std::size_t content_length = 0;
     bool keep_alive = true;         ///< the connection can be reused
     bool takes_chunks = true;       ///< an answer without a length can be sent in chunks

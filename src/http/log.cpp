@@ -124,40 +124,40 @@ void start_log(LogFormat chosen) {
     spdlog::set_default_logger(log);
 }
 
-void log_request(const ServedRequest& served) {
-    const bool probe = served.path == "/livez" || served.path == "/readyz" ||
-                       served.path == "/healthz" || served.path == "/metrics";
-    if (probe && served.status == 200) return;
-    log(level_of(served.status), [&](Line& line) {
-        line.add("method", api::shortened(served.method));
-        line.add("path", api::shortened(served.path));
-        line.add("status", static_cast<std::size_t>(served.status));
-        line.add("ms", served.ms);
-        line.add("bytes", served.bytes);
-        line.add("client", served.client);
-        if (!served.key.empty()) line.add("key", served.key);
-        line.add("request_id", served.id);
-        for (const auto& [name, ms] : served.timing) line.add(name + "_ms", ms);
-        if (served.left) line.add_true("client_left");
+void log_request(const Request& request, const Outcome& outcome) {
+    const std::string_view path = request.head.path();
+    const bool probe =
+        path == "/livez" || path == "/readyz" || path == "/healthz" || path == "/metrics";
+    if (probe && outcome.status == 200) return;
+    log(level_of(outcome.status), [&](Line& line) {
+        line.add("method", api::shortened(request.head.method));
+        line.add("path", api::shortened(path));
+        line.add("status", static_cast<std::size_t>(outcome.status));
+        line.add("ms", outcome.ms);
+        line.add("bytes", outcome.bytes);
+        line.add("client", request.sender.address);
+        if (!request.sender.key.empty()) line.add("key", request.sender.key);
+        line.add("request_id", request.id);
+        for (const auto& [name, ms] : outcome.timing) line.add(name + "_ms", ms);
+        if (outcome.left) line.add_true("client_left");
     });
 }
 
-void log_unanswered(const ServedRequest& request) {
+void log_unanswered(const Request& request, double ms) {
     log("warning", [&](Line& line) {
-        line.add("method", api::shortened(request.method));
-        line.add("path", api::shortened(request.path));
-        line.add("ms", request.ms);
-        line.add("client", request.client);
+        line.add("method", api::shortened(request.head.method));
+        line.add("path", api::shortened(request.head.path()));
+        line.add("ms", ms);
+        line.add("client", request.sender.address);
         line.add("request_id", request.id);
         line.add("what", "the service ended before the answer was sent");
     });
 }
 
-void log_failure(
-    const std::string& path, const std::string& request_id, const std::exception_ptr& thrown) {
+void log_failure(std::string_view path, const std::string& request_id) {
     std::string what = "no std::exception";
     try {
-        std::rethrow_exception(thrown);
+        throw;
     } catch (const std::exception& e) {
         what = e.what();
     } catch (...) {}

@@ -9,8 +9,9 @@
 #include <utility>
 #include <vector>
 
-#include "api/parse.hpp"
 #include "api/problem.hpp"
+#include "http/client.hpp"
+#include "http/head.hpp"
 
 namespace vines::http {
 
@@ -46,15 +47,10 @@ private:
 };
 
 struct Request {
-    std::string method, path;
-    api::Query query;
-    std::string content_type;
-    mutable std::string body;          ///< a route frees a large one once it is read
-    std::string accept = {};           ///< header Accept
-    std::string accept_encoding = {};  ///< header Accept-Encoding
-    std::string if_none_match = {};    ///< header If-None-Match
-    std::string id = {};               ///< see request_id()
-    std::string client = {};           ///< whose turn it takes: an API key's name or an address
+    Head head = {};
+    std::string body = {};  ///< a route frees a large one once it is read
+    Sender sender = {};
+    std::string id = {};  ///< see request_id()
     /// Returns true once the client has left.
     std::function<bool()> left = [] { return false; };
 };
@@ -95,12 +91,20 @@ struct Route {
     std::string method = {};  ///< GET (which includes HEAD) or POST
     std::string path = {};
     std::string name = {};  ///< label in the metrics
-    std::function<Response(const Request&)> answer = {};
+    std::function<Response(Request&)> answer = {};
     std::size_t body_limit = 0;  ///< bytes, if larger than the server's limit
     /// Small and without computation: answered by the event loop, however busy the workers are.
     bool on_event_loop = false;
     bool sets_frame_policy = false;  ///< its answers state which pages may show it in a frame
     bool is_public = false;          ///< needs no API key
+};
+
+/// A request from its complete head on; nothing is read after a refused request.
+struct Exchange {
+    Request request = {};
+    const Route* route = nullptr;  ///< can be null if refused
+    std::optional<Response> refused = {};
+    std::chrono::steady_clock::time_point since = {};  ///< time at which the request was complete
 };
 
 /// A problem document (RFC 9457) as a response; 503 with Retry-After. Its body, which contains the

@@ -26,58 +26,6 @@ namespace vines::http {
 
 namespace {
 
-/// Resource use of this process, by the names of Prometheus' client libraries; 0 if unknown.
-struct ProcessLoad {
-    double cpu_seconds = 0;
-    double start_time_seconds = 0;  ///< since 1970
-    double resident_memory_bytes = 0, virtual_memory_bytes = 0;
-    double open_fds = 0, max_fds = 0;
-    double threads = 0;
-};
-
-/// Boot time of the system, seconds since 1970.
-double boot_time() {
-    std::ifstream in("/proc/stat");
-    for (std::string word; in >> word;) {
-        double seconds = 0;
-        if (word == "btime" && in >> seconds) return seconds;
-    }
-    return 0;
-}
-
-/// Reads /proc/self/stat (proc(5)); the name in parentheses can contain any character.
-void read_stat(ProcessLoad& load) {
-    std::ifstream in("/proc/self/stat");
-    const std::string text(std::istreambuf_iterator<char>(in), {});
-    const std::size_t name_ends = text.rfind(')');
-    if (name_ends == std::string::npos) return;
-    std::istringstream fields(text.substr(name_ends + 1));
-    std::string skipped;
-    double user = 0, system = 0, since_boot = 0, pages = 0;
-    for (int field = 3; field < 14; ++field) fields >> skipped;
-    fields >> user >> system;  // 14, 15
-    for (int field = 16; field < 20; ++field) fields >> skipped;
-    fields >> load.threads >> skipped >> since_boot;  // 20, 22
-    fields >> load.virtual_memory_bytes >> pages;     // 23, 24
-    const auto ticks = static_cast<double>(::sysconf(_SC_CLK_TCK));
-    load.cpu_seconds = (user + system) / ticks;
-    load.start_time_seconds = boot_time() + since_boot / ticks;
-    load.resident_memory_bytes = pages * static_cast<double>(::sysconf(_SC_PAGESIZE));
-}
-
-ProcessLoad process_load() {
-    ProcessLoad load;
-    read_stat(load);
-    std::error_code ignored;
-    for (std::filesystem::directory_iterator entry("/proc/self/fd", ignored), end; entry != end;
-         entry.increment(ignored))
-        ++load.open_fds;
-    --load.open_fds;  // without the descriptor of this directory
-    rlimit limit{};
-    if (::getrlimit(RLIMIT_NOFILE, &limit) == 0) load.max_fds = static_cast<double>(limit.rlim_cur);
-    return load;
-}
-
 using prometheus::ClientMetric;
 using prometheus::MetricFamily;
 using prometheus::MetricType;
@@ -112,22 +60,52 @@ MetricFamily build_info() {
     return family;
 }
 
+/// Boot time of the system, seconds since 1970; 0 if unknown.
+double boot_time() {
+    std::ifstream in("/proc/stat");
+    for (std::string word; in >> word;) {
+        double seconds = 0;
+        if (word == "btime" && in >> seconds) return seconds;
+    }
+    return 0;
+}
+
+/// The numbers of /proc/self/stat (proc(5)) by their positions, which count from 1; 0 if unknown.
+std::vector<double> process_status() {
+    std::ifstream in("/proc/self/stat");
+    const std::string text(std::istreambuf_iterator<char>(in), {});
+    // The second field, a name in parentheses, can contain any character; the third is a letter.
+    std::istringstream numbers(text.substr(std::min(text.size(), text.rfind(')') + 3)));
+    std::vector<double> fields(4);
+    std::copy(std::istream_iterator<double>(numbers), {}, std::back_inserter(fields));
+    fields.resize(25);
+    return fields;
+}
+
+/// Adds the resource use of this process, by the names of Prometheus' client libraries.
 void add_process(std::vector<MetricFamily>& all) {
-    const ProcessLoad load = process_load();
-    const MetricFamily families[] = {
-        sampled(
-            "process_cpu_seconds_total", "User and system time.", load.cpu_seconds,
-            MetricType::Counter),
-        sampled(
-            "process_start_time_seconds", "Start of the process, since 1970.",
-            load.start_time_seconds),
-        sampled("process_resident_memory_bytes", "Memory in use.", load.resident_memory_bytes),
-        sampled(
-            "process_virtual_memory_bytes", "Memory that is mapped.", load.virtual_memory_bytes),
-        sampled("process_open_fds", "Open file descriptors.", load.open_fds),
-        sampled("process_max_fds", "File descriptors that may be open.", load.max_fds),
-        sampled("process_threads", "Threads.", load.threads)};
-    all.insert(all.end(), std::begin(families), std::end(families));
+    const std::vector<double> status = process_status();
+    const auto ticks = static_cast<double>(::sysconf(_SC_CLK_TCK));
+    const auto page_size = static_cast<double>(::sysconf(_SC_PAGESIZE));
+    std::error_code ignored;
+    // Without the descriptor of this directory.
+    const auto files =
+        std::distance(std::filesystem::directory_iterator("/proc/self/fd", ignored), {}) - 1;
+    rlimit limit{};
+    ::getrlimit(RLIMIT_NOFILE, &limit);
+    all.insert(
+        all.end(),
+        {sampled(
+             "process_cpu_seconds_total", "User and system time.",
+             (status[14] + status[15]) / ticks, MetricType::Counter),
+         sampled(
+             "process_start_time_seconds", "Start of the process, since 1970.",
+             boot_time() + status[22] / ticks),
+         sampled("process_resident_memory_bytes", "Memory in use.", status[24] * page_size),
+         sampled("process_virtual_memory_bytes", "Memory that is mapped.", status[23]),
+         sampled("process_open_fds", "Open file descriptors.", files),
+         sampled("process_max_fds", "File descriptors that may be open.", limit.rlim_cur),
+         sampled("process_threads", "Threads.", status[20])});
 }
 
 /// Members of a metric family by one key: a look-up by labels takes as long as a small request.
@@ -158,7 +136,7 @@ struct Metrics::Implementation {
     }
 
     const AdmissionControl& admission;
-    std::function<ConnectionLoad()> connections;
+    std::function<ConnectionLoad()> connections = [] { return ConnectionLoad{}; };
     prometheus::Registry registry;
 
     prometheus::Family<prometheus::Counter>& counters(const char* name, const char* help) {
@@ -195,18 +173,20 @@ struct Metrics::Implementation {
 
     void add_load(std::vector<MetricFamily>& all) const {
         const AdmissionLoad load = admission.load();
-        all.push_back(sampled("vines_compute_running", "Computations running.", load.running));
-        all.push_back(sampled(
-            "vines_compute_queue_depth", "Requests that wait for a compute slot.", load.waiting));
-        all.push_back(sampled("vines_sweeps_running", "Sweeps running.", load.sweeps));
-        if (!connections) return;
         const ConnectionLoad now = connections();
-        all.push_back(sampled("vines_http_connections", "Open connections.", now.open));
-        all.push_back(sampled(
-            "vines_http_requests_in_flight", "Requests received and not yet answered.",
-            now.in_flight));
-        all.push_back(sampled(
-            "vines_http_held_bytes", "Bytes of requests and answers in memory.", now.held_bytes));
+        all.insert(
+            all.end(), {sampled("vines_compute_running", "Computations running.", load.running),
+                        sampled(
+                            "vines_compute_queue_depth", "Requests that wait for a compute slot.",
+                            load.waiting),
+                        sampled("vines_sweeps_running", "Sweeps running.", load.sweeps),
+                        sampled("vines_http_connections", "Open connections.", now.open),
+                        sampled(
+                            "vines_http_requests_in_flight",
+                            "Requests received and not yet answered.", now.in_flight),
+                        sampled(
+                            "vines_http_held_bytes", "Bytes of requests and answers in memory.",
+                            now.held_bytes)});
     }
 };
 
@@ -215,24 +195,24 @@ Metrics::Metrics(const AdmissionControl& admission)
 
 Metrics::~Metrics() = default;
 
-void Metrics::count_served(const ServedRequest& served) {
+void Metrics::count_answer(const std::string& method, const Outcome& outcome) {
     Implementation& all = *implementation_;
-    const std::string method = method_label(served.method), code = std::to_string(served.status);
+    const std::string label = method_label(method), code = std::to_string(outcome.status);
     all.of_requests
-        .at(served.route + ' ' + method + ' ' + code,
+        .at(outcome.route + ' ' + label + ' ' + code,
             [&]() -> auto& {
                 return all.requests.Add(
-                    {{"route", served.route}, {"method", method}, {"code", code}});
+                    {{"route", outcome.route}, {"method", label}, {"code", code}});
             })
         .Increment();
     all.of_taken
-        .at(served.route,
-            [&]() -> auto& { return all.taken.Add({{"route", served.route}}, durations); })
-        .Observe(served.ms / 1000);
-    all.bytes.Increment(static_cast<double>(served.bytes));
-    if (served.left) all.left.Increment();
-    if (!served.lacking.empty()) all.unavailable.Add({{"reason", served.lacking}}).Increment();
-    for (const auto& [name, ms] : served.timing)
+        .at(outcome.route,
+            [&]() -> auto& { return all.taken.Add({{"route", outcome.route}}, durations); })
+        .Observe(outcome.ms / 1000);
+    all.bytes.Increment(static_cast<double>(outcome.bytes));
+    if (outcome.left) all.left.Increment();
+    if (!outcome.lacking.empty()) all.unavailable.Add({{"reason", outcome.lacking}}).Increment();
+    for (const auto& [name, ms] : outcome.timing)
         if (name == "queue") all.queued.Observe(ms / 1000);
 }
 

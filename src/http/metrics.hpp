@@ -26,7 +26,7 @@ public:
     explicit Metrics(const AdmissionControl& admission);
     ~Metrics();
 
-    void count_served(const ServedRequest& served);
+    void count_answer(const std::string& method, const Outcome& outcome);
     void count_impacts(long impacts);
     /// Adds the runs of one sweep and their measured impacts.
     void count_sweep(SweepEnd end, std::size_t runs, std::size_t impacts);

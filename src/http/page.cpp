@@ -47,9 +47,7 @@ std::vector<Route> embedded_routes(const std::string& policy) {
     std::vector<Route> routes;
     for (const Asset& asset : assets())
         routes.push_back(
-            {.method = "GET",
-             .path = std::string(asset.path),
-             .answer = [asset, policy](const Request&) {
+            {.method = "GET", .path = std::string(asset.path), .answer = [asset, policy](Request&) {
                  Response response = file_response(asset.path, std::string(asset.content), policy);
                  response.gzipped = asset.gzipped;
                  response.immutable = !is_page(asset.path);
@@ -73,7 +71,7 @@ Descriptor open_without_links(const std::filesystem::path& path) {
 /// Reads the file at each request.
 Route file_route(
     const std::filesystem::path& file, const std::string& path, const std::string& policy) {
-    return {.method = "GET", .path = path, .answer = [=](const Request&) {
+    return {.method = "GET", .path = path, .answer = [=](Request&) {
                 try {
                     return file_response(
                         path, read_regular(open_without_links(file), file), policy);

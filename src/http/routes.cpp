@@ -30,11 +30,11 @@ Response answer_of(const std::function<Response()>& answer) {
     }
 }
 
-Route route(std::string method, std::string path, std::function<Response(const Request&)> answer) {
+Route route(std::string method, std::string path, std::function<Response(Request&)> answer) {
     return {
         .method = std::move(method),
         .path = std::move(path),
-        .answer = [answer = std::move(answer)](const Request& request) {
+        .answer = [answer = std::move(answer)](Request& request) {
             return answer_of([&] { return answer(request); });
         }};
 }
@@ -46,7 +46,7 @@ Route document(std::string path, Json (*make)()) {
         Response response;
         std::string gzipped;
     };
-    return route("GET", std::move(path), [make, made = std::make_shared<Made>()](const Request&) {
+    return route("GET", std::move(path), [make, made = std::make_shared<Made>()](Request&) {
         std::call_once(made->once, [&] {
             made->response = json_response(make());
             made->response.tag = entity_tag(made->response.body);
@@ -58,7 +58,7 @@ Route document(std::string path, Json (*make)()) {
 }
 
 /// A health route: answered however busy the server is, without a key.
-Route health(std::string path, std::function<Response(const Request&)> answer) {
+Route health(std::string path, std::function<Response(Request&)> answer) {
     Route made = route("GET", std::move(path), std::move(answer));
     made.on_event_loop = made.is_public = true;
     return made;
@@ -75,7 +75,7 @@ std::vector<Route> make_routes(
     const auto service = std::make_shared<const Service>(Service{options, admission, metrics});
     const auto compute = [&](const char* method, const char* path, Computation* computation) {
         routes.push_back(
-            {.method = method, .path = path, .answer = [computation, service](const Request& r) {
+            {.method = method, .path = path, .answer = [computation, service](Request& r) {
                  Stopwatch watch;
                  Response response = answer_of([&] { return computation(r, *service, watch); });
                  response.timing = watch.take();
@@ -99,20 +99,19 @@ std::vector<Route> make_routes(
     // Alive: the process answers. Ready: it accepts work; before a shutdown it is not, so that a
     // proxy sends no more requests.
     for (const char* path : {"/healthz", "/livez"})
-        routes.push_back(
-            health(path, [](const Request&) { return json_response({{"status", "ok"}}); }));
-    routes.push_back(health("/readyz", [&admission](const Request&) {
+        routes.push_back(health(path, [](Request&) { return json_response({{"status", "ok"}}); }));
+    routes.push_back(health("/readyz", [&admission](Request&) {
         if (admission.sweeps_stopped()) return stopping_refusal();
         return json_response({{"status", "ok"}});
     }));
-    routes.push_back(health("/version", [](const Request&) {
+    routes.push_back(health("/version", [](Request&) {
         return json_response(
             {{"name", "vines"},
              {"version", api::version()},
              {"commit", api::commit()},
              {"compiler", api::compiler()}});
     }));
-    routes.push_back(route("GET", "/metrics", [&metrics](const Request&) {
+    routes.push_back(route("GET", "/metrics", [&metrics](Request&) {
         return Response{.content_type = Metrics::content_type, .body = metrics.text()};
     }));
     routes.back().on_event_loop = true;

@@ -31,7 +31,7 @@ struct Service {
 /// Answers of the routes that compute. Each function waits for admission, reads the request,
 /// computes, and encodes the answer. A Problem that it throws is its answer. It records the
 /// durations of these phases in the stopwatch.
-using Computation = Response(const Request& request, const Service& service, Stopwatch& watch);
+using Computation = Response(Request& request, const Service& service, Stopwatch& watch);
 /// /v1/simulate, /v1/manifold and /v1/identify, which also takes a CSV file with the fields in the
 /// query.
 Computation answer;

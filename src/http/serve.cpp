@@ -5,9 +5,9 @@
 // 10 s to finish; after that computations end with the results they have, and 5 s later the process
 // ends, with code 3 if requests are left unanswered. A second signal ends it immediately.
 #include <fmt/format.h>
-#include <malloc.h>
 #include <unistd.h>
 
+#include <cctype>
 #include <chrono>
 #include <csignal>
 #include <cstdlib>
@@ -22,6 +22,7 @@
 #include "api/version.hpp"
 #include "http/admission_control.hpp"
 #include "http/log.hpp"
+#include "http/memory.hpp"
 #include "http/routes.hpp"
 #include "http/server.hpp"
 #include "program/process.hpp"
@@ -47,128 +48,124 @@ std::string origin_error(const std::string& text) {
     return is_origin(text) ? "" : text + " is not an origin such as https://example.org:8443";
 }
 
-/// An option takes its value from the flag, else from the environment variable, else the default.
-template <class Value>
-CLI::Option* add_flag(
-    CLI::App& command, const char* name, const char* variable, Value& value, const char* help) {
-    return command.add_option(name, value, help)->envname(variable)->capture_default_str();
+/// The environment variable of an option: VINES_LOG_FORMAT of --log-format.
+std::string variable_of(std::string option) {
+    option.replace(0, 2, "vines_");
+    for (char& c : option) c = c == '-' ? '_' : static_cast<char>(std::toupper(c));
+    return option;
 }
 
-/// An option with a number from `least` to `most`.
-template <class Value>
-CLI::Option* add_number(
-    CLI::App& command, const char* name, const char* variable, Value& value,
-    std::type_identity_t<Value> least, std::type_identity_t<Value> most, const char* help) {
-    return add_flag(command, name, variable, value, help)->check(number_between(least, most));
-}
+/// Adds options to a command. Each takes its value from the flag, else from the environment
+/// variable, else its default.
+struct Options {
+    template <class Value>
+    CLI::Option* add(const std::string& name, Value& value, const char* help) const {
+        return command.add_option(name, value, help)->envname(variable_of(name));
+    }
+    /// An option with a number from `least` to `most`.
+    template <class Value>
+    CLI::Option* number(
+        const std::string& name, Value& value, std::type_identity_t<Value> least,
+        std::type_identity_t<Value> most, const char* help) const {
+        return add(name, value, help)->check(number_between(least, most))->capture_default_str();
+    }
 
-void add_server_flags(CLI::App& c, ServerOptions& o) {
-    add_flag(c, "--host", "VINES_HOST", o.host, "address to listen on");
-    add_number(
-        c, "--port", "VINES_PORT", o.port, 0, 65535, "port to listen on, 0 for any free one");
-    add_number(
-        c, "--threads", "VINES_THREADS", o.threads, 1, 4096,
-        "worker threads: requests answered at once");
-    add_number(
-        c, "--connections", "VINES_CONNECTIONS", o.connections, 1, 1000000,
+    CLI::App& command;
+};
+
+void add_connection_options(const Options& c, ServerOptions& o) {
+    c.add("--host", o.access.host, "address to listen on")->capture_default_str();
+    c.number("--port", o.port, 0, 65535, "port to listen on, 0 for any free one");
+    c.number("--threads", o.limits.workers, 1, 4096, "worker threads: requests answered at once");
+    c.number(
+        "--connections", o.limits.connections, 1, 1000000,
         "connections open at once; beyond that the connection that has been idle longest is "
         "closed");
-    add_number(
-        c, "--client-connections", "VINES_CLIENT_CONNECTIONS", o.client_connections, 1, 1000000,
+    c.number(
+        "--client-connections", o.limits.per_client, 1, 1000000,
         "connections of one address, except of a trusted proxy; beyond that one of its own is "
         "closed");
 }
 
-void add_access_flags(CLI::App& c, AccessOptions& o, std::string& key_file) {
-    c.add_option(
-         "--allow-host", o.hosts,
-         "host name with a dot that requests can use, in addition to this machine's; *: any "
-         "(repeatable)")
-        ->envname("VINES_ALLOW_HOST");
-    c.add_option(
+void add_access_options(const Options& c, AccessOptions& o, std::string& key_file) {
+    c.add(
+        "--allow-host", o.hosts,
+        "host name with a dot that requests can use, in addition to this machine's; *: any "
+        "(repeatable)");
+    c.add(
          "--cors-origin", o.origins,
          "origin of a page that may use this service; *: any (repeatable)")
-        ->envname("VINES_CORS_ORIGIN")
-        ->check([](const std::string& text) {
-            return text == "*" ? std::string() : origin_error(text);
-        });
-    c.add_option_function<std::vector<std::string>>(
-         "--trust-proxy",
-         [&o](const std::vector<std::string>& texts) {
-             for (const std::string& text : texts) o.proxies.push_back(*Network::read(text));
-         },
-         "address or network (10.0.0.0/8) of a proxy whose X-Forwarded-For names the client "
-         "(repeatable)")
-        ->envname("VINES_TRUST_PROXY")
+        ->check([](const std::string& text) { return text == "*" ? "" : origin_error(text); });
+    c.command
+        .add_option_function<std::vector<std::string>>(
+            "--trust-proxy",
+            [&o](const std::vector<std::string>& texts) {
+                for (const std::string& text : texts) o.proxies.push_back(*Network::read(text));
+            },
+            "address or network (10.0.0.0/8) of a proxy whose X-Forwarded-For names the client "
+            "(repeatable)")
+        ->envname(variable_of("--trust-proxy"))
         ->type_name("ADDRESS")
         ->check([](const std::string& text) {
             return Network::read(text) ? "" : text + " is not an address or ADDRESS/BITS";
         });
-    c.add_option(
+    c.add(
          "--api-key-file", key_file,
          "file with one API key per line; requests then need a key, except for health and the "
          "page; SIGHUP reloads it")
-        ->envname("VINES_API_KEY_FILE")
         ->type_name("FILE");
 }
 
-void add_compute_flags(CLI::App& c, ServeOptions& o) {
-    add_number(
-        c, "--compute-threads", "VINES_COMPUTE_THREADS", o.compute.running, 1, 1024,
-        "computations at once")
+void add_compute_options(const Options& c, ServeOptions& o) {
+    c.number("--compute-threads", o.compute.running, 1, 1024, "computations at once")
         ->default_str("the cores");
-    add_number(
-        c, "--compute-queue", "VINES_COMPUTE_QUEUE", o.compute.waiting, 0, 100000,
+    c.number(
+        "--compute-queue", o.compute.waiting, 0, 100000,
         "computations that wait; beyond that: 503");
-    add_number(
-        c, "--sweeps", "VINES_SWEEPS", o.compute.sweeps, 0, 1000,
+    c.number(
+        "--sweeps", o.compute.sweeps, 0, 1000,
         "sweeps at once, which share the free computing slots; beyond that: 503");
-    add_number(
-        c, "--sweep-points", "VINES_SWEEP_POINTS", o.routes.sweep_points, 1, 10000000,
+    c.number(
+        "--sweep-points", o.routes.sweep_points, 1, 10000000,
         "maximum number of points of one sweep");
-    add_number(
-        c, "--drain", "VINES_DRAIN", o.drain, 0, 3600,
+    c.number(
+        "--drain", o.drain, 0, 3600,
         "seconds after SIGTERM during which /readyz answers 503 and requests are still accepted, "
         "so that a proxy notices");
-    add_number(
-        c, "--sweep-deadline", "VINES_SWEEP_DEADLINE", o.routes.sweep_deadline, 0.001, 31536000,
+    c.number(
+        "--sweep-deadline", o.routes.sweep_deadline, 0.001, 31536000,
         "seconds of one sweep; then its stream ends, and the missing points can be requested");
-    add_number(
-        c, "--deadline", "VINES_DEADLINE", o.routes.deadline, 0.001, 86400,
+    c.number(
+        "--deadline", o.routes.deadline, 0.001, 86400,
         "seconds of computing for one request; then it ends with the results so far");
 }
 
-void add_size_flags(CLI::App& c, ServeOptions& o) {
-    add_number(
-        c, "--payload-limit", "VINES_PAYLOAD_LIMIT", o.server.payload_limit, 1, 1 << 30,
+void add_size_options(const Options& c, ServeOptions& o) {
+    c.number(
+        "--payload-limit", o.server.access.payload_limit, 1, 1 << 30,
         "largest request body, bytes");
-    add_number(
-        c, "--memory-limit", "VINES_MEMORY_LIMIT", o.server.memory_limit, 1, std::size_t{1} << 50,
+    c.number(
+        "--memory-limit", o.server.limits.held_bytes, 1, std::size_t{1} << 50,
         "requests and answers held at once, bytes; beyond that: 503");
-    add_number(
-        c, "--record-limit", "VINES_RECORD_LIMIT", o.routes.record_limit, 1, 1 << 30,
+    c.number(
+        "--record-limit", o.routes.record_limit, 1, 1 << 30,
         "largest record sent to /v1/identify, bytes");
-    add_number(
-        c, "--answer-limit", "VINES_ANSWER_LIMIT", o.routes.answer_limit, 1, std::size_t{1} << 40,
+    c.number(
+        "--answer-limit", o.routes.answer_limit, 1, std::size_t{1} << 40,
         "largest JSON answer, bytes; a larger one is thinned, or refused if that is impossible");
 }
 
-void add_log_flags(CLI::App& c, std::string& format) {
-    add_flag(
-        c, "--log-format", "VINES_LOG_FORMAT", format, "format of the log on stderr: json or text")
+void add_log_and_page_options(const Options& c, std::string& log_format, PageOptions& page) {
+    c.add("--log-format", log_format, "format of the log on stderr: json or text")
+        ->capture_default_str()
         ->check(CLI::IsMember({"json", "text"}));
-}
-
-void add_page_flags(CLI::App& c, PageOptions& o) {
-    c.add_option(
-         "--embed-origin", o.embed_origins,
+    c.add(
+         "--embed-origin", page.embed_origins,
          "origin of a page that may show this one in a frame (repeatable)")
-        ->envname("VINES_EMBED_ORIGIN")
         ->check(origin_error);
-    c.add_option(
-         "--web-dir", o.web_dir,
+    c.add(
+         "--web-dir", page.web_dir,
          "serve the page from this folder instead of the program, for development")
-        ->envname("VINES_WEB_DIR")
         ->check(CLI::ExistingDirectory);
 }
 
@@ -225,18 +222,6 @@ int wait_for_stop(ApiKeys* keys) {
     end(report_unanswered(server) == 0 ? 0 : exit_unanswered);
 }
 
-#ifdef __GLIBC__
-/// Limits the memory that malloc keeps. Blocks of 4 MiB and more are mapped one by one: glibc's own
-/// threshold grows up to 32 MiB with what is freed. Below it each arena keeps enough for one answer
-/// of tens of thousands of numbers, because each page requested anew costs a microsecond. There are
-/// no more arenas than computing threads.
-void configure_malloc(int computing) {
-    mallopt(M_MMAP_THRESHOLD, 4 << 20);
-    mallopt(M_TRIM_THRESHOLD, 8 << 20);
-    mallopt(M_ARENA_MAX, computing);
-}
-#endif
-
 /// Prints the address to stdout, where a script can wait for it.
 void print_greeting(const std::string& greeting) {
     try {
@@ -257,32 +242,28 @@ void prepare_signals(bool reloads) {
 }
 
 int serve(const ServeOptions& options) {
-#ifdef __GLIBC__
     configure_malloc(options.compute.running);
-#endif
     AdmissionControl admission(options.compute);
     Metrics metrics(admission);
     std::optional<Server> server;
     std::shared_ptr<ApiKeys> keys;
-    int port = 0;
     try {
         // Read before signals are blocked: a disk can be slow and a folder large.
         if (!options.key_file.empty()) keys = std::make_shared<ApiKeys>(options.key_file);
         ServerOptions chosen = options.server;
-        chosen.access.listens_on = chosen.host;
         chosen.access.keys = keys;
         std::vector<Route> routes = make_routes(options.routes, admission, metrics);
         prepare_signals(keys != nullptr);
         start_log(options.log == "text" ? LogFormat::text : LogFormat::json);
-        server.emplace(chosen, std::move(routes), metrics);
-        port = server->bind();
+        server.emplace(std::move(chosen), std::move(routes), metrics);
     } catch (const std::runtime_error& e) {
         print_message(e.what());
         end(2);
     }
-    const std::string host = in_url(options.server.host);
-    print_greeting(fmt::format("vines {} listens on http://{}:{}\n", api::version(), host, port));
-    log_event(fmt::format("vines {} listens on {}:{}", api::version(), host, port));
+    const std::string address =
+        fmt::format("{}:{}", in_url(options.server.access.host), server->port());
+    print_greeting(fmt::format("vines {} listens on http://{}\n", api::version(), address));
+    log_event(fmt::format("vines {} listens on {}", api::version(), address));
 
     std::thread([&] { stop_on_signal(options.drain, keys.get(), admission, *server); }).detach();
     server->run();
@@ -295,12 +276,12 @@ int serve(const ServeOptions& options) {
 Command add_serve(CLI::App& app) {
     const auto options = std::make_shared<ServeOptions>();
     CLI::App* command = app.add_subcommand("serve", "the HTTP service and its page");
-    add_server_flags(*command, options->server);
-    add_access_flags(*command, options->server.access, options->key_file);
-    add_compute_flags(*command, *options);
-    add_size_flags(*command, *options);
-    add_log_flags(*command, options->log);
-    add_page_flags(*command, options->routes.page);
+    const Options to{*command};
+    add_connection_options(to, options->server);
+    add_access_options(to, options->server.access, options->key_file);
+    add_compute_options(to, *options);
+    add_size_options(to, *options);
+    add_log_and_page_options(to, options->log, options->routes.page);
     add_examples(
         *command,
         "vines serve\n"
@@ -312,8 +293,8 @@ Command add_serve(CLI::App& app) {
 namespace {
 
 /// True if GET /healthz is answered with 200 within 2 s.
-bool is_healthy(const ServerOptions& target) {
-    httplib::Client client(target.host, target.port);
+bool is_healthy(const std::string& host, int port) {
+    httplib::Client client(host, port);
     client.set_connection_timeout(2);  // s
     client.set_read_timeout(2);
     const auto result = client.Get("/healthz");
@@ -326,12 +307,13 @@ Command add_healthcheck(CLI::App& app) {
     const auto target = std::make_shared<ServerOptions>();
     CLI::App* command =
         app.add_subcommand("healthcheck", "check a running service: exit code 0 if healthy");
-    command->add_option("--host", target->host, "address of the service")->capture_default_str();
+    command->add_option("--host", target->access.host, "address of the service")
+        ->capture_default_str();
     command->add_option("--port", target->port, "port of the service")
         ->envname("VINES_PORT")
         ->capture_default_str();
     add_examples(*command, "vines healthcheck --port 8080 && echo well");
-    return {command, [target] { return is_healthy(*target) ? 0 : 1; }};
+    return {command, [target] { return is_healthy(target->access.host, target->port) ? 0 : 1; }};
 }
 
 }  // namespace vines::http

@@ -85,17 +85,58 @@ private:
     bool finished_ = false;
 };
 
-/// RunControl of a sweep's threads: they take background slots, release them while requests wait,
-/// and wait while the client reads slower than they compute.
-class SweepControl : public api::RunControl {
+/// A computation whose lines, or parts of a table, are sent while it runs.
+struct LineWork {
+    using Push = std::function<void(const std::string& text)>;
+
+    const char* path;  ///< for the log
+    std::string begin;
+    /// Passes on each line with its end, or a part of a table. False if it was stopped.
+    std::function<bool(api::RunControl& control, const Push& push)> compute;
+    /// Line of progress after `done` lines; empty function for a table.
+    std::function<std::string(std::size_t done, const api::RunControl& control, double seconds)>
+        progress;
+    /// Last lines after progress; empty function if the computation sends them.
+    std::function<std::string(std::size_t done)> complete;
+    const char* how_to_go_on = "";  ///< after an early end; null for a table, which is then cut off
+};
+
+/// Computes lines on other threads while this one sends them. The threads take background slots,
+/// release them while requests wait, and wait while the client reads slower than they compute.
+class LineStream : public api::RunControl {
 public:
-    SweepControl(AdmissionControl& admission, std::string client, LineQueue& lines, double deadline)
-        : admission_(admission),
+    /// `id`: of the request, for the log; deadline: s.
+    LineStream(
+        const LineWork& work, double deadline, std::string client, std::string id,
+        AdmissionControl& admission, Writer& out)
+        : work_(work),
+          deadline_(deadline),
           client_(std::move(client)),
-          lines_(lines),
-          ends_(
-              Clock::now() + std::chrono::duration_cast<Clock::duration>(
-                                 std::chrono::duration<double>(deadline))) {}
+          id_(std::move(id)),
+          admission_(admission),
+          out_(out) {}
+
+    SweepEnd run() {
+        if (!out_.write(work_.begin)) return SweepEnd::client_left;
+        SweepEnd end;
+        std::string last;
+        try {
+            const std::size_t done = send_lines();
+            end = is_complete_            ? SweepEnd::complete
+                  : is_late(Clock::now()) ? SweepEnd::deadline
+                                          : SweepEnd::stopping;
+            last = !is_complete_    ? line_of_end(end, done)
+                   : work_.complete ? work_.complete(done)
+                                    : "";
+        } catch (...) {
+            log_failure(work_.path, id_);
+            end = SweepEnd::failed;
+            last = line_of_end(end, lines_.take({}).count);
+        }
+        return connected_ && out_.write(last) ? end : SweepEnd::client_left;
+    }
+
+    // Called by the threads that compute.
     void begin() override {
         slot() = admission_.acquire_background(client_, stop_.get_token());
         acquired_at() = Clock::now();
@@ -113,9 +154,6 @@ public:
         }
         return stops(now) || !slot();
     }
-    /// From any thread.
-    void stop() { stop_.request_stop(); }
-    bool is_late() const { return Clock::now() > ends_; }
 
 private:
     /// The slot of the calling thread. thread_local, because a thread of the sweep holds no slot
@@ -128,68 +166,50 @@ private:
         thread_local Clock::time_point time;
         return time;
     }
+    bool is_late(Clock::time_point now) const { return now - started_ > deadline_; }
     bool stops(Clock::time_point now) const {
-        return stop_.stop_requested() || admission_.sweeps_stopped() || now > ends_;
+        return stop_.stop_requested() || admission_.sweeps_stopped() || is_late(now);
     }
 
-    AdmissionControl& admission_;
-    const std::string client_;
-    LineQueue& lines_;
-    const Clock::time_point ends_;
-    std::stop_source stop_;
-};
-
-/// A computation whose lines, or parts of a table, are sent while it runs.
-struct LineWork {
-    using Push = std::function<void(const std::string& text)>;
-
-    const char* path;  ///< for the log
-    std::string begin;
-    /// Passes on each line with its end, or a part of a table. False if it was stopped.
-    std::function<bool(api::RunControl& control, const Push& push)> compute;
-    /// Line of progress after `done` lines; empty function for a table.
-    std::function<std::string(std::size_t done, const api::RunControl& control, double seconds)>
-        progress;
-    /// Last lines after progress; empty function if the computation sends them.
-    std::function<std::string(std::size_t done)> complete;
-    const char* how_to_go_on = "";  ///< after an early end; null for a table, which is then cut off
-};
-
-/// Computes the lines on another thread while this one sends them.
-class LineStream {
-public:
-    /// `id`: of the request, for the log.
-    LineStream(
-        const LineWork& work, double deadline, std::string client, std::string id,
-        AdmissionControl& admission, Writer& out)
-        : work_(work),
-          out_(out),
-          id_(std::move(id)),
-          control_(admission, std::move(client), lines_, deadline) {}
-
-    SweepEnd run() {
-        if (!out_.write(work_.begin)) return SweepEnd::client_left;
-        SweepEnd end;
-        std::string last;
+    /// Starts the computation, and sends its lines. Returns their number.
+    std::size_t send_lines() {
+        auto computing = std::async(std::launch::async, [this] {
+            const std::shared_ptr<void> at_end(nullptr, [this](void*) { lines_.finish(); });
+            return work_.compute(*this, [this](const std::string& text) { lines_.push(text); });
+        });
         try {
-            const std::size_t done = lines();
-            end = is_complete_         ? SweepEnd::complete
-                  : control_.is_late() ? SweepEnd::deadline
-                                       : SweepEnd::stopping;
-            last = !is_complete_    ? line_of_end(end, done)
-                   : work_.complete ? work_.complete(done)
-                                    : "";
+            const std::size_t done = send_computed_lines();
+            is_complete_ = computing.get();
+            return done;
         } catch (...) {
-            log_failure(work_.path, id_, std::current_exception());
-            end = SweepEnd::failed;
-            last = line_of_end(end, lines_.take({}).count);
+            stop_.request_stop();  // the destructor of `computing` waits for its end
+            throw;
         }
-        return connected_ && out_.write(last) ? end : SweepEnd::client_left;
     }
-    std::size_t runs() const { return control_.runs; }
-    std::size_t impacts() const { return control_.impacts; }
 
-private:
+    /// Sends lines as they come, and progress between them; returns their number. Stops the
+    /// computation once the client has left.
+    std::size_t send_computed_lines() {
+        auto reported = started_;
+        LineQueue::Taken taken;
+        do {
+            taken = lines_.take(client_check_interval);
+            const auto now = Clock::now();
+            const bool due =
+                taken.finished ? bool(work_.complete) : now - reported >= report_interval;
+            if (work_.progress && due) {
+                const std::chrono::duration<double> seconds = now - started_;
+                const std::string line = work_.progress(taken.count, *this, seconds.count());
+                // The last line can be among them.
+                taken.text.insert(work_.complete ? taken.text.size() : 0, line);
+                reported = now;
+            }
+            connected_ = connected_ && out_.connected() && out_.write(taken.text);
+            if (!connected_) stop_.request_stop();
+        } while (!taken.finished);
+        return taken.count;
+    }
+
     /// The last line of an incomplete stream; a table has none.
     std::string line_of_end(SweepEnd end, std::size_t done) const {
         if (!work_.how_to_go_on) return "";
@@ -204,51 +224,14 @@ private:
             done);
     }
 
-    /// Computes the lines on another thread while this one sends them. Returns their number.
-    std::size_t lines() {
-        auto computing = std::async(std::launch::async, [this] {
-            const std::shared_ptr<void> at_end(nullptr, [this](void*) { lines_.finish(); });
-            return work_.compute(control_, [this](const std::string& text) { lines_.push(text); });
-        });
-        try {
-            const std::size_t done = write_lines();
-            is_complete_ = computing.get();
-            return done;
-        } catch (...) {
-            control_.stop();  // the destructor of `computing` waits for its end
-            throw;
-        }
-    }
-
-    /// Sends lines as they come, and progress between them; returns their number. Stops the
-    /// computation once the client has left.
-    std::size_t write_lines() {
-        auto reported = started_;
-        LineQueue::Taken taken;
-        do {
-            taken = lines_.take(client_check_interval);
-            const auto now = Clock::now();
-            const bool due =
-                taken.finished ? bool(work_.complete) : now - reported >= report_interval;
-            if (work_.progress && due) {
-                const std::chrono::duration<double> seconds = now - started_;
-                const std::string line = work_.progress(taken.count, control_, seconds.count());
-                // The last line can be among them.
-                taken.text.insert(work_.complete ? taken.text.size() : 0, line);
-                reported = now;
-            }
-            connected_ = connected_ && out_.connected() && out_.write(taken.text);
-            if (!connected_) control_.stop();
-        } while (!taken.finished);
-        return taken.count;
-    }
-
     const LineWork& work_;
     const Clock::time_point started_ = Clock::now();
+    const std::chrono::duration<double> deadline_;
+    const std::string client_, id_;
+    AdmissionControl& admission_;
     Writer& out_;
     LineQueue lines_;
-    const std::string id_;
-    SweepControl control_;
+    std::stop_source stop_;
     bool connected_ = true, is_complete_ = false;
 };
 
@@ -264,20 +247,20 @@ Response sweep_refusal(const AdmissionControl& admission) {
 
 /// Sends a computation, which counts as a sweep. The response can be copied: the sweep's slot is
 /// released with the last copy, whether it was sent or not.
-Response stream_lines(
-    LineWork lines, double deadline, const Request& asked, AdmissionControl& admission,
-    Metrics& metrics) {
+Response stream_lines(LineWork lines, const Request& asked, const Service& service) {
+    AdmissionControl& admission = service.admission;
     const auto work = std::make_shared<const LineWork>(std::move(lines));
-    const AdmissionControl::SweepSlot sweep_slot = admission.acquire_sweep(asked.client);
+    const std::string client = asked.sender.client();
+    const AdmissionControl::SweepSlot sweep_slot = admission.acquire_sweep(client);
     if (!sweep_slot) return sweep_refusal(admission);
     return {
         .content_type = api::sweep_format_names[0].media_type,
         .headers = {{"Cache-Control", "no-store"}, {"X-Accel-Buffering", "no"}},
-        .stream = [work, deadline, client = asked.client, id = asked.id, &admission, &metrics,
-                   sweep_slot](Writer& out) {
+        .stream = [work, client, id = asked.id, deadline = service.options.sweep_deadline,
+                   &admission, &metrics = service.metrics, sweep_slot](Writer& out) {
             LineStream sending(*work, deadline, client, id, admission, out);
             const SweepEnd end = sending.run();
-            metrics.count_sweep(end, sending.runs(), sending.impacts());
+            metrics.count_sweep(end, sending.runs, sending.impacts);
             return work->how_to_go_on ? end != SweepEnd::client_left : end == SweepEnd::complete;
         }};
 }
@@ -321,26 +304,24 @@ LineWork work_of(
 }  // namespace
 
 Response stream_sweep(
-    api::SweepRequest request, SweepForm form, double deadline, const Request& asked,
-    AdmissionControl& admission, Metrics& metrics) {
-    request.plan.in_order = form.format == api::Format::csv;
+    api::SweepRequest request, api::Format format, const Request& asked, const Service& service) {
+    request.plan.in_order = format == api::Format::csv;
     const auto shared = std::make_shared<const api::SweepRequest>(std::move(request));
     std::shared_ptr<api::SweepTable> table;
-    if (form.format != api::Format::json)
-        table = std::make_shared<api::SweepTable>(*shared, form.format, form.most_bytes);
-    Response response = stream_lines(
-        work_of(shared, table, admission.threads()), deadline, asked, admission, metrics);
+    if (format != api::Format::json)
+        table = std::make_shared<api::SweepTable>(*shared, format, service.options.answer_limit);
+    Response response =
+        stream_lines(work_of(shared, table, service.admission.threads()), asked, service);
     if (table && response.stream) {
-        response.content_type = api::name_of(form.format).media_type;
+        response.content_type = api::name_of(format).media_type;
         response.held = 2 * table->bytes();
-        response.silent = form.format != api::Format::csv;
+        response.silent = format != api::Format::csv;
     }
     return response;
 }
 
 Response stream_continuation(
-    api::ContinueRequest request, double deadline, const Request& asked,
-    AdmissionControl& admission, Metrics& metrics) {
+    api::ContinueRequest request, const Request& asked, const Service& service) {
     const auto shared = std::make_shared<const api::ContinueRequest>(std::move(request));
     const auto count = std::make_shared<api::ContinuationCount>();
     return stream_lines(
@@ -354,18 +335,16 @@ Response stream_continuation(
          },
          [=](std::size_t) { return api::continuation_done(*count) + '\n'; },
          "continue from the state of a last point, with orbit \"stated\""},
-        deadline, asked, admission, metrics);
+        asked, service);
 }
 
-Response stream_design(
-    api::DesignRequest request, double deadline, const Request& asked, AdmissionControl& admission,
-    Metrics& metrics) {
+Response stream_design(api::DesignRequest request, const Request& asked, const Service& service) {
     const auto shared = std::make_shared<const api::DesignRequest>(std::move(request));
     const auto count = std::make_shared<api::DesignCount>();
     return stream_lines(
         {"/v1/design",
          api::json_text(api::design_start(*shared)) + '\n',
-         [shared, count, threads = admission.threads()](
+         [shared, count, threads = service.admission.threads()](
              api::RunControl& control, const LineWork::Push& push) {
              return api::run_design(
                  *shared, threads, control, *count,
@@ -376,7 +355,7 @@ Response stream_design(
          },
          {},
          "request fewer R, b_count, f_count or cycles"},
-        deadline, asked, admission, metrics);
+        asked, service);
 }
 
 }  // namespace vines::http

@@ -22,11 +22,10 @@ namespace vines::http {
 template <class Job>
 class WorkerPool {
 public:
-    /// Starts threads when needed, `threads` at most; std::system_error if not even one starts. At
-    /// most `waiting` jobs wait for a thread. work(job) must not throw.
-    WorkerPool(int threads, std::size_t waiting, std::function<void(Job)> work)
+    /// Starts threads when needed, `threads` at most; std::system_error if not even one starts. As
+    /// many jobs wait for a thread. work(job) must not throw.
+    WorkerPool(int threads, std::function<void(Job)> work)
         : max_threads_(static_cast<std::size_t>(threads)),
-          max_waiting_(waiting),
           work_(std::move(work)) {
         ::sem_init(&wake_, 0, 0);
         start_one();
@@ -51,7 +50,7 @@ public:
         {
             const std::lock_guard lock(mutex_);
             if (jobs_.size() >= free_ && threads_.size() < max_threads_) try_to_start_one();
-            if (jobs_.size() >= free_ + max_waiting_) {
+            if (jobs_.size() >= free_ + max_threads_) {
                 const bool could_begin = may_begin()(client) && !may_begin()(jobs_.last_client());
                 if (!could_begin && !jobs_.precedes_last(client)) return job;
                 refused = jobs_.pop_last();
@@ -122,7 +121,7 @@ private:
         while (::sem_wait(&wake_) != 0 && errno == EINTR) {}
     }
 
-    const std::size_t max_threads_, max_waiting_;
+    const std::size_t max_threads_;
     const std::function<void(Job)> work_;
     std::mutex mutex_;
     /// Posted once per job, and by each thread at the end; a thread looks for another job before it

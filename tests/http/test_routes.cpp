@@ -21,13 +21,10 @@ Response answer_of(
     const std::vector<Route> routes = make_routes(options, admission, metrics);
     const Route* route = find_route(routes, method, path);
     REQUIRE(route);
-    return route->answer(
-        {.method = method,
-         .path = path,
-         .query = {},
-         .content_type = {},
-         .body = body,
-         .left = [has_left] { return has_left; }});
+    Request request{.head = {.method = method, .target = path}, .body = body, .left = [has_left] {
+                        return has_left;
+                    }};
+    return route->answer(request);
 }
 
 /// A client that leaves after receiving `most` bytes.
@@ -100,15 +97,13 @@ TEST_CASE("a large answer is compressed by the computing thread, unless its clie
     Metrics metrics(idle);
     const std::vector<Route> routes = make_routes({}, admission, metrics);
     const auto ask = [&](const std::string& encoding, std::function<bool()> left) {
-        return find_route(routes, "GET", "/v1/simulate")
-            ->answer(
+        Request request{
+            .head =
                 {.method = "GET",
-                 .path = "/v1/simulate",
-                 .query = vines::api::parse_query("preset=fig3"),
-                 .content_type = {},
-                 .body = {},
-                 .accept_encoding = encoding,
-                 .left = std::move(left)});
+                 .target = "/v1/simulate?preset=fig3",
+                 .headers = {{"accept-encoding", encoding}}},
+            .left = std::move(left)};
+        return find_route(routes, "GET", "/v1/simulate")->answer(request);
     };
     const auto never = [] { return false; };
     const Response plain = ask("", never), packed = ask("gzip", never);
