@@ -52,20 +52,6 @@ constexpr int unsent_in_kernel = 1 << 17;
 // Time after stop() in which requests on idle connections are still answered.
 constexpr auto drain_time = 300ms;
 
-void add(int poll, int socket) {
-    epoll_event event{.events = EPOLLIN, .data = {.fd = socket}};
-    ::epoll_ctl(poll, EPOLL_CTL_ADD, socket, &event);
-}
-
-/// Waits for a connection: until it can be read, or until the socket takes more of the answer. The
-/// latter edge-triggered: a stream can have nothing to send.
-void wait_for(int poll, int operation, const Connection& connection) {
-    epoll_event event{
-        .events = connection.is_delivering() ? EPOLLOUT | EPOLLET : EPOLLIN,
-        .data = {.fd = connection.socket()}};
-    ::epoll_ctl(poll, operation, connection.socket(), &event);
-}
-
 /// Raises the limit of open files as far as possible and returns it, less some for other files.
 std::size_t files_for_connections() {
     constexpr std::size_t others = 64;
@@ -83,8 +69,6 @@ std::string numeric(const sockaddr* address, socklen_t size) {
     return text.data();
 }
 
-void remove(int poll, int socket) { ::epoll_ctl(poll, EPOLL_CTL_DEL, socket, nullptr); }
-
 }  // namespace
 
 EventLoop::EventLoop(
@@ -99,7 +83,7 @@ EventLoop::EventLoop(
       memory_(limits.held_bytes),
       workers_(limits.workers, [this](Owned connection) { work(std::move(connection)); }) {
     ::fcntl(listening_, F_SETFL, ::fcntl(listening_, F_GETFL) | O_NONBLOCK);
-    add(poll_.number(), wake_.number());
+    change_events(EPOLL_CTL_ADD, wake_.number(), EPOLLIN);
     listen(true);
 }
 
@@ -138,9 +122,21 @@ void EventLoop::wait() {
     for (const int socket : std::exchange(ready_, {})) handle(socket);
 }
 
+void EventLoop::change_events(int operation, int socket, std::uint32_t events) const {
+    epoll_event event{.events = events, .data = {.fd = socket}};
+    ::epoll_ctl(poll_.number(), operation, socket, &event);
+}
+
+/// Waits for a connection: until it can be read, or until the socket takes more of the answer. The
+/// latter edge-triggered: a stream can have nothing to send.
+void EventLoop::wait_for(int operation, const Connection& connection) const {
+    change_events(
+        operation, connection.socket(), connection.is_delivering() ? EPOLLOUT | EPOLLET : EPOLLIN);
+}
+
 void EventLoop::listen(bool on) {
     if (on == listens_) return;
-    on ? add(poll_.number(), listening_) : remove(poll_.number(), listening_);
+    change_events(on ? EPOLL_CTL_ADD : EPOLL_CTL_DEL, listening_, EPOLLIN);
     listens_ = on;
 }
 
@@ -208,7 +204,7 @@ void EventLoop::watch(Owned connection) {
     Connection& watched = *connections_[static_cast<std::size_t>(socket)];
     ++count_;
     if (watched.is_delivering()) ++delivering_;
-    wait_for(poll_.number(), EPOLL_CTL_ADD, watched);
+    wait_for(EPOLL_CTL_ADD, watched);
 }
 
 /// True if the client may open no more connections. Behind a proxy are many clients.
@@ -219,7 +215,7 @@ bool EventLoop::is_at_limit(const Connection& connection) const {
 }
 
 EventLoop::Owned EventLoop::release(int socket) {
-    remove(poll_.number(), socket);
+    change_events(EPOLL_CTL_DEL, socket, 0);
     --count_;
     return std::move(connections_[static_cast<std::size_t>(socket)]);
 }
@@ -271,7 +267,7 @@ bool EventLoop::answer_here(Connection& connection) {
     handler_.answer(connection, connection.take());
     ++delivering_;
     connection.deliver();
-    if (connection.is_delivering()) wait_for(poll_.number(), EPOLL_CTL_MOD, connection);
+    if (connection.is_delivering()) wait_for(EPOLL_CTL_MOD, connection);
     else --delivering_;
     return !connection.is_delivering() && !connection.is_closing();
 }
@@ -283,7 +279,7 @@ void EventLoop::deliver(Connection& connection) {
         return;
     }
     --delivering_;
-    wait_for(poll_.number(), EPOLL_CTL_MOD, connection);
+    wait_for(EPOLL_CTL_MOD, connection);
     if (!connection.is_closing()) read(connection);
 }
 

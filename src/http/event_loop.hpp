@@ -6,6 +6,7 @@
 #pragma once
 
 #include <atomic>
+#include <cstdint>
 #include <functional>
 #include <map>
 #include <memory>
@@ -60,6 +61,8 @@ private:
     void accept(int most);
     Connection* eviction_candidate(const std::string& owner = {}) const;
     bool is_at_limit(const Connection& connection) const;
+    void change_events(int operation, int socket, std::uint32_t events) const;
+    void wait_for(int operation, const Connection& connection) const;
     void listen(bool on);
     void watch(Owned connection);
     Owned release(int socket);

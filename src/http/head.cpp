@@ -102,10 +102,11 @@ std::string_view Head::header(std::string_view name) const {
     return found == headers.end() ? std::string_view() : std::string_view(found->second);
 }
 
-bool Head::has(std::string_view name) const {
-    return std::any_of(headers.begin(), headers.end(), [name](const auto& header) {
+std::size_t Head::count(std::string_view name) const {
+    const auto number = std::count_if(headers.begin(), headers.end(), [name](const auto& header) {
         return header.first == name;
     });
+    return static_cast<std::size_t>(number);
 }
 
 bool HeadReader::read(std::string_view bytes) {
@@ -186,19 +187,14 @@ void HeadReader::take_header(std::string_view line) {
 }
 
 void HeadReader::finish() {
-    const auto times = [this](std::string_view name) {
-        return std::count_if(
-            head_.headers.begin(), head_.headers.end(),
-            [name](const auto& header) { return header.first == name; });
-    };
     const bool is_old = version_ == "HTTP/1.0";
-    if (times("host") > 1 || (times("host") == 0 && !is_old))
+    if (head_.count("host") > 1 || (!head_.has("host") && !is_old))
         malformed("it must have exactly one Host header");
     if (!is_authority(head_.host) || !is_authority(head_.header("host")))
         malformed("its Host must be HOST or HOST:PORT");
     if (head_.host.empty()) head_.host = head_.header("host");
     const auto length = whole_number(head_.header("content-length"));
-    if (times("content-length") > (length ? 1 : 0))
+    if (head_.count("content-length") > (length ? 1 : 0))
         throw Problem(400, "the Content-Length must be one whole number");
     if (head_.has("transfer-encoding")) {
         if (head_.has("content-length") || is_old)

@@ -28,7 +28,8 @@ struct Head {
     std::string_view query() const;  ///< after the "?"
     /// The value of a header by its name in lower case; empty if missing.
     std::string_view header(std::string_view name) const;
-    bool has(std::string_view name) const;
+    bool has(std::string_view name) const { return count(name) > 0; }
+    std::size_t count(std::string_view name) const;
 };
 
 /// Incremental parser: reads each byte of a head once.

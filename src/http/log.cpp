@@ -1,14 +1,12 @@
 #include "http/log.hpp"
 
-#include <fmt/chrono.h>
+#include <fmt/format.h>
 #include <poll.h>
 #include <spdlog/sinks/base_sink.h>
 #include <spdlog/spdlog.h>
 #include <unistd.h>
 
 #include <atomic>
-#include <ctime>
-#include <iterator>
 #include <memory>
 #include <mutex>
 #include <nlohmann/json.hpp>
@@ -26,19 +24,13 @@ namespace {
 LogFormat format = LogFormat::json;
 std::atomic<std::size_t> dropped_total = 0;
 
-// Typical length of a line, characters.
-constexpr std::size_t usual_line = 256;
+// A line begins with its time and level.
+constexpr const char* json_pattern = R"({"time":"%Y-%m-%dT%H:%M:%SZ","level":"%l"%v})";
+constexpr const char* text_pattern = "%Y-%m-%dT%H:%M:%SZ %-7l%v";
 
+/// The fields of a line.
 class Line {
 public:
-    explicit Line(std::string_view level) {
-        text_.reserve(usual_line);
-        const std::string time = fmt::format("{:%FT%TZ}", fmt::gmtime(std::time(nullptr)));
-        if (format == LogFormat::text)
-            fmt::format_to(std::back_inserter(text_), "{} {:7}", time, level);
-        else
-            fmt::format_to(std::back_inserter(text_), R"({{"time":"{}","level":"{}")", time, level);
-    }
     void add(std::string_view name, std::string_view text) {
         if (api::needs_no_escape(text)) return put(name, text, "\"");
         // A path can contain any bytes: invalid UTF-8 is replaced.
@@ -48,10 +40,7 @@ public:
     void add(std::string_view name, double ms) { put(name, fmt::format("{:.3f}", ms)); }
     void add(std::string_view name, std::size_t number) { put(name, std::to_string(number)); }
     void add_true(std::string_view name) { put(name, "true"); }
-    std::string end() && {
-        text_ += format == LogFormat::text ? "\n" : "}\n";
-        return std::move(text_);
-    }
+    const std::string& text() const { return text_; }
 
 private:
     void put(std::string_view name, std::string_view value, std::string_view quote = "") {
@@ -64,18 +53,20 @@ private:
     std::string text_;
 };
 
-const char* level_of(int status) {
-    if (status < 400) return "info";
-    return status < 500 || status == 503 ? "warning" : "error";
+using Level = spdlog::level::level_enum;
+
+Level level_of(int status) {
+    if (status < 400) return Level::info;
+    return status < 500 || status == 503 ? Level::warn : Level::err;
 }
 
 /// Never throws: a line that cannot be written must not make a request fail.
 template <class Add>
-void log(std::string_view level, Add add) {
+void log(Level level, Add add) {
     try {
-        Line line(level);
+        Line line;
         add(line);
-        spdlog::info(std::move(line).end());
+        spdlog::log(level, line.text());
     } catch (...) {}
 }
 
@@ -90,13 +81,13 @@ protected:
             return;
         }
         if (dropped_ > 0) {
-            Line line("warning");
+            Line line;
             line.add("what", "lines were dropped");
             line.add("lines", dropped_);
-            write(std::move(line).end());
+            write({message.logger_name, Level::warn, line.text()});
         }
         dropped_ = 0;
-        write({message.payload.data(), message.payload.size()});
+        write(message);
     }
     void flush_() override {}
 
@@ -107,7 +98,9 @@ private:
         pollfd state{STDERR_FILENO, POLLOUT, 0};
         return ::poll(&state, 1, 0) > 0 && (state.revents & POLLOUT);
     }
-    static void write(std::string_view text) {
+    void write(const spdlog::details::log_msg& message) {
+        spdlog::memory_buf_t text;
+        formatter_->format(message, text);
         static_cast<void>(!::write(STDERR_FILENO, text.data(), text.size()));
     }
 
@@ -121,6 +114,8 @@ std::size_t log_lines_dropped() { return dropped_total; }
 void start_log(LogFormat chosen) {
     format = chosen;
     auto log = std::make_shared<spdlog::logger>("vines", std::make_shared<NonBlockingSink>());
+    const char* const pattern = format == LogFormat::text ? text_pattern : json_pattern;
+    log->set_pattern(pattern, spdlog::pattern_time_type::utc);
     spdlog::set_default_logger(log);
 }
 
@@ -144,7 +139,7 @@ void log_request(const Request& request, const Outcome& outcome) {
 }
 
 void log_unanswered(const Request& request, double ms) {
-    log("warning", [&](Line& line) {
+    log(Level::warn, [&](Line& line) {
         line.add("method", api::shortened(request.head.method));
         line.add("path", api::shortened(request.head.path()));
         line.add("ms", ms);
@@ -161,7 +156,7 @@ void log_failure(std::string_view path, const std::string& request_id) {
     } catch (const std::exception& e) {
         what = e.what();
     } catch (...) {}
-    log("error", [&](Line& line) {
+    log(Level::err, [&](Line& line) {
         line.add("path", api::shortened(path));
         line.add("request_id", request_id);
         line.add("what", api::shortened(what));
@@ -169,11 +164,11 @@ void log_failure(std::string_view path, const std::string& request_id) {
 }
 
 void log_event(const std::string& what) {
-    log("info", [&](Line& line) { line.add("what", what); });
+    log(Level::info, [&](Line& line) { line.add("what", what); });
 }
 
 void log_warning(const std::string& what) {
-    log("warning", [&](Line& line) { line.add("what", what); });
+    log(Level::warn, [&](Line& line) { line.add("what", what); });
 }
 
 }  // namespace vines::http

@@ -106,7 +106,6 @@ void Server::check_head(Exchange& exchange, const std::string& peer) const {
     http::check_head(exchange, peer, routes_, options_.access);
 }
 
-/// Answers a request; returns the rest of the work if the answer is computed while it is sent.
 Task Server::answer(Connection& connection, Exchange exchange) {
     const auto work = std::make_shared<Work>(
         Work{std::move(exchange), std::make_shared<Outbox>(connection.socket())});

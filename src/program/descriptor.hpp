@@ -103,11 +103,10 @@ inline std::string read_regular(
     if (!S_ISREG(entry.st_mode))
         throw std::runtime_error(fmt::format("cannot read {}: not a regular file", path));
     std::string text;
-    bool fits = static_cast<std::size_t>(entry.st_size) <= most;
-    if (fits)
-        if (const int failed = read_fully(file.number(), text, most)) fail_at("read", path, failed);
-    fits = fits && text.size() <= most;
-    if (!fits)
+    const bool may_fit = static_cast<std::size_t>(entry.st_size) <= most;
+    const int failed = may_fit ? read_fully(file.number(), text, most) : 0;
+    if (failed) fail_at("read", path, failed);
+    if (!may_fit || text.size() > most)
         throw std::runtime_error(
             fmt::format("cannot read {}: it has more than {} bytes", path, most));
     return text;
