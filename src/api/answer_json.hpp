@@ -12,6 +12,7 @@
 #include <cmath>
 #include <cstdint>
 #include <cstring>
+#include <functional>
 #include <initializer_list>
 #include <optional>
 #include <span>
@@ -20,6 +21,19 @@
 #include <vector>
 
 #include "api/schema/json.hpp"
+#include "core/motion/simulate.hpp"
+
+namespace vines {
+
+/// [from, to].
+inline void to_json(api::Json& json, const Interval& interval) {
+    json = {interval.from, interval.to};
+}
+inline void from_json(const api::Json& json, Interval& interval) {
+    interval = {json[0].get<double>(), json[1].get<double>()};
+}
+
+}  // namespace vines
 
 namespace vines::api {
 
@@ -65,20 +79,20 @@ inline std::size_t entry_size(Packed packing) {
     }
 }
 
-/// The list value(e) for each element e, packed if the type allows.
+/// The list of value(e), or of the member `value`, for each element e; packed if the type allows.
 template <class Elements, class Value>
 Json column(const Elements& elements, Value value) {
-    using Entry = std::decay_t<decltype(value(*std::begin(elements)))>;
+    using Entry = std::decay_t<std::invoke_result_t<Value&, decltype(*std::begin(elements))>>;
     if constexpr (packing<Entry> == Packed::no) {
         Json values = Json::array();
         values.get_ref<Json::array_t&>().reserve(elements.size());
-        for (const auto& e : elements) values.push_back(value(e));
+        for (const auto& e : elements) values.push_back(std::invoke(value, e));
         return values;
     } else {
         std::vector<std::uint8_t> bytes(elements.size() * sizeof(Entry));
         std::uint8_t* to = bytes.data();
         for (const auto& e : elements) {
-            const Entry entry = value(e);
+            const Entry entry = std::invoke(value, e);
             std::memcpy(to, &entry, sizeof(Entry));
             to += sizeof(Entry);
         }
@@ -89,7 +103,7 @@ Json column(const Elements& elements, Value value) {
 /// The elements themselves.
 template <class Elements>
 Json column(const Elements& elements) {
-    return column(elements, [](const auto& e) { return e; });
+    return column(elements, std::identity());
 }
 
 /// The packing of a value of an answer.

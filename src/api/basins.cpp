@@ -14,26 +14,18 @@ StartBox box_of(const Json& box, const State& start) {
     const Eigen::Vector4d at = vector_of(start);
     StartBox ranges;
     constexpr const char* names[] = {"x_dot0", "x0", "y_dot0", "y0"};
-    for (int i = 0; i < 4; ++i)
-        ranges[i] = box.contains(names[i])
-                        ? Interval{box[names[i]][0].get<double>(), box[names[i]][1].get<double>()}
-                        : Interval{at(i), at(i)};
+    for (int i = 0; i < 4; ++i) ranges[i] = box.value(names[i], Interval{at(i), at(i)});
     return ranges;
 }
 
 BasinPlan basin_plan(const SweepRequest& r, const Json& given) {
-    const auto number = [&](const char* name) {
-        return value_or_default(basins_fields(), given, name).get<double>();
-    };
-    const auto& systems = r.systems;
-    std::vector<double> values = r.axes.empty() ? std::vector<double>{0} : r.axes[0].values;
     BasinPlan plan{
-        .box = box_of(given["box"], {}),
+        .box = {},
         .count = r.plan.grid.starts,
-        .seed = static_cast<std::uint64_t>(number("seed")),
-        .pairs = static_cast<std::size_t>(number("pairs")),
-        .values = std::move(values),
-        .system_at = [systems](double value) { return systems->at_value(value); }};
+        .seed = value_or_default(basins_fields(), given, "seed"),
+        .pairs = value_or_default(basins_fields(), given, "pairs"),
+        .values = r.axes.empty() ? std::vector<double>{0} : r.axes[0].values,
+        .system_at = [systems = r.systems](double value) { return systems->at_value(value); }};
     for (const double value : plan.values) {
         const auto system = plan.system_at(value);
         if (!system)
@@ -63,7 +55,7 @@ SweepRequest read_basins_request(const Json& given, std::size_t most_points) {
         errors.push_back(
             {"/box", nullptr, nullptr,
              "basins need a box: {x0: [from, to], ...} of one to four of x0, x_dot0, y0, y_dot0"});
-    if (!errors.empty()) refuse(std::move(errors));
+    refuse_any(errors);
     Json grid = given;
     grid["axes"] = Json::array();
     if (given.contains("axis")) grid["axes"].push_back(given["axis"]);

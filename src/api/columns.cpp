@@ -1,6 +1,6 @@
 #include "api/columns.hpp"
 
-#include "api/warning_text.hpp"
+#include "api/describe.hpp"
 #include "core/motion/elementary.hpp"
 
 namespace vines::api {

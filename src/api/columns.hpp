@@ -52,9 +52,7 @@ std::string status_word(const IdentifiedImpact& impact);
 
 /// The column `member` of each entry of a list.
 template <auto member>
-inline constexpr auto of_each = [](const auto& entries) {
-    return column(entries, [](const auto& entry) { return std::invoke(member, entry); });
-};
+inline constexpr auto of_each = [](const auto& entries) { return column(entries, member); };
 
 /// The list `member` of a result.
 template <auto member>
@@ -283,17 +281,21 @@ struct ImpactColumn {
 
     Packed packing() const;
 };
+template <auto member>
+inline constexpr auto of_impact = [](const Impact& impact, const ImpactScales&) {
+    return static_cast<double>(std::invoke(member, impact));
+};
+
 inline constexpr ImpactColumn impact_columns[] = {
-    {quantity.tau, [](const Impact& i, const ImpactScales&) { return i.tau; }},
-    {quantity.side,
-     [](const Impact& i, const ImpactScales&) { return static_cast<double>(i.side); }},
-    {quantity.phase, [](const Impact& i, const ImpactScales&) { return i.phase(); }},
-    {quantity.x, [](const Impact& i, const ImpactScales&) { return i.x; }},
-    {quantity.x_dot_before, [](const Impact& i, const ImpactScales&) { return i.x_dot_before; }},
-    {quantity.x_dot_after, [](const Impact& i, const ImpactScales&) { return i.x_dot_after; }},
-    {quantity.y_dot_before, [](const Impact& i, const ImpactScales&) { return i.y_dot_before; }},
-    {quantity.y_dot_after, [](const Impact& i, const ImpactScales&) { return i.y_dot_after; }},
-    {quantity.x_ddot_before, [](const Impact& i, const ImpactScales&) { return i.x_ddot_before; }},
+    {quantity.tau, of_impact<&Impact::tau>},
+    {quantity.side, of_impact<&Impact::side>},
+    {quantity.phase, of_impact<&Impact::phase>},
+    {quantity.x, of_impact<&Impact::x>},
+    {quantity.x_dot_before, of_impact<&Impact::x_dot_before>},
+    {quantity.x_dot_after, of_impact<&Impact::x_dot_after>},
+    {quantity.y_dot_before, of_impact<&Impact::y_dot_before>},
+    {quantity.y_dot_after, of_impact<&Impact::y_dot_after>},
+    {quantity.x_ddot_before, of_impact<&Impact::x_ddot_before>},
     {quantity.relative_speed,
      [](const Impact& i, const ImpactScales&) { return std::abs(i.relative_speed_before); }},
     {quantity.impulse, [](const Impact& i, const ImpactScales& s) { return i.impulse(s.epsilon); }},
@@ -302,8 +304,7 @@ inline constexpr ImpactColumn impact_columns[] = {
      [](const Impact& i, const ImpactScales& s) {
          return std::abs(i.relative_speed_before) / s.typical_speed;
      }},
-    {{"grazing", "true for a nearly tangent impact", ValueType::flag},
-     [](const Impact& i, const ImpactScales&) { return i.grazing ? 1. : 0.; }},
+    {{"grazing", "true for a nearly tangent impact", ValueType::flag}, of_impact<&Impact::grazing>},
 };
 
 Json describe_impacts(const std::vector<Impact>& impacts, const ImpactScales& scales);

@@ -36,18 +36,17 @@ Json continued(const Json& given, const char* name) {
 std::optional<double> value_in(const SystemFields& fields, const std::string& parameter) {
     if (const auto given = fields.*system_number(parameter)) return *given;
     const ResolvedSystem system = resolve(fields);
-    if (parameter == "R") return system.parameters.R_plus;
-    if (parameter == "inclination" && system.si && system.parameters.gravity == 0) return 0;
-    for (const auto& property : properties::reduced)
-        if (property.quantity.name == parameter) return property.value(system.parameters);
-    if (!system.si) return std::nullopt;
-    const double omega = 2 * std::numbers::pi * system.si->f;
-    if (parameter == "acceleration") return system.si->F * omega * omega;
-    for (const auto& property : properties::si)
-        if (property.quantity.name == parameter) return property.value(*system.si);
-    for (const auto& property : properties::derived_si)
-        if (property.quantity.name == parameter) return property.value(*system.si);
-    return std::nullopt;
+    Json values = describe(properties::reduced, system.parameters);
+    values["R"] = system.parameters.R_plus;
+    if (system.si) {
+        const double omega = 2 * std::numbers::pi * system.si->f;
+        values.update(describe(properties::si, *system.si));
+        values.update(describe(properties::derived_si, *system.si));
+        values["acceleration"] = system.si->F * omega * omega;
+        if (system.parameters.gravity == 0) values["inclination"] = 0;
+    }
+    if (!values.contains(parameter)) return std::nullopt;
+    return values[parameter].get<double>();
 }
 
 std::function<std::optional<Parameters>(const std::vector<double>&)> systems_along(
@@ -63,31 +62,23 @@ std::function<std::optional<Parameters>(const std::vector<double>&)> systems_alo
     };
 }
 
-const char* sentence_of(BranchEnd end) {
-    switch (end) {
-        case BranchEnd::range: return "the parameter reaches the end of its range";
-        case BranchEnd::grazing:
-            return "a grazing contact: no orbit with one impact more or less continues the branch";
-        case BranchEnd::last_impact: return "the last impacts become grazing contacts";
-        case BranchEnd::stick: return "a chatter becomes complete: beyond it the ball sticks";
-        case BranchEnd::parent:
-            return "the branch meets the orbit from which it branches; beyond are its mirror "
-                   "images "
-                   "or shifted copies";
-        case BranchEnd::closed: return "the branch returns to its first orbit";
-        case BranchEnd::most_points: return "the limit of points is reached";
-        case BranchEnd::most_impacts: return "the limit of impacts per period is reached";
-        case BranchEnd::not_decided:
-            return "not decided: Newton's method does not converge, however short the step";
-    }
-    return "";
-}
-
-const char* word_of(BranchEnd end) {
-    constexpr const char* words[] = {"range",  "grazing", "last_impact", "stick",      "parent",
-                                     "closed", "points",  "impacts",     "not_decided"};
-    return words[static_cast<std::size_t>(end)];
-}
+/// Why a branch ends, as a word and as a sentence; in the order of BranchEnd.
+struct EndText {
+    const char *word, *sentence;
+};
+constexpr EndText end_texts[] = {
+    {"range", "the parameter reaches the end of its range"},
+    {"grazing", "a grazing contact: no orbit with one impact more or less continues the branch"},
+    {"last_impact", "the last impacts become grazing contacts"},
+    {"stick", "a chatter becomes complete: beyond it the ball sticks"},
+    {"parent",
+     "the branch meets the orbit from which it branches; beyond are its mirror images or shifted "
+     "copies"},
+    {"closed", "the branch returns to its first orbit"},
+    {"points", "the limit of points is reached"},
+    {"impacts", "the limit of impacts per period is reached"},
+    {"not_decided", "not decided: Newton's method does not converge, however short the step"}};
+static_assert(std::size(end_texts) == static_cast<std::size_t>(BranchEnd::not_decided) + 1);
 
 class ContinuationLines : public BranchSink {
 public:
@@ -115,7 +106,10 @@ public:
         ++count_.specials;
         Json line = place("special", branch, s.orbit);
         line["kind"] = name_of(s.kind);
-        if (s.end) line.update({{"reason", word_of(*s.end)}, {"detail", sentence_of(*s.end)}});
+        if (s.end) {
+            const EndText& end = end_texts[static_cast<std::size_t>(*s.end)];
+            line.update({{"reason", end.word}, {"detail", end.sentence}});
+        }
         if (s.kind == SpecialKind::grazing)
             line["impacts_beyond"] = s.impacts_after > 0 ? Json(s.impacts_after) : Json(nullptr);
         if (s.angle) line["angle"] = *s.angle;
@@ -212,6 +206,17 @@ SpecialKind kind_of(const std::string& name) {
     return static_cast<SpecialKind>(kind);
 }
 
+/// Refuses ends of a range that do not enclose the base's value `at`.
+void check_range(
+    const std::string& parameter, double at, const Json& given, const std::string& from,
+    const std::string& to, std::vector<FieldError>& errors) {
+    const auto [least, largest] = std::minmax({given[from].get<double>(), given[to].get<double>()});
+    if (least == largest || at < least || at > largest)
+        errors.push_back(
+            {"/" + from, given[from].get<double>(), Json::array({at, given[to].get<double>()}),
+             from + " and " + to + " must differ and enclose the base's " + parameter});
+}
+
 void read_curve(ContinueRequest& r, const Json& given, const SystemFields& fields) {
     for (const char* name : {"second", "second_from", "second_to"})
         if (!given.contains(name))
@@ -223,11 +228,10 @@ void read_curve(ContinueRequest& r, const Json& given, const SystemFields& field
     const auto at = known ? value_in(fields, r.second) : std::nullopt;
     if (!at || r.second == r.parameter)
         refuse({{"/second", r.second, names, "second must be another parameter of the base"}});
+    std::vector<FieldError> errors;
+    check_range(r.second, *at, given, "second_from", "second_to", errors);
+    refuse_any(errors);
     const double from = given["second_from"], to = given["second_to"];
-    if (from == to || *at < std::min(from, to) || *at > std::max(from, to))
-        refuse(
-            {{"/second_from", from, Json::array({*at, to}),
-              "second_from and second_to must differ and enclose the base's " + r.second}});
     r.second_at = *at;
     r.curve_plan = {
         .family =
@@ -241,15 +245,15 @@ void read_curve(ContinueRequest& r, const Json& given, const SystemFields& field
 
 /// Its parameter, its base and the range of the parameter. Returns the fields of the base's system.
 SystemFields read_family(ContinueRequest& r, const Json& given) {
-    std::vector<FieldError> errors;
     r.parameter = given["parameter"];
     const std::vector<std::string> names = continued_names();
     if (std::ranges::find(names, r.parameter) == names.end())
         refuse(
             {{"/parameter", r.parameter, names, "there is no parameter of this name to continue"}});
     const Json base = given.value("base", Json::object());
+    std::vector<FieldError> errors;
     add_errors("/base", check(sweep_base_fields(), base), errors);
-    if (!errors.empty()) refuse(std::move(errors));
+    refuse_any(errors);
     SystemFields fields = system_fields(merge_with_preset(sweep_base_fields(), base).fields);
     const auto at = value_in(fields, r.parameter);
     if (!at)
@@ -268,12 +272,8 @@ SystemFields read_family(ContinueRequest& r, const Json& given) {
         errors.push_back(
             {"/base", nullptr, nullptr,
              "orbits are continued for a harmonic forcing and a ball without friction"});
-    const double from = given["from"], to = given["to"];
-    if (from == to || r.at < std::min(from, to) || r.at > std::max(from, to))
-        errors.push_back(
-            {"/from", from, Json::array({r.at, to}),
-             "from and to must differ and enclose the base's " + r.parameter});
-    if (!errors.empty()) refuse(std::move(errors));
+    check_range(r.parameter, r.at, given, "from", "to", errors);
+    refuse_any(errors);
     return fields;
 }
 
@@ -289,7 +289,7 @@ ContinueRequest read_continue_request(const Json& object) {
             errors.push_back(
                 {std::string("/") + name, nullptr, nullptr,
                  "a continuation needs parameter, from and to"});
-    if (!errors.empty()) refuse(std::move(errors));
+    refuse_any(errors);
 
     ContinueRequest r;
     r.given = object;
@@ -299,21 +299,21 @@ ContinueRequest read_continue_request(const Json& object) {
         .family = {systems_along(fields, {r.parameter}), {std::abs(to - from)}},
         .from = from,
         .to = to,
-        .resolution = continued(given, "resolution").get<double>(),
-        .most_points = static_cast<long>(continued(given, "points").get<double>()),
-        .switches = static_cast<int>(continued(given, "switch").get<double>())};
+        .resolution = continued(given, "resolution"),
+        .most_points = continued(given, "points"),
+        .switches = continued(given, "switch")};
     for (const double end : {from, to})
         if (!r.plan.family.system_at({end}))
             errors.push_back(
                 {end == from ? "/from" : "/to", end, nullptr,
                  "the base forms no valid system with this " + r.parameter});
-    if (!errors.empty()) refuse(std::move(errors));
+    refuse_any(errors);
     if (given.contains("curve")) read_curve(r, given, fields);
     r.settles = continued(given, "orbit") == "settled";
-    r.period_cycles = static_cast<int>(continued(given, "period_cycles").get<double>());
+    r.period_cycles = continued(given, "period_cycles");
     r.settling = {
-        .transient_cycles = continued(given, "transient_cycles").get<double>(),
-        .cycles = continued(given, "cycles").get<double>(),
+        .transient_cycles = continued(given, "transient_cycles"),
+        .cycles = continued(given, "cycles"),
         .max_impacts = r.base.max_impacts};
     return r;
 }
@@ -333,11 +333,10 @@ Json continuation_start(const ContinueRequest& r) {
 
 std::string continuation_progress(const ContinuationCount& count, double seconds) {
     const std::size_t done = count.points;
-    return json_text(
-               {{"type", "progress"},
-                {"done", done},
-                {"per_second", seconds > 0 ? static_cast<double>(done) / seconds : 0}}) +
-           "\n";
+    return json_line(
+        {{"type", "progress"},
+         {"done", done},
+         {"per_second", seconds > 0 ? static_cast<double>(done) / seconds : 0}});
 }
 
 std::string continuation_done(const ContinuationCount& count) {

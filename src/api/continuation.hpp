@@ -6,7 +6,7 @@
 #include <functional>
 
 #include "api/properties.hpp"
-#include "api/request.hpp"
+#include "api/system.hpp"
 #include "core/continuation/curve.hpp"
 #include "core/sweep/sweep.hpp"
 

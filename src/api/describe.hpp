@@ -1,11 +1,13 @@
-// Results of the core as parts of an answer. Nothing is computed here. A number that does not exist
-// is null; a word in `status` gives the reason.
+// Results of the core as parts of an answer, and its warnings and findings as sentences. Nothing is
+// computed here. A number that does not exist is null; a word in `status` gives the reason.
 #pragma once
 
-#include "api/request.hpp"
-#include "api/schema/json.hpp"
+#include <limits>
+
+#include "api/system.hpp"
+#include "core/analysis/analysis.hpp"
 #include "core/analysis/perturbation.hpp"
-#include "core/measures/regime.hpp"
+#include "core/measurement/identify.hpp"
 
 namespace vines::api {
 
@@ -42,5 +44,25 @@ Json describe_regime(const Regime& regime);
 
 /// Floquet multipliers, by descending modulus.
 Json describe_multipliers(const std::array<std::complex<double>, 4>& multipliers);
+
+// Sentences (warning_text.cpp).
+
+using Warnings = std::vector<std::string>;
+
+/// No limit on the size of an answer.
+inline constexpr std::size_t any_size = std::numeric_limits<std::size_t>::max();
+
+/// `most_bytes`: the size limit of an answer, by which lists are cut.
+std::string text_of(const Warning& warning, std::size_t most_bytes);
+
+/// The end of a sentence: the size limit as the reason for a cut.
+std::string limit_of(std::size_t bytes);
+
+/// The reason why an impact is left out; empty for none.
+const char* text_of(ImpactFault fault);
+/// The reason why no b is fitted; empty for none.
+const char* text_of(BFault fault);
+/// The reason why a measurement allows no verdict.
+const char* text_of(Doubt doubt);
 
 }  // namespace vines::api

@@ -30,20 +30,19 @@ constexpr Range amplitude_range{1e-9, 1e6}, f_range{1e-3, 1e5}, b_range{1e-9, 1e
 // Intervals that can be given as one number.
 constexpr const char* intervals[] = {"f", "acceleration", "F", "initial_velocity", "b"};
 
-/// Replaces a number by the list that `as` makes of it.
-void list_of_number(Json& given, const char* name, const std::function<Json(const Json&)>& as) {
-    if (given.contains(name) && given[name].is_number()) given[name] = as(given[name]);
+FieldError outside(
+    const Range& range, const char* name, const std::string& where, const Json& value) {
+    return {
+        where, value, Json::array({range.minimum, range.maximum}),
+        fmt::format("{} must lie in [{:g}, {:g}]", name, range.minimum, range.maximum)};
 }
 
-/// A checked interval or number as an interval within a range.
+/// A checked interval within a range.
 Interval interval_of(
-    const Json& value, const char* name, const Range& range, std::vector<FieldError>& errors) {
-    const Interval i = value.is_number() ? Interval{value.get<double>(), value.get<double>()}
-                                         : Interval{value[0].get<double>(), value[1].get<double>()};
+    const Json& given, const char* name, const Range& range, std::vector<FieldError>& errors) {
+    const Interval i = given[name];
     if (!(i.from >= range.minimum && i.to <= range.maximum))
-        errors.push_back(
-            {std::string("/") + name, value, Json::array({range.minimum, range.maximum}),
-             fmt::format("{} must lie in [{:g}, {:g}]", name, range.minimum, range.maximum)});
+        errors.push_back(outside(range, name, std::string("/") + name, given[name]));
     return i;
 }
 
@@ -55,9 +54,7 @@ std::vector<double> numbers_within(
              fmt::format("{} must hold 1 to 100 numbers", name)});
     for (std::size_t k = 0; k < list.size(); ++k)
         if (const double v = list[k].get<double>(); !(v >= range.minimum && v <= range.maximum))
-            errors.push_back(
-                {fmt::format("/{}/{}", name, k), v, Json::array({range.minimum, range.maximum}),
-                 fmt::format("{} must lie in [{:g}, {:g}]", name, range.minimum, range.maximum)});
+            errors.push_back(outside(range, name, fmt::format("/{}/{}", name, k), v));
     return list.get<std::vector<double>>();
 }
 
@@ -129,22 +126,24 @@ void add_load_errors(const Json& given, std::vector<FieldError>& errors) {
 /// The checked request without what was given as a number in place of a list.
 Json with_lists(const Json& object) {
     Json given = object;
-    const auto pair = [](const Json& v) { return Json::array({v, v}); };
-    const auto single = [](const Json& v) { return Json::array({v}); };
-    for (const char* name : {"R", "m2"}) list_of_number(given, name, single);
-    // One number in a query or on the command line is a list of one.
-    for (const char* name : intervals)
-        if (given.contains(name) && given[name].is_array() && given[name].size() == 1)
-            given[name] = Json(given[name][0]);
+    for (const char* name : {"R", "m2"})
+        if (given.contains(name) && given[name].is_number())
+            given[name] = Json::array({given[name]});
     Json checked = given;
-    for (const char* name : intervals)
-        if (checked.contains(name) && checked[name].is_number()) checked.erase(name);
+    for (const char* name : intervals) {
+        if (!given.contains(name)) continue;
+        // One number in a query or on the command line is a list of one.
+        Json& value = given[name];
+        if (value.is_array() && value.size() == 1) checked[name] = value = Json(value[0]);
+        if (!value.is_number()) continue;
+        value = Json::array({value, value});
+        checked.erase(name);
+    }
     std::vector<FieldError> errors = check(design_fields(), checked);
-    for (const char* name : intervals) list_of_number(given, name, pair);
     if (!given.contains("base"))
         errors.push_back({"/base", nullptr, nullptr, "a design needs a base"});
     add_load_errors(given, errors);
-    if (!errors.empty()) refuse(std::move(errors));
+    refuse_any(errors);
     return given;
 }
 
@@ -197,8 +196,8 @@ void read_tolerances(DesignRequest& r, const Json& given, std::vector<FieldError
     }
     add_errors("/tolerances", std::move(faults), errors);
     if (r.plan.tolerances.empty()) return;
-    const auto count = static_cast<std::size_t>(designed(given, "samples").get<double>());
-    r.plan.seed = static_cast<std::uint64_t>(designed(given, "seed").get<double>());
+    const std::size_t count = designed(given, "samples");
+    r.plan.seed = designed(given, "seed");
     std::vector<std::size_t>& samples = r.plan.samples;
     if (given.contains("indices")) {
         const auto wanted = given["indices"].get<std::set<std::size_t>>();
@@ -241,8 +240,7 @@ Json described(const DesignRequest& r, const LinearAbsorber& t, const BandMaximu
 }
 
 Json described(const DesignMargin& m) {
-    const auto pair = [](const Interval& i) { return Json::array({i.from, i.to}); };
-    return {{"five_percent", pair(m.five_percent)}, {"twenty_percent", pair(m.twenty_percent)}};
+    return {{"five_percent", m.five_percent}, {"twenty_percent", m.twenty_percent}};
 }
 
 /// "48.9 mm".
@@ -307,9 +305,7 @@ std::string sentence_of(const DesignRequest& r, const Design& d) {
 }
 
 Json response_columns(const DesignRequest& r, const Design& d) {
-    const auto list = [&](double DesignResponse::* member) {
-        return column(d.response, [member](const DesignResponse& at) { return at.*member; });
-    };
+    const auto list = [&](double DesignResponse::* member) { return column(d.response, member); };
     return {
         {"f", column(d.response, [&](const DesignResponse& at) { return frequency(r, at.f); })},
         {r.objective + "_worst_start", list(&DesignResponse::worst)},
@@ -343,12 +339,11 @@ Json fractions(const std::vector<ToleranceSample>& samples, const char* name, Of
     const auto all = static_cast<double>(samples.size());
     for (const auto& [value, count] : counts) {
         const auto k = static_cast<double>(count);
-        const Interval interval = binomial_interval(k, all);
         list.push_back(
             {{name, value},
              {"samples", count},
              {"fraction", k / all},
-             {"interval", {interval.from, interval.to}}});
+             {"interval", binomial_interval(k, all)}});
     }
     return list;
 }
@@ -415,14 +410,13 @@ DesignRequest read_design_request(const Json& object) {
     for (const Excitation& kind : excitations) {
         r.excitation = &kind;
         if (!given.contains(kind.amplitude)) continue;
-        const Interval i =
-            interval_of(given[kind.amplitude], kind.amplitude, amplitude_range, errors);
+        const Interval i = interval_of(given, kind.amplitude, amplitude_range, errors);
         r.amplitude = i.to, plan.amplitude_ratio = i.from / i.to;
         break;
     }
     const bool harmonic = given.contains("f");
     if (harmonic) {
-        plan.f = interval_of(given["f"], "f", f_range, errors);
+        plan.f = interval_of(given, "f", f_range, errors);
         plan.host.base_amplitude = [a = r.amplitude,
                                     is = given.contains("acceleration")](double f) {
             const double omega = 2 * std::numbers::pi * f;
@@ -431,15 +425,15 @@ DesignRequest read_design_request(const Json& object) {
     } else if (given.contains("initial_velocity")) plan.host.initial_velocity = r.amplitude;
     plan.R = numbers_within(designed(given, "R"), "R", {0, 1}, errors);
     if (errors.empty()) read_host(r, given, errors);
-    if (!errors.empty()) refuse(std::move(errors));
+    refuse_any(errors);
     plan.m2 = given.contains("m2")
                   ? numbers_within(given["m2"], "m2", {1e-9 * r.host.m1, 10 * r.host.m1}, errors)
                   : std::vector{r.host.m2};
-    if (!errors.empty()) refuse(std::move(errors));
+    refuse_any(errors);
     plan.host.si = r.host;
-    plan.transient_cycles = designed(given, "transient_cycles").get<double>();
-    plan.cycles = designed(given, "cycles").get<double>();
-    if (given.contains("b")) plan.b = interval_of(given["b"], "b", b_range, errors);
+    plan.transient_cycles = designed(given, "transient_cycles");
+    plan.cycles = designed(given, "cycles");
+    if (given.contains("b")) plan.b = interval_of(given, "b", b_range, errors);
     else {
         const LinearResponse linear = linear_response_of(plan, Objective::x_max);
         const double most = band_maximum([&](double f) { return linear({}, f); }, plan.f).value;
@@ -447,16 +441,15 @@ DesignRequest read_design_request(const Json& object) {
         plan.b = {least_b_of_amplitude * most, most_b_of_amplitude * most};
     }
     read_tolerances(r, given, errors);
-    if (!errors.empty()) refuse(std::move(errors));
+    refuse_any(errors);
     r.objective = given.value("objective", r.excitation->objective);
     plan.objective = enum_value<Objective>(r.objective);
     plan.mean = designed(given, "over") == "mean";
     if (r.objective == "decay_time" && plan.host.initial_velocity == 0)
         refuse("/objective", "decay_time needs initial_velocity");
     plan.default_set = harmonic && designed(given, "starts") != "one";
-    plan.b_count =
-        plan.b.from < plan.b.to ? static_cast<int>(designed(given, "b_count").get<double>()) : 1;
-    plan.f_count = !harmonic ? 1 : static_cast<int>(designed(given, "f_count").get<double>());
+    plan.b_count = plan.b.from < plan.b.to ? designed(given, "b_count").get<int>() : 1;
+    plan.f_count = harmonic ? designed(given, "f_count").get<int>() : 1;
     return r;
 }
 
@@ -480,12 +473,11 @@ Json design_start(const DesignRequest& r) {
 
 std::string design_progress(
     const DesignRequest& r, const DesignCount& count, const vines::RunControl& control) {
-    return json_text(
-               {{"type", "progress"},
-                {"done", count.load()},
-                {"runs", control.runs.load()},
-                {"runs_of", std::max(design_runs(r.plan), control.runs.load())}}) +
-           "\n";
+    return json_line(
+        {{"type", "progress"},
+         {"done", count.load()},
+         {"runs", control.runs.load()},
+         {"runs_of", std::max(design_runs(r.plan), control.runs.load())}});
 }
 
 bool run_design(

@@ -4,7 +4,7 @@
 #include <atomic>
 #include <functional>
 
-#include "api/request.hpp"
+#include "api/system.hpp"
 #include "core/design/design.hpp"
 
 namespace vines::api {

@@ -12,6 +12,9 @@ namespace vines::api {
 
 namespace {
 
+// Tolerances of calibration and of cable delay of a channel of the forcing: relative, and in rad.
+constexpr double amplitude_off = 0.05, phase_off = 0.1;
+
 double hertz(double Omega, double omega0) { return Omega * omega0 / (2 * std::numbers::pi); }
 
 struct ValueWithError {
@@ -134,6 +137,45 @@ Json describe_fitted(const JointFit& fit, const Parameters& parameters, double o
         j[w.name] = described(in_si(fit, w.value, omega0), fit.fixed[w.value]);
     add_forcing(j, fit, parameters);
     return j;
+}
+
+ChannelForcing channel_forcing(const MeasuredForcing& m, const System& system) {
+    const Parameters& p = system.parameters;
+    const double amplitude = elementary::hypot(m.sin, m.cos);
+    if (m.is_force) return {amplitude / system.si->k1, elementary::atan2(m.cos, m.sin)};
+    // A base moving as F sin(omega t) has the acceleration -omega^2 F sin(omega t); the forcing
+    // leads the displacement of the base by phi, eq. (3).
+    const double omega = 2 * std::numbers::pi * m.f;
+    return {
+        amplitude / (omega * omega) * elementary::hypot(1.0, p.lambda * p.epsilon * p.Omega),
+        elementary::atan2(-m.cos, -m.sin) + p.phi()};
+}
+
+Json describe_measured_forcing(
+    const MeasuredForcing& m, const System& used, const JointFit& fit,
+    std::vector<std::string>& warnings) {
+    const ChannelForcing channel = channel_forcing(m, used);
+    // F of the base, or of the base motion equivalent to the force.
+    const double F = G_of(used.parameters, channel.amplitude, 0) * used.parameters.epsilon;
+    // The fit has the phase at the middle of the record.
+    const double middle = fit.tau_middle / used.si->omega0(),
+                 fitted = elementary::atan2(
+                     fit.values[Unknown::force_cos], fit.values[Unknown::force_sin]),
+                 phase = std::remainder(
+                     channel.phase + 2 * std::numbers::pi * m.f * middle - fitted,
+                     2 * std::numbers::pi);
+    if (std::abs(F / used.si->F - 1) > amplitude_off)
+        warnings.push_back(fmt::format(
+            "the channel of the {} gives F = {:.4g} m, the oscillator's motion {:.4g} m: is a "
+            "sensitivity wrong?",
+            m.is_force ? "force" : "base", F, used.si->F));
+    if (std::abs(phase) > phase_off)
+        warnings.push_back(fmt::format(
+            "the forcing in the oscillator's motion {} the channel of the {} by {:.3g} rad: is the "
+            "channel inverted or delayed?",
+            phase > 0 ? "lags" : "leads", m.is_force ? "force" : "base", std::abs(phase)));
+    return {
+        {"f", m.f}, {"F", F}, {"phase", phase}, {"load", fit.forcing.load ? "measured" : "sine"}};
 }
 
 void add_fitted_warnings(

@@ -12,7 +12,8 @@ constexpr std::size_t most_samples = 200000;
 constexpr double most_chirp_periods = 5000;
 constexpr std::size_t most_harmonics = 64;
 
-/// The moved quantity: the column of a record, or the amplitude of a formula.
+/// The moved quantities: the column of a record, or the amplitude of a formula. In the order of
+/// LoadKind.
 const std::vector<std::string> quantities = {"acceleration_m_s2", "displacement_m", "force_N"};
 
 /// The fields of a formula besides its amplitude.
@@ -41,9 +42,6 @@ struct Reader {
         const std::string& where, const Json& value, const Json& range, const std::string& detail) {
         errors.push_back({"/forcing" + where, value, range, "forcing " + detail});
     }
-    void refuse_any() {
-        if (!errors.empty()) refuse(std::move(errors));
-    }
     /// A number, which a query gives as a list of one.
     double number(const std::string& name, double fallback = 0) const {
         if (!given.contains(name)) return fallback;
@@ -53,27 +51,20 @@ struct Reader {
     double Omega(const std::string& name) const { return number(name) / si.f0(); }
 
     /// The one quantity that moves.
-    std::string quantity() {
+    struct Moved {
+        std::string name;
+        LoadKind kind;
+        double unit;  ///< in SI
+    };
+    Moved moved() {
         const auto there = present(given, quantities);
         if (there.size() != 1)
             fail(
                 "", nullptr, nullptr, "needs one of acceleration_m_s2, displacement_m and force_N");
-        refuse_any();
-        return there[0];
-    }
-    LoadKind load_kind(const std::string& quantity) const {
-        return quantity == quantities[0]   ? LoadKind::base_acceleration
-               : quantity == quantities[1] ? LoadKind::base_displacement
-                                           : LoadKind::force;
-    }
-    double unit(LoadKind kind) const {
-        return kind == LoadKind::base_acceleration ? omega0 * omega0
-               : kind == LoadKind::force           ? si.k1
-                                                   : 1;
-    }
-    void need_list(const std::string& name) {
-        if (given.contains(name) && !given[name].is_array())
-            fail("/" + name, given[name], nullptr, "needs a list in " + name);
+        refuse_any(errors);
+        const auto kind = std::ranges::find(quantities, there[0]) - quantities.begin();
+        const double units[] = {omega0 * omega0, 1, si.k1};
+        return {there[0], static_cast<LoadKind>(kind), units[kind]};
     }
     /// A list of one, as a query gives it, is a number.
     void need_number(const std::string& name) {
@@ -88,9 +79,10 @@ struct Reader {
                     "/" + name, beginning_of(value), nullptr,
                     name + " belongs to a formula: give its kind, and no time_s");
         if (!given.contains("time_s")) fail("/time_s", nullptr, nullptr, "needs time_s, or a kind");
-        const std::string column = quantity();
-        need_list(column);
-        refuse_any();
+        const auto [column, kind, unit] = moved();
+        if (!given[column].is_array())
+            fail("/" + column, given[column], nullptr, "needs a list in " + column);
+        refuse_any(errors);
         const Json &time = given["time_s"], &samples = given[column];
         if (time.size() < 2 || time.size() > most_samples)
             fail(
@@ -100,14 +92,13 @@ struct Reader {
             fail(
                 "/" + column, samples.size(), Json::array({time.size(), time.size()}),
                 "needs one value for each time");
-        refuse_any();
+        refuse_any(errors);
         if (const std::size_t wrong = first_not_ascending(time); wrong < time.size())
             fail("/time_s/" + std::to_string(wrong), time[wrong], nullptr, "needs ascending times");
-        refuse_any();
+        refuse_any(errors);
         auto tau = time.get<std::vector<double>>(), values = samples.get<std::vector<double>>();
-        const LoadKind kind = load_kind(column);
         for (std::size_t i = tau.size(); i-- > 0;) tau[i] = (tau[i] - tau[0]) * omega0;
-        for (double& value : values) value /= unit(kind);
+        for (double& value : values) value /= unit;
         return std::make_shared<const Load>(kind, tau, values);
     }
 
@@ -126,7 +117,7 @@ struct Reader {
         for (const std::string& name : formula.required)
             if (!given.contains(name))
                 fail("/" + name, nullptr, nullptr, "of the kind " + kind + " needs " + name);
-        refuse_any();
+        refuse_any(errors);
     }
 
     std::shared_ptr<const Load> half_sine(LoadKind kind, double amplitude) const {
@@ -146,7 +137,7 @@ struct Reader {
                 Json::array({0, number("duration_s") * most_chirp_periods / periods}),
                 "of the kind chirp is limited to 5000 periods of its highest frequency, and of the "
                 "oscillator");
-        refuse_any();
+        refuse_any(errors);
         const bool logarithmic = given.value("rate", "linear") == "logarithmic" && from != to;
         const double growth =
             (logarithmic ? elementary::log(to / from) : 0.5 * (to - from)) / duration;
@@ -178,7 +169,7 @@ struct Reader {
                 "/duration_s", given["duration_s"],
                 Json::array({0, number("duration_s") * Load::most_noise_phase / (high * duration)}),
                 "of the kind noise is limited to 8192 periods of f_high");
-        refuse_any();
+        refuse_any(errors);
         return std::make_shared<const Load>(Load::noise(
             number("rms_m_s2") / (omega0 * omega0), low, high, duration,
             static_cast<std::uint64_t>(number("seed", 1))));
@@ -195,7 +186,7 @@ struct Reader {
                 fail(
                     "/" + name, given[name].size(), Json::array({count, count}),
                     "of the kind harmonics needs one value in " + name + " for each frequency");
-        refuse_any();
+        refuse_any(errors);
         std::vector<LoadHarmonic> list;
         for (std::size_t i = 0; i < count; ++i) {
             const double f = given["f"][i].get<double>(), Omega = f / si.f0();
@@ -207,7 +198,7 @@ struct Reader {
                 {given["F"][i].get<double>(), Omega,
                  given.contains("phase") ? given["phase"][i].get<double>() : 0});
         }
-        refuse_any();
+        refuse_any(errors);
         return std::make_shared<const Load>(std::move(list));
     }
 
@@ -217,11 +208,10 @@ struct Reader {
             formulas(), [this](const Formula& f) { return given["kind"] == f.kind; });
         check_fields(formula);
         if (!formula.of_quantity) return given["kind"] == "noise" ? noise() : harmonics();
-        const std::string name = quantity();
+        const auto [name, kind, unit] = moved();
         for (const std::string& field : {name, std::string("phase")}) need_number(field);
-        refuse_any();
-        const LoadKind kind = load_kind(name);
-        const double amplitude = number(name) / unit(kind);
+        refuse_any(errors);
+        const double amplitude = number(name) / unit;
         return given["kind"] == "chirp" ? chirp(kind, amplitude) : half_sine(kind, amplitude);
     }
 };

@@ -9,7 +9,6 @@
 #include "api/identify_parts.hpp"
 #include "api/properties.hpp"
 #include "api/version.hpp"
-#include "api/warning_text.hpp"
 #include "core/motion/elementary.hpp"
 
 namespace vines::api {

@@ -5,7 +5,7 @@
 #include <string_view>
 
 #include "api/cancellation.hpp"
-#include "api/request.hpp"
+#include "api/system.hpp"
 #include "core/measurement/measurement.hpp"
 
 namespace vines::api {

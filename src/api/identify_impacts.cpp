@@ -1,5 +1,6 @@
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <cstdlib>
 #include <optional>
@@ -102,42 +103,46 @@ private:
     std::vector<FieldError> errors_;
 };
 
-/// The columns of the list; empty if not given.
-struct ListedColumns {
-    std::vector<double> tau, x, before, after, side, phase, acceleration, y_before, y_after;
-};
-
-ListedColumns read_columns(ImpactColumnReader& list) {
-    ListedColumns c{
-        .tau = list.column(impact_list.tau),
-        .x = list.column(impact_list.x),
-        .before = list.column(impact_list.x_dot_before),
-        .after = list.column(impact_list.x_dot_after),
-        .side = list.optional_column(impact_list.side),
-        .phase = list.optional_column(impact_list.phase),
-        .acceleration = {},
-        .y_before = list.optional_column(impact_list.y_dot_before),
-        .y_after = list.optional_column(impact_list.y_dot_after)};
-    if (c.phase.empty()) c.acceleration = list.optional_column(impact_list.x_ddot_before);
+/// Reads the columns into impacts, as far as the list states them; a wall follows from the jump of
+/// x', which decreases at side 1, an acceleration from the phase.
+std::vector<IdentifiedImpact> read_impacts(
+    ImpactColumnReader& list, const Flow& flow, CancelCheck& cancel) {
+    std::vector<IdentifiedImpact> impacts;
+    const auto take = [&impacts](
+                          const std::vector<double>& column, double IdentifiedImpact::* value) {
+        if (impacts.empty()) impacts.resize(column.size(), {0, 0, 0, 0, 0, nan});
+        for (std::size_t i = 0; i < std::min(column.size(), impacts.size()); ++i)
+            impacts[i].*value = column[i];
+    };
+    take(list.column(impact_list.tau), &IdentifiedImpact::tau);
+    take(list.column(impact_list.x), &IdentifiedImpact::x);
+    take(list.column(impact_list.x_dot_before), &IdentifiedImpact::x_dot_before);
+    take(list.column(impact_list.x_dot_after), &IdentifiedImpact::x_dot_after);
+    const std::vector<double> side = list.optional_column(impact_list.side),
+                              phase = list.optional_column(impact_list.phase);
+    take(list.optional_column(impact_list.y_dot_before), &IdentifiedImpact::y_dot_before);
+    take(list.optional_column(impact_list.y_dot_after), &IdentifiedImpact::y_dot_after);
+    if (phase.empty())
+        take(list.optional_column(impact_list.x_ddot_before), &IdentifiedImpact::x_ddot_before);
     list.refuse_faults();
-    if (c.tau.size() < 2)
-        refuse({{"/impacts", c.tau.size(), nullptr, "exponents need at least two impacts"}});
-    for (std::size_t i = 0; i < c.tau.size(); ++i) {
-        if (i > 0 && !(c.tau[i] > c.tau[i - 1]))
+    if (impacts.size() < 2)
+        refuse({{"/impacts", impacts.size(), nullptr, "exponents need at least two impacts"}});
+    for (std::size_t k = 0; k < impacts.size(); ++k) {
+        cancel.step();
+        IdentifiedImpact& i = impacts[k];
+        if (k > 0 && !(i.tau > impacts[k - 1].tau))
             list.fail(
-                list.name_of(impact_list.tau) + ("/" + std::to_string(i)), c.tau[i],
+                list.name_of(impact_list.tau) + ("/" + std::to_string(k)), i.tau,
                 "the times of the impacts must increase");
-        if (!c.side.empty() && std::abs(c.side[i]) != 1)
-            list.fail("side/" + std::to_string(i), c.side[i], "a side is 1 or -1");
+        if (!side.empty() && std::abs(side[k]) != 1)
+            list.fail("side/" + std::to_string(k), side[k], "a side is 1 or -1");
+        i.side = (side.empty() ? i.x_dot_after > i.x_dot_before : side[k] < 0) ? -1 : 1;
+        if (!phase.empty())
+            i.x_ddot_before = flow.acceleration(
+                {i.x, i.x_dot_before, elementary::sin(phase[k]), elementary::cos(phase[k])});
     }
     list.refuse_faults();
-    return c;
-}
-
-/// The wall of an impact: x' decreases at side 1 and increases at side -1.
-int side_of(const ListedColumns& c, std::size_t i) {
-    if (!c.side.empty()) return static_cast<int>(c.side[i]);
-    return c.after[i] > c.before[i] ? -1 : 1;
+    return impacts;
 }
 
 /// Fits the forcing to the list if needed, and restores impacts that it lacks.
@@ -168,29 +173,10 @@ void read_impact_list(IdentifyRequest& r, Json given, std::size_t most, CancelCh
     if (!given.is_object())
         refuse("/impacts", "impacts is an object of columns, as in the answer of /v1/simulate");
     ImpactColumnReader list(r, given, most, cancel);
-    ListedColumns c = read_columns(list);
-    given = nullptr;
     const Parameters& p = r.system.parameters;
-    const auto flow = Flow::shared_free(p);
     std::vector<IdentifiedImpact>& impacts = r.measurement.impacts;
-    impacts.reserve(c.tau.size());
-    for (std::size_t i = 0; i < c.tau.size(); ++i) {
-        cancel.step();
-        IdentifiedImpact impact{
-            .tau = c.tau[i],
-            .side = side_of(c, i),
-            .x = c.x[i],
-            .x_dot_before = c.before[i],
-            .x_dot_after = c.after[i],
-            .x_ddot_before = c.acceleration.empty() ? nan : c.acceleration[i]};
-        if (!c.phase.empty())
-            impact.x_ddot_before = flow->acceleration(
-                {c.x[i], c.before[i], elementary::sin(c.phase[i]), elementary::cos(c.phase[i])});
-        if (!c.y_before.empty()) impact.y_dot_before = c.y_before[i];
-        if (!c.y_after.empty()) impact.y_dot_after = c.y_after[i];
-        impacts.push_back(impact);
-    }
-    c = {};
+    impacts = read_impacts(list, *Flow::shared_free(p), cancel);
+    given = nullptr;
     take_motion(r, cancel);
     set_flight_velocities(p, impacts);
     complete_impacts(p, impacts, 0);

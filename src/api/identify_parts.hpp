@@ -23,25 +23,7 @@ struct RecordColumn {
 RecordColumn find_column(
     const std::vector<CsvColumn>& columns, const Json& fields, const Channel& channel);
 
-// The forcing measured by a channel of the record (measured_forcing.cpp).
-
-/// Samples of the channel, with empty cells left out.
-struct ForcingSamples {
-    bool is_force;
-    std::string name;
-    std::vector<double> seconds, values;  ///< values in m/s^2 or N
-};
-/// nullopt without a channel.
-std::optional<ForcingSamples> forcing_samples(
-    const std::vector<CsvColumn>& columns, const Json& fields);
-
-/// Fits a harmonic to the channel. Problem 422 if one harmonic does not describe it; throws
-/// Cancelled.
-MeasuredForcing measured_forcing(const ForcingSamples& samples, CancelCheck& cancel);
-
-/// Takes what the channel shows beyond a sine as the load of the record; then the harmonic is its
-/// fundamental. Call after the record has been read.
-void take_load(IdentifyRequest& request, ForcingSamples samples, CancelCheck& cancel);
+// Values fitted to a record: sensors, forcing, oscillator (fitted_unknowns.cpp).
 
 /// The model's forcing from a channel: amplitude in m, and phase at t = 0 in rad.
 struct ChannelForcing {
@@ -54,8 +36,6 @@ ChannelForcing channel_forcing(const MeasuredForcing& measured, const System& sy
 Json describe_measured_forcing(
     const MeasuredForcing& measured, const System& used, const JointFit& fit,
     std::vector<std::string>& warnings);
-
-// Values fitted to a record: sensors, forcing, oscillator (fitted_unknowns.cpp).
 
 /// Values of the field `fixed` in addition to the names of Unknown.
 inline constexpr const char *fixed_amplitude = "F", *fixed_phase = "phase";

@@ -7,7 +7,10 @@
 #include "api/identify_parts.hpp"
 #include "api/parse.hpp"
 #include "api/schema/check.hpp"
+#include "api/simulate.hpp"
+#include "core/measurement/measured_load.hpp"
 #include "core/measurement/measured_record.hpp"
+#include "core/motion/elementary.hpp"
 
 namespace vines::api {
 
@@ -74,7 +77,7 @@ IdentifyRequest read_fields(const Json& given, bool with_record, bool forcing_fi
     Measurement& m = r.measurement;
     m.parameters = r.system.parameters;
     m.R_given = given.contains("R") || (given.contains("R_plus") && given.contains("R_minus"));
-    m.threshold = merged.number("threshold");
+    m.threshold = merged["threshold"];
     if (merged.has("impact_times_s")) {
         if (!with_record)
             refuse(
@@ -84,22 +87,22 @@ IdentifyRequest read_fields(const Json& given, bool with_record, bool forcing_fi
             m.impact_times.push_back(t.get<double>() * r.system.si->omega0());
         std::sort(m.impact_times.begin(), m.impact_times.end());
     }
-    m.fixed = fixed_of(merged.words("fixed"));
+    m.fixed = fixed_of(merged["fixed"]);
     m.uncertainty = {
-        merged.number("m1_uncertainty"), merged.number("c1_uncertainty"),
-        merged.number("k1_uncertainty"), merged.number("m2_uncertainty")};
+        merged["m1_uncertainty"], merged["c1_uncertainty"], merged["k1_uncertainty"],
+        merged["m2_uncertainty"]};
     if (with_record)
         for (const double hertz : {50, 60})
             m.mains.push_back(2 * std::numbers::pi * hertz / r.system.si->omega0());
     m.estimators = read_estimators(merged);
     m.estimators.qr = true;  // the verdict needs it
-    r.include = merged.words("include");
+    r.include = merged["include"].get<std::set<std::string>>();
     if (!with_record && !r.include.empty())
         refuse(
             {{"/include", r.include, nullptr,
               "motion and direct_exponents need a record instead of a list of impacts"}});
     if (r.includes("direct_exponents")) m.direct_estimators = m.estimators;
-    r.most_points = static_cast<std::size_t>(merged.number("max_points"));
+    r.most_points = merged["max_points"];
     return r;
 }
 
@@ -108,7 +111,7 @@ IdentifyRequest read_fields(const Json& given, bool with_record, bool forcing_fi
 /// given phase of the base motion to the phase of the force; a channel already gives the latter.
 void read_known_forcing(IdentifyRequest& r, const Json& given) {
     const MergedFields merged = merge_with_preset(identify_fields(), given);
-    const std::set<std::string> fixed = merged.words("fixed");
+    const std::set<std::string> fixed = merged["fixed"];
     const auto refuse_unknown = [](const char* name) {
         refuse(
             {{"/fixed", name, nullptr,
@@ -127,7 +130,7 @@ void read_known_forcing(IdentifyRequest& r, const Json& given) {
     }
     if (fixed.contains(fixed_phase)) {
         if (merged.has(fixed_phase))
-            r.measurement.forcing.phase = merged.number(fixed_phase) + p.phi();
+            r.measurement.forcing.phase = merged[fixed_phase].get<double>() + p.phi();
         else if (channel) r.measurement.forcing.phase = channel->phase;
         else refuse_unknown(fixed_phase);
     }
@@ -230,6 +233,75 @@ std::vector<CsvColumn> read_record_columns(Json record, CancelCheck& cancel) {
     return columns;
 }
 
+/// Samples of the forcing's channel, with empty cells left out.
+struct ForcingSamples {
+    bool is_force;
+    std::string name;
+    std::vector<double> seconds, values;  ///< values in m/s^2 or N
+};
+
+/// nullopt without a channel.
+std::optional<ForcingSamples> forcing_samples(
+    const std::vector<CsvColumn>& columns, const Json& fields) {
+    const RecordColumn time = find_column(columns, fields, time_channel),
+                       base = find_column(columns, fields, base_channel),
+                       force = find_column(columns, fields, force_channel);
+    const RecordColumn& channel = base.column ? base : force;
+    if (!time.column || !channel.column) return std::nullopt;
+    if (base.column && force.column)
+        refuse(
+            "/record/" + shortened(force.column->name),
+            "the record has a channel of the base, " + shortened(base.column->name) +
+                ", and one of a force: the model has one forcing");
+    ForcingSamples samples{force.column != nullptr, channel.column->name, {}, {}};
+    // A slower channel has empty cells.
+    for (std::size_t k = 0; k < time.column->values.size(); ++k) {
+        if (std::isnan(channel.column->values[k] + time.column->values[k])) continue;
+        samples.seconds.push_back(time.column->values[k] * time.factor);
+        samples.values.push_back(channel.column->values[k] * channel.factor);
+    }
+    return samples;
+}
+
+/// Fits a harmonic to the channel. Problem 422 if one harmonic does not describe it.
+MeasuredForcing measured_forcing(const ForcingSamples& s, CancelCheck& cancel) {
+    const std::optional<Harmonic> h =
+        s.seconds.empty()
+            ? std::nullopt
+            : harmonic_of(s.seconds, s.values, [&] { cancel.step(s.seconds.size()); });
+    if (!h)
+        refuse(
+            "/record/" + shortened(s.name),
+            "column " + shortened(s.name) +
+                " is not harmonic: one sine must explain three quarters of it, over five cycles "
+                "or more");
+    return {s.is_force, h->omega / (2 * std::numbers::pi), h->sin, h->cos};
+}
+
+/// Takes what the channel shows beyond a sine as the load of the record; then the harmonic is its
+/// fundamental. Expects that the record has been read.
+void take_load(IdentifyRequest& r, ForcingSamples s, CancelCheck& cancel) {
+    const double omega0 = r.system.si->omega0();
+    // In the units of the model, m (per unit of tau squared).
+    const double unit = s.is_force ? r.system.si->k1 : omega0 * omega0;
+    MeasuredForcing& m = *r.forcing;
+    for (double& t : s.seconds) t *= omega0;
+    for (double& v : s.values) v /= unit;
+    const MeasuredRecord& record = r.measurement.record;
+    const Parameters& p = r.system.parameters;
+    const std::size_t samples = s.seconds.size();
+    r.measurement.forcing.load = MeasuredLoad::of(
+        {s.is_force, std::move(s.seconds), std::move(s.values), record.tau.front(),
+         record.tau.back(), p.lambda * p.epsilon},
+        {2 * std::numbers::pi * m.f / omega0, m.sin / unit, m.cos / unit},
+        [&] { cancel.step(samples); });
+    if (!r.measurement.forcing.load) return;
+    // A modulated sine has a smaller mean than its fundamental.
+    const double ratio = elementary::modulus(r.measurement.forcing.load->fundamental) /
+                         channel_forcing(m, r.system).amplitude;
+    m.sin *= ratio, m.cos *= ratio;
+}
+
 /// Moves a member out of an object; null if the member is missing.
 Json taken(Json& object, const char* name) {
     Json value = object.contains(name) ? std::move(object[name]) : Json();
@@ -241,7 +313,7 @@ Json taken(Json& object, const char* name) {
 /// measured channel of the forcing supplies f unless the request gives it; then its load.
 IdentifyRequest read_request_of_record(const Json& given, Csv csv, CancelCheck& cancel) {
     // Checks all fields first: the lookup of columns below reads them unchecked.
-    if (auto errors = check(identify_fields(), given); !errors.empty()) refuse(std::move(errors));
+    refuse_any(check(identify_fields(), given));
     std::optional<ForcingSamples> samples = forcing_samples(csv.columns, given);
     std::optional<MeasuredForcing> forcing;
     if (samples) forcing = measured_forcing(*samples, cancel);

@@ -86,8 +86,9 @@ std::size_t room_for_lists(const Json& json);
 /// True if a text needs no escapes in a JSON string.
 bool needs_no_escape(std::string_view text);
 
-/// The whole text.
+/// The whole text; as a line, with its end.
 std::string json_text(Json json);
+inline std::string json_line(Json json) { return json_text(std::move(json)) + "\n"; }
 
 /// Bytes that write_number() needs: "-2.2250738585072014e-308", and its overwriting beyond the end.
 inline constexpr std::size_t room_for_number = 40;

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <iterator>
 #include <numbers>
+#include <tuple>
 
 #include "api/presets.hpp"
 #include "api/properties.hpp"
@@ -25,9 +26,8 @@ const std::vector<std::string> si_names = [] {
 
 std::vector<std::string> present(const Json& object, const std::vector<std::string>& names) {
     std::vector<std::string> found;
-    std::copy_if(names.begin(), names.end(), std::back_inserter(found), [&](const std::string& n) {
-        return object.contains(n);
-    });
+    for (const std::string& name : names)
+        if (object.contains(name)) found.push_back(name);
     return found;
 }
 
@@ -138,30 +138,26 @@ void restate_system(Json& preset, const Json& given) {
     }
 }
 
-/// Splits a preset's R into R_plus and R_minus if the request says something about one wall, and
-/// drops the laws that the request replaces.
-void restate_walls(Json& preset, const Json& given) {
-    const auto drop = [&](const std::vector<std::string>& names,
-                          const std::vector<std::string>& by) {
-        if (!present(given, by).empty())
-            for (const std::string& name : names) preset.erase(name);
-    };
-    const std::vector<std::string> one_wall = {
-        "R_plus", "R_minus", "restitution_plus", "restitution_minus"};
-    if (!present(given, one_wall).empty())
-        for (const char* law : {"R", "restitution"})
-            if (preset.contains(law)) {
-                const std::string of = std::string(law) + "_";
-                preset[of + "plus"] = preset[of + "minus"] = preset[law];
-                preset.erase(law);
-            }
-    drop({"R_plus", "restitution_plus"}, {"R", "restitution", "R_plus", "restitution_plus"});
-    drop({"R_minus", "restitution_minus"}, {"R", "restitution", "R_minus", "restitution_minus"});
-    drop({"R", "restitution"}, {"R", "restitution"});
-    drop({"F", "acceleration", "f", "G", "Omega"}, {"forcing"});
-    drop({"forcing"}, {"F", "acceleration", "f", "G", "Omega"});
-    drop({"gravity", "inclination"}, {"gravity", "inclination"});
-    drop({"friction", "mu"}, {"friction", "mu"});
+/// Splits a preset's R into R_plus and R_minus if the request says something about one wall.
+void split_walls(Json& preset, const Json& given) {
+    if (present(given, {"R_plus", "R_minus", "restitution_plus", "restitution_minus"}).empty())
+        return;
+    for (const std::string law : {"R", "restitution"})
+        if (preset.contains(law)) {
+            preset[law + "_plus"] = preset[law + "_minus"] = preset[law];
+            preset.erase(law);
+        }
+}
+
+/// Removes from a preset the fields that the request's fields exclude, except those of the system,
+/// which is restated.
+void drop_excluded(Json& preset, const Json& given) {
+    for (const Alternative& a : alternatives()) {
+        if (a.one == reduced_names) continue;
+        for (const auto& [by, names] : {std::tie(a.one, a.other), std::tie(a.other, a.one)})
+            if (!present(given, by).empty())
+                for (const std::string& name : names) preset.erase(name);
+    }
 }
 
 /// Removes from a preset the fields that do not apply to another system or run, and returns them.
@@ -185,19 +181,8 @@ Json drop_inapplicable_fields(Json& preset, const FieldTable& table, const Json&
     if (another_system) drop("damping");
     if (another_run)
         for (const char* name : {"window", "windows"}) drop(name);
-    if (given.contains("tau_end") || given.contains("cycles"))
-        for (const char* name : {"tau_end", "cycles"}) preset.erase(name);
     return dropped;
 }
-
-const Json& value_of(const MergedFields& l, const std::string& name) {
-    if (l.has(name)) return l.fields[name];
-    const Field* own = find(l.table, name);
-    return own && !own->fallback.is_null() ? own->fallback
-                                           : find(simulate_fields(), name)->fallback;
-}
-
-Interval interval_of(const Json& v) { return {v[0].get<double>(), v[1].get<double>()}; }
 
 }  // namespace
 
@@ -205,39 +190,28 @@ std::string MergedFields::origin(const std::string& name) const {
     return given.contains(name) ? "given" : fields.contains(name) ? "preset " + preset : "default";
 }
 
+const Json& MergedFields::operator[](const std::string& name) const {
+    if (has(name)) return fields[name];
+    const Field* own = find(table, name);
+    return own && !own->fallback.is_null() ? own->fallback
+                                           : find(simulate_fields(), name)->fallback;
+}
+
 MergedFields merge_with_preset(const FieldTable& table, const Json& given) {
     std::vector<FieldError> errors = check(table, given);
     check_alternatives(given, errors);
-    if (!errors.empty()) refuse(std::move(errors));
+    refuse_any(errors);
     if (!given.contains("preset")) return {table, given, given, "", Json::object()};
     Json merged = preset_named(given["preset"]).parameters;
     restate_system(merged, given);
-    restate_walls(merged, given);
+    split_walls(merged, given);
+    drop_excluded(merged, given);
     Json dropped = drop_inapplicable_fields(merged, table, given);
     for (auto it = merged.begin(); it != merged.end();)  // only fields of the table
         it = find(table, it.key()) ? std::next(it) : merged.erase(it);
     merged.update(given);
     merged.erase("preset");
     return {table, given, std::move(merged), given["preset"], std::move(dropped)};
-}
-
-double MergedFields::number(const std::string& name) const {
-    return value_of(*this, name).get<double>();
-}
-std::string MergedFields::word(const std::string& name) const {
-    return value_of(*this, name).get<std::string>();
-}
-std::set<std::string> MergedFields::words(const std::string& name) const {
-    return value_of(*this, name).get<std::set<std::string>>();
-}
-Interval MergedFields::interval(const std::string& name) const {
-    return interval_of(value_of(*this, name));
-}
-
-std::vector<Interval> MergedFields::intervals(const std::string& name) const {
-    std::vector<Interval> list;
-    for (const Json& v : value_of(*this, name)) list.push_back(interval_of(v));
-    return list;
 }
 
 }  // namespace vines::api

@@ -1,11 +1,9 @@
 // A request's fields, merged over those of the preset that it names.
 #pragma once
 
-#include <set>
-
+#include "api/answer_json.hpp"
 #include "api/schema/tables.hpp"
 #include "api/system_fields.hpp"
-#include "core/motion/simulate.hpp"
 
 namespace vines::api {
 
@@ -21,15 +19,8 @@ struct MergedFields {
     std::string origin(const std::string& name) const;
 
     bool has(const std::string& name) const { return fields.contains(name); }
-    /// Values by name: from the request, else the preset, else the table's default.
-    double number(const std::string& name) const;
-    double number(const std::string& name, double fallback) const {
-        return has(name) ? number(name) : fallback;
-    }
-    std::string word(const std::string& name) const;
-    std::set<std::string> words(const std::string& name) const;
-    Interval interval(const std::string& name) const;
-    std::vector<Interval> intervals(const std::string& name) const;
+    /// The value: from the request, else the preset, else the table's default.
+    const Json& operator[](const std::string& name) const;
 };
 
 /// A given field replaces only the same value of the preset. But a preset's damping applies only to

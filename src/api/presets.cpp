@@ -5,7 +5,7 @@
 #include <iterator>
 #include <numbers>
 
-#include "api/request.hpp"
+#include "api/simulate.hpp"
 #include "core/measurement/synthetic_record.hpp"
 #include "core/motion/parameters.hpp"
 
@@ -28,8 +28,8 @@ Json closed_form(double b, double tau_end = window_end) {
     return p;
 }
 
-Json windowed(Json parameters, double from, double to) {
-    parameters["window"] = {from, to};
+Json with(Json parameters, const Json& more) {
+    parameters.update(more);
     return parameters;
 }
 
@@ -52,7 +52,7 @@ std::vector<Preset> figures() {
     return {
         {"fig3", "Fig. 3", smr + ", b = 22 mm: displacement x of the linear oscillator",
          "The exponents are those of the window between the paper's broken lines.",
-         windowed(closed_form(0.022, 5521.3), window_start, window_end)},
+         with(closed_form(0.022, 5521.3), {{"window", {window_start, window_end}}})},
         {"fig4", "Fig. 4", smr + ", b = 22 mm: relative displacement y - x enlarged", "",
          closed_form(0.022, 600)},
         {"fig5", "Fig. 5", smr + ", b = 22 mm: transient Lyapunov exponents",
@@ -97,20 +97,15 @@ std::vector<Preset> figures() {
 
 /// Rows of Table 2: windows of one motion.
 void add_table_2(std::vector<Preset>& list) {
-    const double windows[3][2] = {{18.13, 1708.9}, {1708.9, 3652.7}, {3652.7, 5521.3}};
-    Json rows = Json::array();
-    for (const auto& [from, to] : windows) rows.push_back({from, to});
-    auto of_table2 = [&](int row) {
-        Json p = windowed(closed_form(0.022, 5521.3), windows[row][0], windows[row][1]);
-        p["windows"] = rows;
-        return p;
-    };
-    for (int i = 0; i < 3; ++i)
+    const Json windows = {{18.13, 1708.9}, {1708.9, 3652.7}, {3652.7, 5521.3}};
+    for (std::size_t row = 0; row < windows.size(); ++row) {
+        const std::string number = std::to_string(row + 1);
         list.push_back(
-            {"table2_" + std::to_string(i + 1), "Table 2, row " + std::to_string(i + 1),
+            {"table2_" + number, "Table 2, row " + number,
              std::string(smr_text) + ", b = 22 mm: window of the exponents",
              "The printed lambda3 is lambda1 - ln(1/2.2e-16)/T: rounding. It is negative (qr).",
-             of_table2(i)});
+             with(closed_form(0.022, 5521.3), {{"window", windows[row]}, {"windows", windows}})});
+    }
 }
 
 /// Rows of Table 3: one half-width b each, over the time of about 400 contacts. The length of the
@@ -154,16 +149,12 @@ void add_experiments(std::vector<Preset>& list) {
 
 /// Machines under the laws and loads beyond the paper.
 void add_machines(std::vector<Preset>& list) {
-    const auto machine = [](Json parameters, const Json& more) {
-        parameters.update(more);
-        return parameters;
-    };
     const Json base = {{"m1", 12}, {"f0", 14}, {"damping_ratio", 0.01}, {"mass_ratio", 0.03}};
-    const Json harmonic = machine(base, {{"F", 0.0002}, {"f", 14}});
+    const Json harmonic = with(base, {{"F", 0.0002}, {"f", 14}});
     list.push_back(
         {"shock", of_a_machine, "a hammer blow on a machine: the ball takes up its energy",
          "A half sine of 3000 N over 5 ms. The motion after it is a free decay.",
-         machine(
+         with(
              base,
              {{"b", 0.004},
               {"R", 0.6},
@@ -173,7 +164,7 @@ void add_machines(std::vector<Preset>& list) {
     list.push_back(
         {"chirp", of_a_machine, "a platform whose base sweeps through its resonance",
          "A chirp from 10 to 18 Hz in a minute; series.x_relative is relative to the base.",
-         machine(
+         with(
              base, {{"b", 0.006},
                     {"R", 0.6},
                     {"y0", 0},
@@ -187,14 +178,14 @@ void add_machines(std::vector<Preset>& list) {
         {"vertical", of_a_machine,
          "a vertical absorber: gravity returns the ball to the lower wall",
          "The ball falls along +x to the wall at x - y = -b, and is thrown from it.",
-         machine(
+         with(
              harmonic,
              {{"b", 0.006}, {"R", 0.6}, {"inclination", std::numbers::pi / 2}, {"cycles", 300}})});
     list.push_back(
         {"friction", of_a_machine, "friction from which the ball never moves",
          "Twice its resonance frequency moves the machine too little: mu g exceeds the largest "
          "acceleration, and the ball adds its mass only.",
-         machine(
+         with(
              base, {{"F", 0.0002},
                     {"f", 28},
                     {"b", 0.006},

@@ -35,6 +35,10 @@ void add_errors(
 
 /// Throws a Problem 422 that lists the errors.
 [[noreturn]] void refuse(std::vector<FieldError> errors);
+/// The same if there are errors.
+inline void refuse_any(const std::vector<FieldError>& errors) {
+    if (!errors.empty()) refuse(errors);
+}
 /// The same with one error, without value and range.
 [[noreturn]] void refuse(const std::string& pointer, const std::string& detail);
 

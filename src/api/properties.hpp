@@ -23,7 +23,7 @@ using enum ValueType;
 
 inline Json json_of(double value) { return finite_or_null(value); }
 inline Json json_of(std::integral auto value) { return value; }
-inline Json json_of(const Interval& interval) { return {interval.from, interval.to}; }
+inline Json json_of(const Interval& interval) { return interval; }
 inline Json json_of(const Exponents& values) { return column(values); }
 inline Json json_of(const std::string& text) { return text; }
 inline Json json_of(RegimeType type) { return name_of(type); }
@@ -273,15 +273,22 @@ struct MeasuredPoint {
     double cycle;
 };
 
+inline const PointResult& result_of(const PointResult& result) { return result; }
+inline const PointResult& result_of(const MeasuredPoint& point) { return point.result; }
+inline const PointResult& result_of(const Basin& basin) { return basin.motion; }
+
+/// Members of the result, its regime and its name, for each of these sources.
 template <auto member>
-inline constexpr auto result_at = [](const MeasuredPoint& p) { return json_of(p.result.*member); };
+inline constexpr auto result_at = [](const auto& of) { return json_of(result_of(of).*member); };
 template <auto member>
 inline constexpr auto regime_at =
-    [](const MeasuredPoint& p) { return json_of(p.result.regime.*member); };
+    [](const auto& of) { return json_of(result_of(of).regime.*member); };
+template <auto member>
+inline constexpr auto name_at = [](const auto& of) { return json_of(result_of(of).name.*member); };
 /// Null without an orbit.
 template <auto member>
-inline constexpr auto orbit_at = [](const MeasuredPoint& p) {
-    const auto& orbit = p.result.regime.orbit;
+inline constexpr auto orbit_at = [](const auto& of) {
+    const auto& orbit = result_of(of).regime.orbit;
     return orbit ? json_of(std::invoke(member, *orbit)) : Json(nullptr);
 };
 
@@ -335,8 +342,8 @@ inline constexpr Property<MeasuredPoint> point[] = {
      result_at<&PointResult::lambda1_before>},
     {{"lambda1_after", "lambda1 of the orbit, from its multipliers", number_or_null},
      result_at<&PointResult::lambda1_after>},
-    {attractor_quantity, [](const MeasuredPoint& p) { return Json(p.result.name.motion); }},
-    {mirror_quantity, [](const MeasuredPoint& p) { return json_of(p.result.name.mirror); }},
+    {attractor_quantity, name_at<&AttractorName::motion>},
+    {mirror_quantity, name_at<&AttractorName::mirror>},
     {{"multiplier", "largest modulus of the Floquet multipliers"},
      orbit_at<[](const PeriodicOrbit& o) { return elementary::modulus(o.multipliers[0]); }>},
     {{"synchronised", "fraction of the contacts that lie in synchronised stretches"},
@@ -393,27 +400,24 @@ inline constexpr Property<Extremes> impact_extremes[] = {
 inline constexpr Property<PointResult> motion[] = {
     {{"x_max", "maximum of |x| over the measured cycles, m"}, at<&PointResult::x_max>},
     {{"x_rms", "rms of x, m"}, at<&PointResult::x_rms>},
-    {{"regime", "as for a point", regime},
-     [](const PointResult& p) { return json_of(p.regime.type); }},
+    {{"regime", "as for a point", regime}, regime_at<&Regime::type>},
     {{"verdict", "as for a point", verdict}, at<&PointResult::verdict>},
-    {{"z", "as for a point"}, [](const PointResult& p) { return json_of(p.regime.z); }},
+    {{"z", "as for a point"}, regime_at<&Regime::z>},
     {{"lambda1", "largest exponent by qr", number_or_null},
      [](const PointResult& p) { return json_of(p.lambda[0]); }},
 };
 
 /// Quantities of the motion at the peak of a row.
 inline constexpr Property<PointResult> peak[] = {
-    {{"regime", "regime at x_peak", regime},
-     [](const PointResult& p) { return json_of(p.regime.type); }},
+    {{"regime", "regime at x_peak", regime}, regime_at<&Regime::type>},
     {{"verdict", "verdict at x_peak", verdict}, at<&PointResult::verdict>},
-    {{"z", "contacts per cycle at x_peak"},
-     [](const PointResult& p) { return json_of(p.regime.z); }},
+    {{"z", "contacts per cycle at x_peak"}, regime_at<&Regime::z>},
     {{"x_rms", "rms of x at x_peak, m"}, at<&PointResult::x_rms>},
 };
 
-inline constexpr Property<AttractorName> motion_name[] = {
-    {attractor_quantity, at<&AttractorName::motion>},
-    {mirror_quantity, at<&AttractorName::mirror>},
+inline constexpr Property<PointResult> motion_name[] = {
+    {attractor_quantity, name_at<&AttractorName::motion>},
+    {mirror_quantity, name_at<&AttractorName::mirror>},
 };
 
 /// The starts that lead to a motion.
@@ -422,18 +426,13 @@ inline constexpr Property<Basin> basin[] = {
       "number of the branch of orbits, the same at neighbouring values; null without an orbit",
       whole},
      at<&Basin::branch>},
-    {attractor_quantity, [](const Basin& b) { return json_of(b.motion.name.motion); }},
-    {mirror_quantity, [](const Basin& b) { return json_of(b.motion.name.mirror); }},
-    {{"regime", "I to VI, or none", regime},
-     [](const Basin& b) { return json_of(b.motion.regime.type); }},
+    {attractor_quantity, name_at<&AttractorName::motion>},
+    {mirror_quantity, name_at<&AttractorName::mirror>},
+    {{"regime", "I to VI, or none", regime}, regime_at<&Regime::type>},
     {{"period_cycles", "period in forcing cycles; null without an orbit", whole},
-     [](const Basin& b) {
-         const auto& orbit = b.motion.regime.orbit;
-         return orbit ? Json(orbit->cycles) : Json(nullptr);
-     }},
-    {{"z", "contacts per cycle"}, [](const Basin& b) { return json_of(b.motion.regime.z); }},
-    {{"x_max", "maximum of |x| over the measured cycles, m"},
-     [](const Basin& b) { return json_of(b.motion.x_max); }},
+     orbit_at<&PeriodicOrbit::cycles>},
+    {{"z", "contacts per cycle"}, regime_at<&Regime::z>},
+    {{"x_max", "maximum of |x| over the measured cycles, m"}, result_at<&PointResult::x_max>},
     {{"starts", "number of starts that lead to it", whole}, at<&Basin::starts>},
     {{"fraction", "fraction of all starts"}, at<&Basin::fraction>},
     {{"interval", "95 % interval of the fraction, from the number of starts", interval},

@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <cmath>
 #include <cstring>
-#include <map>
 #include <memory>
 #include <stdexcept>
 #include <utility>
@@ -65,14 +64,7 @@ bool holds_object(const Json& value) {
            (value.is_array() && std::any_of(value.begin(), value.end(), holds_object));
 }
 
-std::size_t packed_lists(const Json& value) {
-    std::size_t count = value.is_binary();
-    if (value.is_object() || holds_object(value))
-        for (const Json& part : value) count += packed_lists(part);
-    return count;
-}
-
-void put_form(const std::string& text, std::string& to) {
+void put_form(std::string_view text, std::string& to) {
     if (needs_no_escape(text)) to.append(1, '"').append(text).append(1, '"');
     else to += Json(text).dump();
 }
@@ -100,7 +92,8 @@ void put_form(const Json& value, std::string& to) {
     switch (value.type()) {
         case Json::value_t::null: to += 'n'; return;
         case Json::value_t::boolean: return put_form(value.get<bool>(), to);
-        case Json::value_t::string: return put_form(value.get_ref<const std::string&>(), to);
+        case Json::value_t::string:
+            return put_form(std::string_view(value.get_ref<const std::string&>()), to);
         case Json::value_t::array:
             to += '[';
             for (const Json& entry : value) put_form(entry, to);
@@ -165,45 +158,38 @@ std::string text_sha256(std::string_view sealed) {
 
 }  // namespace
 
-ContentHash::ContentHash(const Json& answer) { put(answer, 0); }
-
-void ContentHash::put(const Json& value, std::size_t list) {
-    if (value.is_object()) return put_object(value, list);
-    if (value.is_binary()) return places_.push_back({text_.size(), list});
-    if (!value.is_array()) return put_form(value, text_);
-    if (!holds_object(value)) {
-        text_ += list_form(value);
-        return;
-    }
-    text_ += '[';
-    for (const Json& entry : value) {
-        put(entry, list);
-        list += packed_lists(entry);
-    }
-    text_ += ']';
+ContentHash::ContentHash(const Json& answer) {
+    number_lists(answer);
+    put(answer);
 }
 
-void ContentHash::put_object(const Json& object, std::size_t list) {
-    struct Member {
-        const std::string* name;
-        const Json* value;
-        std::size_t list;
-    };
-    std::vector<Member> members;
-    members.reserve(object.size());
-    for (const auto& [name, value] : object.get_ref<const Json::object_t&>()) {
-        members.push_back({&name, &value, list});
-        list += packed_lists(value);
+void ContentHash::number_lists(const Json& value) {
+    if (value.is_binary()) number_.emplace(&value, number_.size());
+    if (holds_object(value))
+        for (const Json& part : value) number_lists(part);
+}
+
+void ContentHash::put(const Json& value) {
+    if (value.is_binary()) return places_.push_back({text_.size(), number_.at(&value)});
+    if (value.is_object()) {
+        std::map<std::string_view, const Json*> members;  // by name
+        for (const auto& [name, member] : value.get_ref<const Json::object_t&>())
+            members[name] = &member;
+        text_ += '{';
+        for (const auto& [name, member] : members) {
+            put_form(name, text_);
+            put(*member);
+        }
+        text_ += '}';
+    } else if (holds_object(value)) {
+        text_ += '[';
+        for (const Json& entry : value) put(entry);
+        text_ += ']';
+    } else if (value.is_array()) {
+        text_ += list_form(value);
+    } else {
+        put_form(value, text_);
     }
-    std::sort(members.begin(), members.end(), [](const Member& a, const Member& b) {
-        return *a.name < *b.name;
-    });
-    text_ += '{';
-    for (const Member& member : members) {
-        put_form(*member.name, text_);
-        put(*member.value, member.list);
-    }
-    text_ += '}';
 }
 
 void ContentHash::add(const PackedList& list) { lists_.push_back(list_form(list)); }
@@ -233,21 +219,14 @@ Json describe(const Provenance& p, const Json& sha256) {
 }
 
 Json canonical(const Json& request) {
-    if (request.is_array()) {
-        Json array = Json::array();
-        for (const Json& entry : request) array.push_back(canonical(entry));
-        return array;
-    }
     // 100.0 from a query equals 100 from a body.
     if (request.is_number_float() && std::abs(request.get<double>()) < largest_whole &&
         request == std::trunc(request.get<double>()))
         return static_cast<std::int64_t>(request.get<double>());
-    if (!request.is_object()) return request;
-    std::map<std::string, Json> ordered;
-    for (const auto& [name, value] : request.items()) ordered[name] = canonical(value);
-    Json object = Json::object();
-    for (auto& [name, value] : ordered) object[name] = std::move(value);
-    return object;
+    Json value = request.is_object() ? Json(nlohmann::json(request)) : request;  // sorted by name
+    if (value.is_structured())
+        for (Json& part : value) part = canonical(part);
+    return value;
 }
 
 std::string sha256(std::string_view text) {

@@ -1,6 +1,7 @@
 // Provenance of an answer: the inputs from which anyone can reproduce it, as a part of the answer.
 #pragma once
 
+#include <map>
 #include <optional>
 #include <vector>
 
@@ -37,16 +38,16 @@ public:
     std::string end() const;
 
 private:
-    /// `list`: the number of packed lists before the value.
-    void put(const Json& value, std::size_t list);
-    void put_object(const Json& object, std::size_t list);
+    void number_lists(const Json& value);
+    void put(const Json& value);
 
     struct Place {
         std::size_t at, list;
     };
-    std::string text_;                ///< the form without packed lists
-    std::vector<Place> places_;       ///< of these
-    std::vector<std::string> lists_;  ///< their forms, in the order of the answer
+    std::string text_;                           ///< the form without packed lists
+    std::vector<Place> places_;                  ///< of these
+    std::map<const Json*, std::size_t> number_;  ///< of these, in the order of the answer
+    std::vector<std::string> lists_;             ///< their forms, in this order
 };
 
 /// The same for an answer whose lists are all in memory.

@@ -16,16 +16,18 @@ bool is_same_name(std::string_view a, std::string_view b) {
     return a.size() == b.size() && std::equal(a.begin(), a.end(), b.begin(), is_same_letter);
 }
 
+/// True for this name, and for names that continue it after a separator.
 bool begins_with(std::string_view name, std::string_view beginning) {
-    return is_same_name(name.substr(0, beginning.size()), beginning);
+    return is_same_name(name.substr(0, beginning.size()), beginning) &&
+           (name.size() == beginning.size() ||
+            std::string_view("_ ([").find(name[beginning.size()]) != std::string_view::npos);
 }
 
 const Unit* known(const Channel& q, std::string_view text) {
     const std::string written = unit_spelling(text);
-    const auto it = std::find_if(q.units.begin(), q.units.end(), [&](const Unit& u) {
-        return std::find(u.spellings.begin(), u.spellings.end(), written) != u.spellings.end();
-    });
-    return it == q.units.end() ? nullptr : &*it;
+    for (const Unit& unit : q.units)
+        if (std::ranges::count(unit.spellings, written) > 0) return &unit;
+    return nullptr;
 }
 
 /// The unit part of a column's name: in brackets, or after a blank or underscore.
@@ -140,9 +142,7 @@ RecordColumn find_column(
         if (!column.column)
             column = found([&](std::string_view name) {
                 const auto suffix = suffix_of(q, std::string(name));
-                return suffix && known(q, suffix->text) && name.size() > wanted.size() &&
-                       begins_with(name, wanted) &&
-                       std::string_view("_ ([").find(name[wanted.size()]) != std::string_view::npos;
+                return suffix && known(q, suffix->text) && begins_with(name, wanted);
             });
         if (column.column) return column;
         refuse({{"/" + field, wanted, names_of(columns), "the record has no column of this name"}});
@@ -152,12 +152,7 @@ RecordColumn find_column(
         column.column)
         return column;
     for (const std::string& beginning : q.beginnings) {
-        const auto fits = [&](std::string_view name) {
-            return begins_with(name, beginning) &&
-                   (name.size() == beginning.size() ||
-                    std::string_view("_ ([").find(name[beginning.size()]) !=
-                        std::string_view::npos);
-        };
+        const auto fits = [&](std::string_view name) { return begins_with(name, beginning); };
         Json candidates = Json::array();
         for (const CsvColumn& c : columns)
             if (fits(c.name)) candidates.push_back(shortened(c.name));

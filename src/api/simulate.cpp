@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <utility>
 
-#include "api/describe.hpp"
 #include "api/properties.hpp"
 #include "api/schema/field.hpp"
 #include "api/version.hpp"
@@ -80,7 +79,7 @@ Json describe_parameters(const SimulateRequest& r) {
     append(
         run, {{"tau_end", w.tau_end},
               {"cycles", w.tau_end / w.parameters.cycle()},
-              {"window", {w.window.from, w.window.to}},
+              {"window", w.window},
               {"settle_cycles", w.settle_cycles},
               {"samples_per_cycle", w.samples_per_cycle},
               {"section_phase", w.section_phase},
@@ -116,7 +115,7 @@ Json describe_windows(
     double run_end) {
     Json list = Json::array();
     for (const WindowExponents& w : windows) {
-        Json entry = {{"asked", {w.asked.from, w.asked.to}}};
+        Json entry = {{"asked", w.asked}};
         entry.update(describe_exponents(w, shown, regime, false));
         if (shown.qr && w.asked.from >= run_end)
             entry["verdict_reason"] = "the run had ended before this window began";
@@ -137,8 +136,7 @@ ImpactScales scales_of(const SimulateRequest& r, const Analysis& a) {
 
 /// True if a warning reports that the answer was cut to its size limit.
 bool mentions_limit(const Warnings& warnings, std::size_t most_bytes) {
-    const std::string limit = limit_of(most_bytes);
-    return std::any_of(warnings.begin(), warnings.end(), [&limit](const std::string& warning) {
+    return std::ranges::any_of(warnings, [limit = limit_of(most_bytes)](const auto& warning) {
         return warning.find(limit) != std::string::npos;
     });
 }

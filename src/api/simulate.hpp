@@ -1,13 +1,37 @@
-// Answers of /v1/simulate and /v1/manifold.
+// Requests and answers of /v1/simulate and /v1/manifold.
 #pragma once
 
+#include <set>
+
 #include "api/columns.hpp"
+#include "api/describe.hpp"
 #include "api/provenance.hpp"
-#include "api/request.hpp"
-#include "api/warning_text.hpp"
 #include "core/sweep/sweep.hpp"
 
 namespace vines::api {
+
+struct SimulateRequest {
+    System system;
+    AnalysisRequest wanted;         ///< the run and its results; parameters as in `system`
+    std::set<std::string> include;  ///< parts of the answer
+
+    bool includes(const char* part) const { return include.contains(part); }
+};
+
+/// Problem 422 naming every invalid field.
+SimulateRequest read_simulate_request(const Json& object);
+
+/// The estimators of the field exponents, with a history of max_points.
+ExponentOptions read_estimators(const MergedFields& fields);
+
+struct ManifoldRequest {
+    System system;
+    double V_max;  ///< 0: not given
+    std::size_t points;
+};
+
+/// Problem 422 naming every invalid field, also if R differs between the walls.
+ManifoldRequest read_manifold_request(const Json& object);
 
 /// Ends a run from outside. `requested` is polled every few events; once it returns true, the
 /// answer holds the results so far, with this reason and message in its status.

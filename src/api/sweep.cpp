@@ -123,8 +123,6 @@ std::string scale_warning(const SweepRequest& r) {
            "it";
 }
 
-std::string json_line(Json json) { return json_text(std::move(json)) + "\n"; }
-
 using TakeLine = std::function<void(std::size_t, const std::string&)>;
 
 /// Formats lines on the threads that computed them, and passes them on one at a time.
@@ -151,6 +149,15 @@ private:
     std::mutex mutex_;
 };
 
+/// A warning if motions depend on the start; otherwise empty.
+std::string start_warning(const StartTrial& trial) {
+    if (trial.elsewhere == 0) return "";
+    return fmt::format(
+        "the motion depends on the start: at {} of {} points with a second start it ends elsewhere "
+        "(second_start); \"starts\": \"{}\" reports the worst and the best of several",
+        trial.elsewhere, trial.tried, default_set_of_starts);
+}
+
 }  // namespace
 
 Json describe_place(const SweepRequest& r, std::size_t line) {
@@ -171,7 +178,7 @@ Json describe_point(const SweepRequest& r, std::size_t index, const SweepPoint& 
         return line;
     }
     if (r.basins) {
-        line.update(describe(properties::motion_name, point.motions[0].result.name));
+        line.update(describe(properties::motion_name, point.motions[0].result));
         return line;
     }
     if (point.afresh) line["carried"] = false;
@@ -213,14 +220,6 @@ Json describe_row(const SweepRequest& r, std::size_t index, const RowSummary& ro
     line["points_missing"] = row.missing;
     if (row.depends_on_start) line["depends_on_start"] = *row.depends_on_start;
     return line;
-}
-
-std::string start_warning(const StartTrial& trial) {
-    if (trial.elsewhere == 0) return "";
-    return fmt::format(
-        "the motion depends on the start: at {} of {} points with a second start it ends elsewhere "
-        "(second_start); \"starts\": \"{}\" reports the worst and the best of several",
-        trial.elsewhere, trial.tried, default_set_of_starts);
 }
 
 Json sweep_start(const SweepRequest& r) {

@@ -70,16 +70,11 @@ std::vector<Json> sample_rows(const SweepRequest& r) {
     return samples;
 }
 
-/// Kinds of values that can replace each other. null stands for numbers that do not exist and for
+/// True if the values can replace each other. null stands for numbers that do not exist and for
 /// quantities that were not measured.
-enum class Kind { absent_or_number, flag, text, list, object };
-
-Kind kind_of(const Json& value) {
-    if (value.is_boolean()) return Kind::flag;
-    if (value.is_string()) return Kind::text;
-    if (value.is_array()) return Kind::list;
-    if (value.is_object()) return Kind::object;
-    return Kind::absent_or_number;
+bool is_alike(const Json& one, const Json& other) {
+    const auto is_number = [](const Json& value) { return value.is_number() || value.is_null(); };
+    return one.type() == other.type() || (is_number(one) && is_number(other));
 }
 
 using Samples = std::vector<const Json*>;
@@ -146,7 +141,7 @@ std::string fault_of_list(const std::string& name, const Json& list, const Sampl
 std::string fault_among(const std::string& name, const Json& value, const Samples& samples) {
     Samples alike;
     for (const Json* sample : samples)
-        if (kind_of(*sample) == kind_of(value)) alike.push_back(sample);
+        if (is_alike(*sample, value)) alike.push_back(sample);
     if (alike.empty()) return fmt::format("{} is {}", name, value.dump());
     if (value.is_object()) return fault_of_object(name, value, alike);
     if (value.is_array()) return fault_of_list(name, value, alike);

@@ -1,4 +1,4 @@
-#include "api/sweep_request.hpp"
+#include "api/sweep.hpp"
 
 #include <algorithm>
 #include <map>
@@ -10,26 +10,16 @@
 
 namespace vines::api {
 
-SweepSystems::SweepSystems(
-    std::vector<SystemFields> bases, std::vector<Start> starts, std::vector<Axis> axes,
-    long max_impacts)
-    : bases_(std::move(bases)),
-      starts_(std::move(starts)),
-      max_impacts_(max_impacts) {
-    for (Axis& axis : axes)
-        columns_.push_back({system_number(axis.parameter), std::move(axis.values)});
-}
-
 bool SweepSystems::has_load() const {
-    return std::ranges::any_of(bases_, [](const SystemFields& s) { return s.forcing != nullptr; });
+    return std::ranges::any_of(bases, [](const SystemFields& s) { return s.forcing != nullptr; });
 }
 
 SystemFields SweepSystems::fields_at(const Place& place) const {
-    const Start& start = starts_[place.start];
-    SystemFields fields = bases_[start.base];
+    const Start& start = starts[place.start];
+    SystemFields fields = bases[start.base];
     for (const auto& [number, value] : start.numbers) fields.*number = value;
-    for (std::size_t a = 0; a < columns_.size(); ++a)
-        fields.*columns_[a].number = columns_[a].values[place.at[a]];
+    for (std::size_t a = 0; a < axes.size(); ++a)
+        fields.*axes[a].number = axes[a].values[place.at[a]];
     return fields;
 }
 
@@ -38,8 +28,8 @@ std::optional<PointSystem> SweepSystems::at(const Place& place) const {
 }
 
 std::optional<PointSystem> SweepSystems::at_value(double value) const {
-    SystemFields fields = fields_at({0, std::vector<std::size_t>(columns_.size(), 0)});
-    if (!columns_.empty()) fields.*columns_[0].number = value;
+    SystemFields fields = fields_at({0, std::vector<std::size_t>(axes.size(), 0)});
+    if (!axes.empty()) fields.*axes[0].number = value;
     return system_of(fields);
 }
 
@@ -51,7 +41,7 @@ std::optional<PointSystem> SweepSystems::system_of(const SystemFields& fields) c
         const ResolvedSystem system = resolve(fields);
         const State start = start_of(fields, system);
         if (!validate(system.parameters, start).empty()) return std::nullopt;
-        PointSystem point{system.parameters, start, max_impacts_};
+        PointSystem point{system.parameters, start, max_impacts};
         if (system.si) point.units = {system.si->omega0(), system.si->m1};
         return point;
     } catch (const Problem&) {  // no valid load
@@ -64,11 +54,6 @@ std::optional<SiParameters> SweepSystems::si_at(const Place& place) const {
 }
 
 namespace {
-
-bool is_parameter(const std::string& name) {
-    const Field* field = find(sweep_base_fields(), name);
-    return field && field->type == FieldType::number;
-}
 
 std::vector<std::string> parameter_names() {
     std::vector<std::string> names;
@@ -110,10 +95,11 @@ std::vector<FieldError> faults_of(const Json& j, std::size_t most) {
     std::vector<FieldError> errors = check(axis_fields(), j);
     if (!j.contains("parameter"))
         errors.push_back({"/parameter", nullptr, parameter_names(), "an axis needs its parameter"});
-    else if (j["parameter"].is_string() && !is_parameter(j["parameter"]))
+    else if (const Json& name = j["parameter"];
+             name.is_string() &&
+             std::ranges::count(parameter_names(), name.get_ref<const std::string&>()) == 0)
         errors.push_back(
-            {"/parameter", j["parameter"], parameter_names(),
-             "there is no parameter of this name to sweep"});
+            {"/parameter", name, parameter_names(), "there is no parameter of this name to sweep"});
     if (j.contains("values")) {
         check_values(j, most, errors);
     } else {
@@ -150,12 +136,10 @@ Axis read_axis(
         return {};
     }
     Axis axis{
-        j["parameter"], j.contains("values")
-                            ? j["values"].get<std::vector<double>>()
-                            : spaced(
-                                  j["from"].get<double>(), j["to"].get<double>(),
-                                  static_cast<std::size_t>(j["count"].get<double>()),
-                                  j.value("scale", "linear") == "log")};
+        j["parameter"],
+        j.contains("values")
+            ? j["values"].get<std::vector<double>>()
+            : spaced(j["from"], j["to"], j["count"], j.value("scale", "linear") == "log")};
     const auto [least, largest] = std::ranges::minmax(axis.values);
     for (const double value : {least, largest})
         for (FieldError& e : check(sweep_base_fields(), {{axis.parameter, value}})) {
@@ -272,22 +256,23 @@ void read_starts(SweepRequest& r, const Json& given, std::vector<FieldError>& er
 
 /// Swept fields must not be set elsewhere, nor fields that the default set of starts sets.
 void check_overlaps(const SweepRequest& r, std::vector<FieldError>& errors) {
-    for (const Axis& a : r.axes) {
-        if (r.base.contains(a.parameter))
-            errors.push_back(
-                {"/base/" + a.parameter, r.base[a.parameter], nullptr,
-                 a.parameter + " is swept; the base must not set it"});
+    const auto forbid = [&errors](
+                            const Json& object, const std::string& where, const std::string& name,
+                            const std::string& detail) {
+        if (object.contains(name))
+            errors.push_back({where + "/" + name, object[name], nullptr, detail});
+    };
+    for (const auto& [name, values] : r.axes) {
+        forbid(r.base, "/base", name, name + " is swept; the base must not set it");
         for (std::size_t s = 0; s < r.starts.size(); ++s)
-            if (r.starts[s].contains(a.parameter))
-                errors.push_back(
-                    {"/starts/" + std::to_string(s) + "/" + a.parameter, r.starts[s][a.parameter],
-                     nullptr, a.parameter + " is swept; a start must not set it"});
+            forbid(
+                r.starts[s], "/starts/" + std::to_string(s), name,
+                name + " is swept; a start must not set it");
     }
     if (!r.plan.default_set) return;
     for (const Field& f : start_fields()) {
         const std::string detail = "the default set of starts sets " + f.name;
-        if (r.base.contains(f.name))
-            errors.push_back({"/base/" + f.name, r.base[f.name], nullptr, detail});
+        forbid(r.base, "/base", f.name, detail);
         for (std::size_t a = 0; a < r.axes.size(); ++a)
             if (r.axes[a].parameter == f.name)
                 errors.push_back(
@@ -297,19 +282,19 @@ void check_overlaps(const SweepRequest& r, std::vector<FieldError>& errors) {
 
 void read_options(SweepRequest& r, const Json& given, std::vector<FieldError>& errors) {
     SweepPlan& plan = r.plan;
-    const std::string section = field(given, "section"), carry = field(given, "carry_state"),
-                      objective = field(given, "objective");
+    const std::string section = field(given, "section"), carry = field(given, "carry_state");
+    const auto objective = enum_value<Objective>(field(given, "objective").get<std::string>());
     plan.carry = enum_value<Carry>(carry);
     plan.options = {
-        .transient_cycles = field(given, "transient_cycles").get<double>(),
-        .cycles = field(given, "cycles").get<double>(),
-        .settle_cycles = field(given, "settle_cycles").get<double>(),
+        .transient_cycles = field(given, "transient_cycles"),
+        .cycles = field(given, "cycles"),
+        .settle_cycles = field(given, "settle_cycles"),
         .section = enum_value<SectionKind>(section),
-        .section_points = static_cast<std::size_t>(field(given, "section_points").get<double>()),
-        .section_phase = field(given, "section_phase").get<double>(),
+        .section_points = field(given, "section_points"),
+        .section_phase = field(given, "section_phase"),
         .carry = plan.default_set || plan.carry != Carry::none,
-        .objective = enum_value<Objective>(objective),
-        .peaks = !field(given, "include").empty() || is_peak(enum_value<Objective>(objective))};
+        .objective = objective,
+        .peaks = !field(given, "include").empty() || is_peak(objective)};
     if (plan.default_set && plan.carry != Carry::none)
         errors.push_back(
             {"/carry_state", carry, Json::array({"none"}),
@@ -355,30 +340,26 @@ void check_loaded(const SweepRequest& r, const Json& given, std::vector<FieldErr
              "a stroboscopic section" + reason});
 }
 
-void refuse_any(std::vector<FieldError>& errors) {
-    if (!errors.empty()) refuse(std::move(errors));
-}
-
 /// Expects fields that can be combined: then only their values can make a point invalid.
 std::shared_ptr<const SweepSystems> systems_of(const SweepRequest& r) {
-    std::vector<SystemFields> bases;
+    SweepSystems systems;
     std::map<std::vector<std::string>, std::size_t> base_of;
-    long max_impacts = 0;
-    for (const auto& [names, start] : kinds_of_starts(r)) {
-        const MergedFields l = merge_with_preset(
-            sweep_base_fields(), fields_of(r, {start, std::vector<std::size_t>(r.axes.size(), 0)}));
-        base_of[names] = bases.size();
-        bases.push_back(system_fields(l.fields));
-        max_impacts = static_cast<long>(l.number("max_impacts"));
+    for (std::size_t s = 0; s < r.starts.size(); ++s) {
+        const auto [base, is_new] = base_of.try_emplace(names_of(r.starts[s]), base_of.size());
+        if (is_new) {
+            const MergedFields l = merge_with_preset(
+                sweep_base_fields(), fields_of(r, {s, std::vector<std::size_t>(r.axes.size(), 0)}));
+            systems.bases.push_back(system_fields(l.fields));
+            systems.max_impacts = l["max_impacts"];
+        }
+        SweepSystems::Start& start = systems.starts.emplace_back();
+        start.base = base->second;
+        for (const auto& [name, value] : r.starts[s].items())
+            start.numbers.emplace_back(system_number(name), value.get<double>());
     }
-    std::vector<SweepSystems::Start> starts;
-    for (const Json& start : r.starts) {
-        starts.push_back({base_of[names_of(start)], {}});
-        for (const auto& [name, value] : start.items())
-            starts.back().numbers.emplace_back(system_number(name), value.get<double>());
-    }
-    return std::make_shared<const SweepSystems>(
-        std::move(bases), std::move(starts), r.axes, max_impacts);
+    for (const Axis& axis : r.axes)
+        systems.axes.push_back({system_number(axis.parameter), axis.values});
+    return std::make_shared<const SweepSystems>(std::move(systems));
 }
 
 }  // namespace

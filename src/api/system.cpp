@@ -50,7 +50,7 @@ void check_si_is_whole(const MergedFields& l, bool forcing_fitted) {
                  " is missing: a system in SI needs m1, c1 or damping_ratio, k1 or f0, m2 or "
                  "mass_ratio, F or acceleration, and f, or a preset for the rest"});
     }
-    if (!errors.empty()) refuse(std::move(errors));
+    refuse_any(errors);
 }
 
 /// Errors of a table of R.
@@ -65,7 +65,7 @@ void check_restitution(const MergedFields& l, const std::string& name, bool si) 
     if (table.contains("speed") == table.contains("speed_m_s"))
         fail("", nullptr, nullptr, "needs either speed or speed_m_s");
     if (!table.contains("R")) fail("/R", nullptr, nullptr, "needs R");
-    if (!errors.empty()) refuse(std::move(errors));
+    refuse_any(errors);
     const std::string column = table.contains("speed") ? "speed" : "speed_m_s";
     const Json &speed = table[column], &R = table["R"];
     if (column == "speed_m_s" && !si)
@@ -76,7 +76,7 @@ void check_restitution(const MergedFields& l, const std::string& name, bool si) 
             "has too few or too many points");
     if (speed.size() != R.size())
         fail("/R", R.size(), speed.size(), "needs as many values of R as speeds");
-    if (!errors.empty()) refuse(std::move(errors));
+    refuse_any(errors);
     const std::size_t wrong = speed[0] >= 0 ? first_not_ascending(speed) : 0;
     if (wrong < speed.size())
         fail(
@@ -85,7 +85,7 @@ void check_restitution(const MergedFields& l, const std::string& name, bool si) 
     for (std::size_t i = 0; i < R.size() && errors.empty(); ++i)
         if (const double r = R[i].get<double>(); !(r >= 0 && r <= 1))
             fail("/R/" + std::to_string(i), R[i], Json::array({0, 1}), "needs R in [0, 1]");
-    if (!errors.empty()) refuse(std::move(errors));
+    refuse_any(errors);
 }
 
 /// Checks the laws of the ball and of its walls as far as the core does not.
@@ -99,7 +99,7 @@ void check_laws(const MergedFields& l, bool si) {
                  std::string(name) +
                      " needs a system in SI (m1, k1 or f0, ...); without one give " + reduced +
                      ", in m"});
-    if (!errors.empty()) refuse(std::move(errors));
+    refuse_any(errors);
     for (const char* name : {"restitution", "restitution_plus", "restitution_minus"})
         check_restitution(l, name, si);
 }
@@ -163,11 +163,11 @@ std::map<std::string, std::string> origins_of(const MergedFields& l, const Syste
 std::vector<std::string> notes_on(const MergedFields& l, const System& s) {
     std::vector<std::string> notes;
     const Parameters& p = s.parameters;
-    if (l.dropped.contains("damping") &&
-        l.word("damping") != l.dropped["damping"].get<std::string>())
+    if (l.dropped.contains("damping") && l["damping"] != l.dropped["damping"])
         notes.push_back(
             "the system is not that of preset " + l.preset + ": its damping is " +
-            l.word("damping") + ", not the preset's " + l.dropped["damping"].get<std::string>());
+            l["damping"].get<std::string>() + ", not the preset's " +
+            l.dropped["damping"].get<std::string>());
     note_falling_restitution(p, notes);
     if (!s.si || present(l.given, si_names).empty()) return notes;
     std::vector<std::string> taken, assumed;
@@ -197,14 +197,7 @@ std::vector<std::string> notes_on(const MergedFields& l, const System& s) {
     return notes;
 }
 
-}  // namespace
-
-std::size_t first_not_ascending(const Json& list) {
-    std::size_t i = 1;
-    while (i < list.size() && list[i].get<double>() > list[i - 1].get<double>()) ++i;
-    return i;
-}
-
+/// Maps the core's faults to the given fields; a reduced parameter can follow from several.
 std::vector<FieldError> field_errors(const std::vector<Fault>& faults, const MergedFields& l) {
     std::vector<FieldError> errors;
     for (const Fault& f : faults) {
@@ -224,6 +217,7 @@ std::vector<FieldError> field_errors(const std::vector<Fault>& faults, const Mer
     return errors;
 }
 
+/// Does not check the core's ranges.
 System read_system(const MergedFields& l, bool forcing_fitted) {
     const bool si = !present(l.fields, si_names).empty();
     check_laws(l, si);
@@ -233,9 +227,7 @@ System read_system(const MergedFields& l, bool forcing_fitted) {
               "forcing is in SI and needs a system in SI (m1, k1 or f0, ...)"}});
     const SystemFields fields = system_fields(l.fields);
     if (fields.is_in_si() && !fields.is_reduced()) check_si_is_whole(l, forcing_fitted);
-    const ResolvedSystem resolved = resolve(fields);
-    System system;
-    system.parameters = resolved.parameters, system.si = resolved.si;
+    System system{resolve(fields)};
     system.origin = origins_of(l, system);
     system.notes = notes_on(l, system);
     if (!system.parameters.load) return system;
@@ -244,6 +236,7 @@ System read_system(const MergedFields& l, bool forcing_fitted) {
     return system;
 }
 
+/// Warnings go to the system's notes.
 State read_start(const MergedFields& l, System& system) {
     for (const char* name : {"x0", "x_dot0", "y0", "y_dot0"}) system.origin[name] = l.origin(name);
     if (l.has("x0") && !l.has("y0")) system.origin["y0"] = "follows from x0";
@@ -256,23 +249,43 @@ State read_start(const MergedFields& l, System& system) {
                      " is in m/s and needs a system in SI (m1, k1 or f0, ...); without one give " +
                      in_tau + ", in m per unit of tau"});
         else if (l.has(in_SI)) system.origin[in_tau] = "follows from " + in_SI;
-        else if (const double value = l.number(in_tau); system.si && value != 0 && l.has(in_tau))
+        else if (const double value = l[in_tau]; system.si && value != 0 && l.has(in_tau))
             system.notes.push_back(
                 in_tau + " = " + Json(value).dump() + " is in m per unit of tau, here " +
                 Json(value * system.si->omega0()).dump() + " m/s; " + in_SI + " is in m/s");
     };
     velocity("x_dot0", "x_velocity0");
     velocity("y_dot0", "y_velocity0");
-    if (!errors.empty()) refuse(std::move(errors));
-    return start_of(system_fields(l.fields), {system.parameters, system.si});
+    refuse_any(errors);
+    return start_of(system_fields(l.fields), system);
+}
+
+}  // namespace
+
+std::size_t first_not_ascending(const Json& list) {
+    std::size_t i = 1;
+    while (i < list.size() && list[i].get<double>() > list[i - 1].get<double>()) ++i;
+    return i;
 }
 
 System read_system_alone(const MergedFields& l, bool forcing_fitted) {
     const System system = read_system(l, forcing_fitted);
-    const std::vector<FieldError> errors =
-        field_errors(validate(system.parameters, default_state(system.parameters)), l);
-    if (!errors.empty()) refuse(errors);
+    const Parameters& p = system.parameters;
+    refuse_any(field_errors(validate(p, default_state(p)), l));
     return system;
+}
+
+StartedSystem read_started_system(const MergedFields& l) {
+    StartedSystem s;
+    s.system = read_system(l, false);
+    s.start = read_start(l, s.system);
+    s.max_impacts = l["max_impacts"];
+    s.errors = field_errors(validate(s.system.parameters, s.start), l);
+    return s;
+}
+
+StartedSystem read_started_system(const Json& given) {
+    return read_started_system(merge_with_preset(sweep_base_fields(), given));
 }
 
 }  // namespace vines::api

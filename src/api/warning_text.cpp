@@ -1,8 +1,6 @@
-#include "api/warning_text.hpp"
-
 #include <fmt/format.h>
 
-#include "core/analysis/perturbation.hpp"
+#include "api/describe.hpp"
 
 namespace vines::api {
 

@@ -5,7 +5,7 @@
 #include <map>
 #include <string>
 
-#include "api/sweep_request.hpp"
+#include "api/sweep.hpp"
 
 namespace vines::cli {
 

@@ -3,7 +3,6 @@
 #include <vector>
 
 #include "api/json_text.hpp"
-#include "api/request.hpp"
 #include "api/simulate.hpp"
 #include "core/motion/record.hpp"
 #include "http/encoding.hpp"

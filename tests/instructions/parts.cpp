@@ -6,7 +6,6 @@
 #include <string>
 
 #include "api/json_text.hpp"
-#include "api/request.hpp"
 #include "api/simulate.hpp"
 #include "core/motion/record.hpp"
 #include "core/sweep/point.hpp"

@@ -6,7 +6,6 @@
 #include <utility>
 
 #include "api/answer_json.hpp"
-#include "api/sweep.hpp"
 
 namespace vines::api {
 

@@ -9,7 +9,7 @@
 #include <map>
 
 #include "api/format/encode.hpp"
-#include "api/sweep_request.hpp"
+#include "api/sweep.hpp"
 
 namespace vines::api {
 

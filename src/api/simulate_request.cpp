@@ -1,7 +1,8 @@
-#include "api/request.hpp"
-
+// The requests of /v1/simulate and /v1/manifold.
 #include <algorithm>
 
+#include "api/simulate.hpp"
+#include "api/system.hpp"
 #include "core/motion/load.hpp"
 
 namespace vines::api {
@@ -43,9 +44,9 @@ void add_notes_on_load(System& system, double tau_end) {
 double read_tau_end(const MergedFields& l, const Parameters& p, std::vector<FieldError>& errors) {
     const bool by_cycles = l.has("cycles"), by_load = is_as_long_as_load(l, p);
     const double cycle = p.cycle(),
-                 tau_end = by_cycles ? l.number("cycles") * cycle
+                 tau_end = by_cycles ? l["cycles"].get<double>() * cycle
                            : by_load ? p.load->length()
-                                     : l.number("tau_end"),
+                                     : l["tau_end"].get<double>(),
                  longest = std::min(longest_run, most_cycles * cycle);
     if (errors.empty() && tau_end > longest) {  // Omega is within its range
         const double most = by_cycles ? longest / cycle : longest;
@@ -122,44 +123,35 @@ FieldError error_of(
         detail};
 }
 
-/// The perturbation of the initial state; nullopt if not given or invalid, which adds to `errors`.
-/// The unperturbed start must be valid.
+/// The perturbation of the initial state, which must be valid; nullopt if not given. Problem 422 if
+/// it is invalid.
 std::optional<State> read_perturbation(
-    const MergedFields& l, const Parameters& p, const State& start,
-    std::vector<FieldError>& errors) {
+    const MergedFields& l, const Parameters& p, const State& start) {
     if (!l.has("perturbation")) return std::nullopt;
-    if (!p.has_straight_flights()) {
-        errors.push_back(
-            {"/perturbation", l.fields["perturbation"], nullptr,
-             "the distance of two runs is computed for harmonic forcing and a ball without gravity "
-             "and friction"});
-        return std::nullopt;
-    }
     const Json& given = l.fields["perturbation"];
+    if (!p.has_straight_flights())
+        refuse(
+            {{"/perturbation", given, nullptr,
+              "the distance of two runs is computed for harmonic forcing and a ball without "
+              "gravity "
+              "and friction"}});
     const auto own = present(given, {"x", "x_dot", "y", "y_dot"}),
                random = present(given, {"seed", "size"});
-    if (!own.empty() && !random.empty()) {
+    std::vector<FieldError> errors;
+    if (!own.empty() && !random.empty())
         for (const auto& some : {own, random})
             for (const std::string& name : some)
                 errors.push_back(
                     {at_perturbation + name, given[name], nullptr,
                      "a perturbation is either x, x_dot, y, y_dot or seed and size"});
-        return std::nullopt;
-    }
-    if (!random.empty() && !given.contains("size")) {
-        errors.push_back(
-            {at_perturbation + "size", nullptr, nullptr,
-             "size, the length of the perturbation, is missing"});
-        return std::nullopt;
-    }
+    refuse_any(errors);
+    if (!random.empty() && !given.contains("size"))
+        refuse(at_perturbation + "size", "size, the length of the perturbation, is missing");
     State difference;
     for (const Component& c : perturbed_components) difference.*c.value = given.value(c.name, 0.0);
-    if (!random.empty()) {
-        const double seed = given.value(
-            "seed", find(find(l.table, "perturbation")->fields, "seed")->fallback.get<double>());
-        difference =
-            random_difference(static_cast<std::uint64_t>(seed), given["size"].get<double>());
-    }
+    if (!random.empty())
+        difference = random_difference(
+            value_or_default(find(l.table, "perturbation")->fields, given, "seed"), given["size"]);
     const State perturbed = displaced(start, difference);
     if (length_of(difference_of(perturbed, start)) == 0)
         errors.push_back(
@@ -168,61 +160,53 @@ std::optional<State> read_perturbation(
              "the rounding of the start"});
     for (const Fault& fault : validate(p, perturbed))
         errors.push_back(error_of(fault, given, p, start, perturbed));
+    refuse_any(errors);
     return difference;
 }
 
 }  // namespace
 
 ExponentOptions read_estimators(const MergedFields& l) {
-    const std::set<std::string> names = l.words("exponents");
+    const std::set<std::string> names = l["exponents"];
     return {
         .qr = names.contains("qr"),
         .eigenvalues = names.contains("eigenvalues"),
         .raw_product = names.contains("raw_product"),
-        .history = static_cast<std::size_t>(l.number("max_points"))};
+        .history = l["max_points"]};
 }
 
 SimulateRequest read_simulate_request(const Json& given) {
     const MergedFields l = merge_with_preset(simulate_fields(), given);
 
     SimulateRequest r;
-    r.system = read_system(l);
+    StartedSystem started = read_started_system(l);
+    std::vector<FieldError>& errors = started.errors;
+    r.system = std::move(started.system);
     AnalysisRequest& w = r.wanted;
     w.parameters = r.system.parameters;
-    w.start = read_start(l, r.system);
-    std::vector<FieldError> errors = field_errors(validate(w.parameters, w.start), l);
+    w.start = started.start;
+    w.max_impacts = started.max_impacts;
     w.tau_end = read_tau_end(l, w.parameters, errors);
-    w.window = l.has("window") ? l.interval("window") : Interval{0, w.tau_end};
+    w.window = l.has("window") ? l["window"].get<Interval>() : Interval{0, w.tau_end};
     check_window("/window", w.window, w.tau_end, errors);
-    w.windows = l.intervals("windows");
+    w.windows = l["windows"].get<std::vector<Interval>>();
     for (std::size_t i = 0; i < w.windows.size(); ++i)
         check_window("/windows/" + std::to_string(i), w.windows[i], w.tau_end, errors);
-    if (errors.empty()) w.perturbation = read_perturbation(l, w.parameters, w.start, errors);
-    if (!errors.empty()) refuse(std::move(errors));
+    refuse_any(errors);
+    w.perturbation = read_perturbation(l, w.parameters, w.start);
 
-    r.include = l.words("include");
+    r.include = l["include"].get<std::set<std::string>>();
     w.parts = parts_of(r.include);
-    w.settle_cycles = l.number("settle_cycles");
-    w.samples_per_cycle = l.number("samples_per_cycle");
-    w.section_phase = l.number("section_phase");
-    w.most_points = static_cast<std::size_t>(l.number("max_points"));
-    w.max_impacts = static_cast<long>(l.number("max_impacts"));
+    w.settle_cycles = l["settle_cycles"];
+    w.samples_per_cycle = l["samples_per_cycle"];
+    w.section_phase = l["section_phase"];
+    w.most_points = l["max_points"];
     w.most_listed = static_cast<std::size_t>(w.max_impacts);
     w.estimators = read_estimators(l);
     add_origins(r.system.origin, l);
     if (is_as_long_as_load(l, w.parameters)) r.system.origin["tau_end"] = "the length of forcing";
     if (w.parameters.load) add_notes_on_load(r.system, w.tau_end);
     return r;
-}
-
-StartedSystem read_started_system(const Json& given) {
-    const MergedFields l = merge_with_preset(sweep_base_fields(), given);
-    StartedSystem s;
-    s.system = read_system(l);
-    s.start = read_start(l, s.system);
-    s.max_impacts = static_cast<long>(l.number("max_impacts"));
-    s.errors = field_errors(validate(s.system.parameters, s.start), l);
-    return s;
 }
 
 ManifoldRequest read_manifold_request(const Json& given) {
@@ -236,8 +220,8 @@ ManifoldRequest read_manifold_request(const Json& given) {
               "the manifold of two symmetric impacts needs the same restitution coefficient at "
               "both walls, here R_plus = " +
                   Json(p.R_plus).dump()}});
-    r.V_max = l.number("V_max", 0);
-    r.points = static_cast<std::size_t>(l.number("points"));
+    r.V_max = l.has("V_max") ? l["V_max"].get<double>() : 0;
+    r.points = l["points"];
     return r;
 }
 
