@@ -1,9 +1,9 @@
 // The design tab: the best absorber for a machine over a band of frequencies, beside the machine
 // without an absorber and with a tuned mass damper of the same mass.
 import {linesOf} from "../shared/api.js";
-import {$, cards, countUp, element, setTexts, tableOf} from "../shared/dom.js";
+import {$, cards, countUp, keyOf, setTexts, tableOf} from "../shared/dom.js";
 import {addExportButton} from "../shared/export.js";
-import {Form, queryText, unknownText} from "../shared/form.js";
+import {Form, unknownText} from "../shared/form.js";
 import {makeAccessible} from "../shared/gestures.js";
 import {RequestTab} from "../shared/job.js";
 import {dots, line} from "../shared/marks.js";
@@ -52,14 +52,15 @@ export class DesignTab extends RequestTab {
     $("design-simulate").onclick = () => simulate(this.worstCase());
   }
 
-  get objective() {
-    return objectives[this.name];
-  }
-
+  /** The key of the objective. */
   get name() {
     const {objective, forcing, initial_velocity: velocity} = this.asking ?? {};
     const standard = forcing ? "x_relative_max" : "x_max";
     return objective ?? (velocity ? "decay_time" : standard);
+  }
+
+  get objective() {
+    return objectives[this.name];
   }
 
   /** {base, f, ...} of the form. */
@@ -70,30 +71,13 @@ export class DesignTab extends RequestTab {
     return request;
   }
 
-  formQuery() {
-    const {base, ...own} = this.request();
-    const entries = Object.entries({...base, ...own}).map(([name, v]) => [name, queryText(v)]);
-    return String(new URLSearchParams(entries));
-  }
-
   /** Shows the form of a query, or an example; only a query is computed at once. */
   open(given) {
     const standard = new URLSearchParams($("design-form").dataset.query);
     const fields = Object.fromEntries(given.size ? given : standard);
-    setTexts({
-      "design-note": unknownText(Object.keys(fields).filter((name) => !this.form.inputs.has(name))),
-    });
+    setTexts({"design-note": unknownText(this.form.unknown(fields))});
     this.form.set(this.form.parse(fields));
     if (given.size && this.formQuery() !== this.asked) this.send();
-  }
-
-  send() {
-    const edit = this.asked !== null;
-    this.asked = this.formQuery();
-    this.form.showErrors([]);
-    this.changed({edit});
-    this.markStale();
-    this.start(this.request());
   }
 
   async ask(request, signal) {
@@ -101,16 +85,12 @@ export class DesignTab extends RequestTab {
     for await (const {value: each} of linesOf("v1/design", request, signal)) {
       if (signal.aborted) return;
       if (each.type === "start") this.host = each.host;
-      if (each.type === "error") throw new Error(each.detail);
       if (each.type === "point") this.points.push(each);
-      if (each.type === "progress") this.showProgress(each);
+      if (each.type === "progress")
+        Object.assign($("design-bar"), {max: each.runs_of || 1, value: each.runs});
       if (each.type === "done") this.done = each;
       this.draw();
     }
-  }
-
-  showProgress({runs, runs_of: all}) {
-    Object.assign($("design-bar"), {max: all || 1, value: runs});
   }
 
   show() {
@@ -123,13 +103,6 @@ export class DesignTab extends RequestTab {
     $("design-bar").hidden = !is;
   }
 
-  fail({message, errors = []}) {
-    super.fail({
-      message,
-      errors: errors.map((e) => ({...e, pointer: e.pointer.replace(/^\/base/, "")})),
-    });
-  }
-
   redraw() {
     if (this.points.length) this.draw();
   }
@@ -138,8 +111,7 @@ export class DesignTab extends RequestTab {
     this.drawMap();
     $("design-found").hidden = !this.done;
     if (!this.done) return;
-    const {sentence} = this.done;
-    setTexts({"design-sentence": sentence});
+    setTexts({"design-sentence": this.done.sentence});
     this.showCards();
     const banded = this.asking.f !== undefined;
     $("figure-design-response").hidden = !banded;
@@ -147,22 +119,17 @@ export class DesignTab extends RequestTab {
     this.showTolerances();
   }
 
-  /** A value of the objective with its unit. */
-  text(value) {
-    const {unit, factor} = this.objective;
-    return `${round(value * factor)} ${unit}`;
-  }
-
+  /** The objective of each alternative. */
   showCards() {
     const {best, without, tuned_mass_damper: damper} = this.done;
-    const of = (found) => found?.[this.name];
-    const change = (found) => `${percent(of(found) / of(without))} of that`;
-    const entries = [
-      ["without absorber", this.text(of(without)), this.objective.title],
-      ["vibro-impact absorber", this.text(of(best)), change(best)],
-      ["tuned mass damper", this.text(of(damper)), change(damper)],
-    ];
-    cards($("design-cards"), entries);
+    const {unit, factor, title} = this.objective;
+    const text = (found) => `${round(found?.[this.name] * factor)} ${unit}`;
+    const change = (found) => `${percent(found?.[this.name] / without[this.name])} of that`;
+    cards($("design-cards"), [
+      ["without absorber", text(without), title],
+      ["vibro-impact absorber", text(best), change(best)],
+      ["tuned mass damper", text(damper), change(damper)],
+    ]);
   }
 
   /** The objective over f for each alternative. */
@@ -197,19 +164,14 @@ export class DesignTab extends RequestTab {
       const colour = colours[i % colours.length];
       return dots({x, y, colour, shape: "dot", size: 3, label: `R = ${R}`});
     });
+    const keys = marks.map(({colour, label}) => keyOf("●", colour, label));
+    $("design-restitutions").replaceChildren(...keys);
     this.map.draw({
       marks,
       x: {label: "b (mm)"},
       y: {label: `worst ${title} (${unit})`},
       empty: "no absorber tried yet",
     });
-    const keys = all.map((R, i) => {
-      const key = element("span", {className: "key"}, `R = ${R}`);
-      key.dataset.mark = "●";
-      key.style.setProperty("--key", `var(--${colours[i % colours.length]})`);
-      return key;
-    });
-    $("design-restitutions").replaceChildren(...keys);
     const {best} = this.done ?? {};
     if (best) this.map.light(1000 * best.b, best[this.name] * factor);
   }
@@ -248,24 +210,18 @@ export class DesignTab extends RequestTab {
     const {base, forcing} = this.asking;
     const absorber = {...base, b, R, m2};
     if (forcing) return {...absorber, forcing};
-    if (f === null) {
-      const {f0} = this.host;
-      return {
-        ...absorber,
-        F: 0,
-        f: f0,
-        x_dot0: velocity / (2 * Math.PI * f0),
-        cycles: cyclesOfDecay,
-      };
+    if (f !== null) {
+      const load = acceleration == null ? {F} : {acceleration};
+      return {...absorber, f, ...load, cycles: cyclesOfWorst};
     }
-    const load = acceleration == null ? {F} : {acceleration};
-    return {...absorber, f, ...load, cycles: cyclesOfWorst};
+    const {f0} = this.host;
+    const start = {x_dot0: velocity / (2 * Math.PI * f0)};
+    return {...absorber, F: 0, f: f0, ...start, cycles: cyclesOfDecay};
   }
 
   about(plot) {
-    const titles = {response: "Response over the band", map: "Worst case over b"};
     return {
-      title: titles[plot],
+      title: {response: "Response over the band", map: "Worst case over b"}[plot],
       summary: this.done?.sentence ?? "",
       caption: this.asked,
       name: `design-${plot}`,

@@ -1,29 +1,18 @@
 // Plots of a measurement: the record with its impacts, and the results identified from it.
 
 import {$, element} from "../shared/dom.js";
-import {exponentRange, exponentSeries} from "../shared/exponents.js";
-import {addExportButton, captionOf} from "../shared/export.js";
+import {exponentMarks, exponentRange} from "../shared/exponents.js";
 import {rangeOf} from "../shared/frame.js";
-import {makeAccessible} from "../shared/gestures.js";
-import {bands, beads, dots, layer, levels, line, lines, symbols} from "../shared/marks.js";
-import {firstFrom} from "../shared/numbers.js";
-import {LinePlot, ScatterPlot} from "../shared/plot.js";
+import {bands, beads, dots, layer, levels, line, symbols} from "../shared/marks.js";
+import {firstFrom, mm} from "../shared/numbers.js";
+import {PlotGroup} from "../shared/plot.js";
 import {verdicts} from "../shared/quantities.js";
 import {Viewport} from "../shared/viewport.js";
 import {isLeftOut, kindOf} from "./impact_list.js";
 import {spikeNear} from "./record.js";
 
 const viewport = new Viewport();
-const make = (Kind) => (name) => [name, new Kind($(`plot-measured-${name}`), viewport)];
-const planes = ["portrait", "section"];
-const plots = Object.fromEntries([
-  ...["a", "x", "qr", "raw", "R", "steps"].map(make(LinePlot)),
-  ...planes.map(make(ScatterPlot)),
-]);
-const mm = (metres) => metres.map((v) => v * 1000);
-
-const x = {label: "t (s)", factor: 1};
-const drawLines = (name, options) => plots[name].draw({x, ...options});
+let plots;
 
 /** Figures of the paper: the first of each preset, and the number of each plot after it. */
 const firstFigures = {fig15: 15, fig20: 20};
@@ -32,17 +21,17 @@ const figureOf = (name) => $(`plot-measured-${name}`).closest("figure");
 
 /** shown() returns {name, answer} of the record shown. */
 export function start(shown) {
-  for (const [name, plot] of Object.entries(plots)) {
-    const {title} = captionOf(figureOf(name));
-    const axis = planes.includes(name) ? null : viewport;
-    makeAccessible(plot, title, () => shown().answer?.impacts.time_s ?? [], axis);
-    addExportButton(figureOf(name), plot, () => ({
-      title,
+  plots = new PlotGroup($("measure-results"), viewport, {
+    prefix: "plot-measured-",
+    about: (name) => ({
       summary: summaryOf(shown()),
       caption: shown().name,
       name: `measured-${name}`,
-    }));
-  }
+    }),
+    moments: () => shown().answer?.impacts.time_s ?? [],
+    planeKeys: false,
+  });
+  plots.common = {x: {label: "t (s)", factor: 1}};
 }
 
 function summaryOf({answer}) {
@@ -63,9 +52,7 @@ export function nameFigures(preset) {
   }
 }
 
-export function redraw() {
-  for (const plot of Object.values(plots)) plot.refresh();
-}
+export const redraw = () => plots.refresh();
 
 /** Colours of the impact marks, by kind. */
 const kinds = {plus: "plus", minus: "minus", "left-out": "wall", removed: "soft", edited: "c4"};
@@ -99,7 +86,7 @@ export function mark(record, rows, answer) {
   const points = answer && {x: answer.impacts.time_s, y: mm(answer.impacts.x)};
   const under = (name, marks, more) => {
     const intervals = bands({intervals: stuck, colour: "shade"});
-    plots[name].draw({...plots[name].last, under: [intervals, ...marks], ...more});
+    plots.draw(name, {...plots.all[name].last, under: [intervals, ...marks], ...more});
   };
   if (a)
     under(
@@ -126,7 +113,7 @@ export function drawRecord({t, a, x}, click) {
   const draw = (name, y, series, label, more) => {
     $(`figure-measured-${name}`).hidden = !y;
     const marks = [line({label: series, colour: "trace", x: t, y})];
-    if (y) drawLines(name, {marks, y: {label}, span: [t[0], t.at(-1)], ...more});
+    if (y) plots.draw(name, {marks, y: {label}, span: [t[0], t.at(-1)], ...more});
   };
   draw("a", a, "x″", "acceleration (m/s²)", {click});
   draw("x", x, "x", "x (mm)");
@@ -142,7 +129,7 @@ function drawExponents(answer) {
   const known = [layer({from, to, colour: "interval"}), levels({y, colour: "before"})];
   const seconds = secondsOf(answer);
   const draw = (name, estimator, under = []) =>
-    drawLines(name, {
+    plots.draw(name, {
       under: [...under, levels({y: 0, colour: "soft"})],
       marks: historyOf(estimator, seconds),
       y: {label: "λ", range},
@@ -153,13 +140,11 @@ function drawExponents(answer) {
 
 /** Exponents of an estimator over time; rings mark the final values. */
 function historyOf(estimator, seconds) {
-  if (!estimator?.history?.tau.length) return [];
-  const {history, final: y} = estimator;
-  const {series, columns} = exponentSeries(history);
-  const t = seconds(history.tau);
-  const x = y.map(() => t.at(-1));
-  const ends = symbols({x, y, colour: "text", shape: "ring", size: 3.5});
-  return [...lines(t, columns, series), ends];
+  const {history, final: y} = estimator ?? {};
+  if (!history?.tau.length) return [];
+  const [end] = seconds(history.tau.slice(-1));
+  const ends = symbols({x: y.map(() => end), y, colour: "text", shape: "ring", size: 3.5});
+  return [...exponentMarks({history}, (tau, columns) => [seconds(tau), ...columns]), ends];
 }
 
 /** R of each impact. Inconsistent values lie at their place or at the edge of the plot. */
@@ -172,7 +157,7 @@ function drawRestitution({impacts, restitution}) {
   const crosses = {x: left.map((i) => t[i]), y: left.map((i) => R[i]), colour: "wall"};
   const walls = ["plus", "minus"];
   const fitted = walls.filter((wall) => restitution[wall].R != null);
-  drawLines("R", {
+  plots.draw("R", {
     marks: [
       ...fitted.map((wall) => levels({y: restitution[wall].R, colour: wall})),
       ...walls.map((colour, k) =>
@@ -189,7 +174,7 @@ function drawSteps({impacts: {tau, time_s: t}, parameters}) {
   const half = Math.PI / parameters.Omega;
   const y = tau.map((v, i) => (v - tau[i - 1]) / half || null); // none before the first
   const label = "time since the previous impact";
-  drawLines("steps", {
+  plots.draw("steps", {
     marks: [levels({y: 1, colour: "soft"}), beads({label, colour: "c1", size: 2, x: t, y})],
     y: {log: true, range: rangeOf([y, [0.5, 2]], true), label: "half periods"},
   });
@@ -202,8 +187,8 @@ function drawSections({impacts, parameters}) {
   const after = points(impacts.x_dot_after);
   const t = impacts.time_s;
   const draw = (name, label, marks) =>
-    plots[name].draw({
-      points: {...after, t, use: (i) => viewport.point(t[i], "pick")},
+    plots.draw(name, {
+      points: {...after, t, use: (i) => viewport.point(t[i])},
       marks,
       x: {label: "x (mm)"},
       y: {label},

@@ -4,7 +4,7 @@
 import {linesOf} from "../shared/api.js";
 import {$, button, countUp, element, setTexts, tableOf} from "../shared/dom.js";
 import {addExportButton} from "../shared/export.js";
-import {BaseForm, defaultSet, queryText, unknownText} from "../shared/form.js";
+import {BaseForm, defaultSet, unknownText} from "../shared/form.js";
 import {makeAccessible} from "../shared/gestures.js";
 import {RequestTab} from "../shared/job.js";
 import {count, short} from "../shared/numbers.js";
@@ -84,36 +84,24 @@ export class MotionsTab extends RequestTab {
     return {parameter: "b", base, ...own};
   }
 
-  formQuery() {
-    const {base, ...own} = this.request();
-    const entries = Object.entries({...own, ...base}).map(([name, v]) => [name, queryText(v)]);
-    return String(new URLSearchParams(entries));
-  }
-
   /** Shows the motions of a query, or of the first example. */
   open(given) {
     const query = given.size
       ? given
       : new URLSearchParams($("motions-example").options[1].dataset.query);
     const fields = Object.fromEntries(query);
-    const unknown = Object.keys(fields).filter((name) => !this.form.inputs.has(name));
     this.form.scale(ends, fields.parameter ?? "b");
     this.form.set(fields);
-    setTexts({"motions-note": unknownText(unknown)});
+    setTexts({"motions-note": unknownText(this.form.unknown(fields))});
     if (this.formQuery() !== this.asked) this.send();
   }
 
   send() {
-    const edit = this.asked !== null;
-    this.asked = this.formQuery();
+    super.send();
     const shown = [...$("motions-example").options].find(
       ({dataset: {query}}) => query && String(new URLSearchParams(query)) === this.asked,
     );
     $("motions-example").value = shown?.value ?? "";
-    this.form.showErrors([]);
-    this.changed({edit});
-    this.markStale();
-    this.start(this.request());
   }
 
   /** Sweep and continuation from the base; then continuations of what no branch explains. */
@@ -151,28 +139,15 @@ export class MotionsTab extends RequestTab {
 
   async receive(path, request, signal, take) {
     for await (const {value: line} of linesOf(path, request, signal)) {
-      if (line.type === "error") throw new Error(line.detail);
       if (take(line) === false || signal.aborted) return;
       this.drawSoon();
     }
-  }
-
-  drawSoon() {
-    this.waiting ||= setTimeout(() => {
-      this.waiting = 0;
-      this.draw();
-    }, 100);
   }
 
   show() {
     this.say("");
     this.draw();
     countUp(this.results);
-  }
-
-  fail({message, errors = []}) {
-    const placed = errors.map((e) => ({...e, pointer: e.pointer.replace(/^\/(base|axes\/0)/, "")}));
-    super.fail({message, errors: placed});
   }
 
   redraw() {
@@ -189,10 +164,8 @@ export class MotionsTab extends RequestTab {
     ];
     const text = parts.join(", ");
     setTexts({"motions-count": text});
-    makeAccessible(
-      {node: this.plot.canvas},
-      `${quantities[this.quantity.value].title} of all motions: ${text}`,
-    );
+    const {title} = quantities[this.quantity.value];
+    makeAccessible({node: this.plot.canvas}, `${title} of all motions: ${text}`);
     this.listSpecials();
     this.place(this.plot.marked);
   }
@@ -230,9 +203,8 @@ export class MotionsTab extends RequestTab {
 
   about() {
     const {base, parameter} = this.motions.request;
-    const title = `Motions over ${labels.label(parameter)}`;
     return {
-      title,
+      title: `Motions over ${labels.label(parameter)}`,
       summary: $("motions-count").textContent,
       caption: labels.fields(base),
       name: "motions",

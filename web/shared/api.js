@@ -90,11 +90,17 @@ export const identify = async (query, record, signal) =>
 /** Identifies parameters from a record that is part of the JSON fields. */
 export const identifyJson = postingJson("v1/identify");
 
-/** Posts a request and yields the lines of its response, as jsonLines. */
+/**
+ * Posts a request and yields the lines of its response, as jsonLines. Throws what a line of type
+ * "error" reports.
+ */
 export async function* linesOf(path, request, signal) {
   const response = await post(path, JSON.stringify(request), signal);
   if (!response.ok) await read(response);
-  yield* jsonLines(response.body);
+  for await (const line of jsonLines(response.body)) {
+    if (line.value.type === "error") throw new Problem(line.value);
+    yield line;
+  }
 }
 
 const quoted = (text) => `'${text.replaceAll("'", "'\\''")}'`;

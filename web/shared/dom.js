@@ -83,6 +83,14 @@ export function fillMenu(menu, entries, wish = menu.value) {
   choose(menu, wish);
 }
 
+/** A key of a plot: a mark in a colour, and what it stands for. */
+export const keyOf = (mark, colour, ...what) => {
+  const key = element("span", {className: "key"}, ...what);
+  key.dataset.mark = mark;
+  key.style.setProperty("--key", `var(--${colour})`);
+  return key;
+};
+
 // Lists of labelled values, remarks and warnings; tables of texts.
 /** Shows entries [term, value, remark] as cards in a <dl>. */
 export function cards(list, entries) {

@@ -1,4 +1,5 @@
 // Lyapunov exponents of an estimator as lines of a plot.
+import {lines} from "./marks.js";
 import {shortTo} from "./numbers.js";
 
 const names = ["lambda1", "lambda2", "lambda3", "lambda4"];
@@ -8,10 +9,11 @@ const styles = [{width: 2}, {}, {dash: [7, 3]}, {dash: [2, 3]}];
 const absent = (status, ended) => (ended && status === "minus_infinity" ? "−∞" : "");
 
 /**
- * {series, columns} of a history: four exponents and, if present, the rounding floor. An exponent
- * of minus infinity has no line; its legend shows −∞.
+ * Lines of the history of an estimator: four exponents and, if present, the rounding floor. An
+ * exponent of minus infinity has no line; its legend shows −∞. along(tau, columns) returns the columns
+ * of the plot, its time first; estimator: undefined if it was not requested.
  */
-export function exponentSeries(history, status = []) {
+export function exponentMarks({history, status = []} = {}, along) {
   const series = styles.map((style, k) => ({
     colour: `c${k + 1}`,
     width: 1.3,
@@ -19,12 +21,13 @@ export function exponentSeries(history, status = []) {
     label: `λ${"₁₂₃₄"[k]}`,
     text: (v, ended) => (v === null ? absent(status[k], ended) : shortTo(4, v)),
   }));
-  const columns = names.map((name) => history?.[name]);
+  const columns = names.map((name) => history?.[name] ?? []);
   if (history?.rounding_floor) {
     series.push({label: "rounding floor", colour: "soft", dash: [5, 4]});
     columns.push(history.rounding_floor);
   }
-  return {series, columns};
+  const [time, ...values] = along(history?.tau ?? [], columns);
+  return lines(time, values, series);
 }
 
 /** A common range of several histories, for the settled values (the last three quarters). */

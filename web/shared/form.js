@@ -98,11 +98,17 @@ export function textOf(value) {
 const longestInAddress = 1500; // characters of an object; servers accept addresses of about 8 kB
 
 /** A value as text of an address; undefined for an object that is too long for one. */
-export function queryText(value) {
+function queryText(value) {
   if (!isObject(value) || Array.isArray(value)) return textOf(value).replace(/([,;]) /g, "$1");
   const text = JSON.stringify(value);
   return text.length > longestInAddress ? undefined : text;
 }
+
+/** Fields as a query, without objects that are too long for an address. */
+export const queryOf = (fields) => {
+  const texts = Object.entries(fields).map(([name, value]) => [name, queryText(value)]);
+  return String(new URLSearchParams(texts.filter(([, text]) => text !== undefined)));
+};
 
 /** The value of a text that queryText() made of an object; any other value is returned unchanged. */
 function fromQuery(value) {
@@ -375,6 +381,11 @@ export class Form {
     this.updateDisabled();
   }
 
+  /** The names among those of `fields` that the form does not have. */
+  unknown(fields) {
+    return Object.keys(fields).filter((name) => !this.inputs.has(name));
+  }
+
   filled(name) {
     return Boolean(this.inputs.get(name)?.value?.trim());
   }
@@ -401,6 +412,11 @@ export class Form {
     }
   }
 
+  /** The field of an error; of one in the base of a request or in its only axis, too. */
+  nameOf({pointer}) {
+    return pointer.replace(/^\/(base|axes\/0)(?=\/)/, "").split("/")[1];
+  }
+
   /** Shows errors at their fields, focuses the first if `lead`; returns those without a field. */
   showErrors(errors, lead = true) {
     for (const {name} of this.fields) {
@@ -409,7 +425,7 @@ export class Form {
     }
     const left = [];
     for (const error of errors) {
-      const name = error.pointer.split("/")[1];
+      const name = this.nameOf(error);
       const place = this.errors.get(name);
       if (!place) {
         left.push(error);

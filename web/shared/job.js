@@ -2,6 +2,7 @@
 // start.
 import {TemporaryError} from "./api.js";
 import {$, attributes, sayIn} from "./dom.js";
+import {queryOf} from "./form.js";
 
 const lateAfter = 120; // ms after which a computation is reported as busy
 const retryInterval = 2; // s between attempts while the service is unreachable or busy
@@ -102,13 +103,15 @@ export class Job {
 /**
  * Subclasses have ask() and show() of a Job, and
  * form: its showErrors(errors) shows errors at their fields and returns those without a field;
- * formQuery(): the query of the form's request;
- * send(): requests it;
+ * request(): what the form holds, {base, ...}; unless they override formQuery() and send();
  * open(query): shows the request of a query;
+ * draw(): draws the results so far, if it uses drawSoon();
  * redraw(): draws in other colours.
  */
 export class RequestTab extends Job {
   asked = null; // query of the request whose results are shown or computed; null before the first
+  #drawing = 0; // timer
+  #cost = 0; // of drawing, ms
 
   /** prefix: of the ids of the tab; changed({edit, soon}): called when query() changes. */
   constructor(prefix, changed) {
@@ -125,6 +128,22 @@ export class RequestTab extends Job {
   /** The query in the address. */
   query() {
     return this.asked;
+  }
+
+  /** The query of the form's request. */
+  formQuery() {
+    const {base, ...own} = this.request();
+    return queryOf({...own, ...base});
+  }
+
+  /** Requests what the form holds. */
+  send() {
+    const edit = this.asked !== null;
+    this.asked = this.formQuery();
+    this.form.showErrors([]);
+    this.changed({edit});
+    this.markStale();
+    this.start(this.request());
   }
 
   /** True if the results belong to another request; busy: a computation takes long. */
@@ -161,6 +180,19 @@ export class RequestTab extends Job {
 
   markStale(busy = false) {
     this.results.classList.toggle("stale", this.isStale(busy));
+  }
+
+  /** Draws at most ten times a second, using at most a fifth of the time. */
+  drawSoon() {
+    this.#drawing ||= setTimeout(
+      () => {
+        this.#drawing = 0;
+        const began = performance.now();
+        this.draw();
+        this.#cost = performance.now() - began;
+      },
+      Math.max(100, 4 * this.#cost),
+    );
   }
 
   /** On small screens the results lie below the form: scrolls to them. */

@@ -29,6 +29,9 @@ export const short = orDash((value) =>
 /** At most n digits. */
 export const shortTo = (n, value) => short(value == null ? value : Number(value.toPrecision(n)));
 
+/** Lengths in m as mm. */
+export const mm = (metres) => metres.map((v) => v * 1000);
+
 /** A length in m as text in mm, with n digits. */
 export const inMm = (metres, n = 4) =>
   metres == null ? short(metres) : `${shortTo(n, metres * 1000)} mm`;

@@ -1,9 +1,10 @@
 // All plots. A plot is a canvas that is redrawn when its size changes, and a ring around one point,
 // which moves without redrawing. A plot of width zero (in a closed <details>) is drawn when it gets
 // a width.
-import {element, on} from "./dom.js";
+import {element, keyOf, on} from "./dom.js";
+import {addExportButton, captionOf} from "./export.js";
 import {blank, Frame, font, rangeOf, Size} from "./frame.js";
-import {listen} from "./gestures.js";
+import {listen, makeAccessible} from "./gestures.js";
 import {drawText, ink} from "./ink.js";
 import {names} from "./marks.js";
 import {firstFrom, lastUpTo, nearest, short} from "./numbers.js";
@@ -224,12 +225,9 @@ export class LinePlot extends ZoomablePlot {
     if (this.written === written) return;
     this.written = written;
     this.values = series.map(() => element("b"));
-    const keys = series.map(({label, colour, dash}, i) => {
-      const key = element("span", {className: "key"}, label, " ", this.values[i]);
-      key.dataset.mark = dash ? "╍╍" : "━━";
-      key.style.setProperty("--key", `var(--${colour})`);
-      return key;
-    });
+    const keys = series.map(({label, colour, dash}, i) =>
+      keyOf(dash ? "╍╍" : "━━", colour, label, " ", this.values[i]),
+    );
     this.legend.replaceChildren(...(keys.length > 1 ? keys : []));
     this.size.measure();
   }
@@ -304,4 +302,34 @@ function sameScale(axes, {width, height}) {
     const more = (pixels[i] / unit - size(axis)) / 2;
     return {...axis, range: [axis.range[0] - more, axis.range[1] + more]};
   });
+}
+
+/** The plots inside an element by name: canvases are planes, the others lines over time. */
+export class PlotGroup {
+  /**
+   * prefix: of the ids, before the names; about(name, title): description, caption and file name of
+   * an exported plot; moments(): times of the impacts; planeKeys: whether planes have keys, too.
+   */
+  constructor(container, viewport, {prefix = "plot-", about, moments, planeKeys = true}) {
+    this.all = {};
+    for (const node of container.querySelectorAll(`[id^=${prefix}]`)) {
+      const isPlane = node.matches("canvas");
+      const plot = new (isPlane ? ScatterPlot : LinePlot)(node, viewport);
+      const name = node.id.replace(prefix, "");
+      const figure = node.closest("figure");
+      const {title} = captionOf(figure);
+      addExportButton(figure, plot, () => ({title, ...about(name)}));
+      makeAccessible(plot, title, moments, isPlane && !planeKeys ? null : viewport);
+      this.all[name] = plot;
+    }
+  }
+
+  /** common: options of all plots over time, such as x. */
+  draw(name, options) {
+    this.all[name].draw({...this.common, ...options});
+  }
+
+  refresh() {
+    for (const plot of Object.values(this.all)) plot.refresh();
+  }
 }

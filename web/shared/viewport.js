@@ -18,7 +18,7 @@ export class Viewport {
     this.zoomListeners.push(f);
   }
 
-  /** f(by) is called when the cursor moves; `by` is "pointer", "play", "key" or undefined. */
+  /** f(by) is called when the cursor moves; `by` is "pointer", "play" or undefined. */
   onCursor(f) {
     this.cursorListeners.push(f);
   }

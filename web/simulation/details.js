@@ -1,12 +1,19 @@
-// The details of a run. They are requested when the section is first opened and then for each new
-// run.
+// The details of a run: cards of the window and the whole run, the table of windows, the energy
+// balance, the parameters, and plots. They are requested when the section is first opened and then
+// for each new run.
+//
+// units: {si, time, velocity, ..., at(tau)}. A quantity is {of(value), unit}: of() converts a
+// dimensionless value, unit is the suffix. at(tau) formats a time.
 import {simulate} from "../shared/api.js";
-import {$, countUp, sayIn} from "../shared/dom.js";
+import {$, cards, countUp, reveal, sayIn, setTexts, tableOf} from "../shared/dom.js";
+import {resolved} from "../shared/form.js";
 import {Job} from "../shared/job.js";
+import {count, digits, inMm, minus, percent, shortTo} from "../shared/numbers.js";
+import {symbolOf, verdicts} from "../shared/quantities.js";
 import {detailsOptions} from "./details_plots.js";
-import {accountEnergy, listParameters, summarise, tabulate} from "./details_summary.js";
-import {commonOptions, PlotGroup} from "./plot_group.js";
-import {run} from "./run.js";
+import {commonOptions} from "./plot_options.js";
+import {largestMagnitude, run} from "./run.js";
+import {plotsIn} from "./words.js";
 
 const include = ["series", "impacts", "exponents", "eigenvalues", "section", "energy", "regime"];
 const perturbation = {size: 1e-9}; // needs a motion in closed form
@@ -39,7 +46,7 @@ export function follow() {
 function show() {
   const {details: answer, units} = run;
   say("");
-  plots ??= new PlotGroup(details);
+  plots ??= plotsIn(details);
   summarise(answer, units);
   listParameters(answer.parameters, fieldOf);
   tabulate(answer.windows, units);
@@ -65,4 +72,204 @@ export function start(table) {
 async function showModel() {
   const sketch = $("model-sketch");
   sketch.innerHTML = await (await fetch(sketch.dataset.src)).text();
+}
+
+const joined = (parts, separator = ", ") => parts.filter(Boolean).join(separator);
+
+const withErrorOf = ({standard_error: [error]}) => (error == null ? "" : `± ${digits(error)}`);
+
+const inUnit = (value, {of, unit}) => `${shortTo(3, of(value))} ${unit}`;
+
+function regimeCard({type, description, capture}, units) {
+  const name = type === "none" ? "none" : `Type ${type}`;
+  if (!capture?.chaotic_before) return ["regime", name, description];
+  const when = capture.tau === null ? "after the end of the run" : `at ${units.at(capture.tau)}`;
+  return ["regime", name, `${description}; captured ${when} after a chaotic transient`];
+}
+
+function rhythm(r) {
+  if (!r.contacts) return "";
+  if (!r.periodic) return `${percent(r.synchronised.share)} of the contacts synchronised`;
+  const chatter = r.chatter_impacts_per_period;
+  return joined([
+    `period ${count(r.period_cycles, "cycle")}: ${count(r.impacts_per_period, "impact")}`,
+    chatter && count(chatter, "chatter impact"),
+    r.sticks_per_period && count(r.sticks_per_period, "stick"),
+    r.symmetric ? "symmetric" : "asymmetric",
+    !r.stable && "unstable",
+  ]);
+}
+
+function verdictCard({verdict, verdict_reason: given}, {periodic, contacts, stable}) {
+  // The service writes plain text: typographic characters are substituted.
+  const reason = given?.replace("lambda1", "λ₁").replace("= -", "= −");
+  const orbit =
+    periodic && contacts && verdict === "not_decided"
+      ? `the motion ends on a ${stable ? "stable" : "unstable"} periodic orbit`
+      : "";
+  const why = joined([reason ?? "requires the estimator qr", orbit], "; ");
+  return ["verdict", verdicts[verdict] ?? "–", why];
+}
+
+/**
+ * Number of positive exponents per estimator; the one of qr is meaningful only if the verdict is
+ * decided.
+ */
+function positivesCard({qr, raw_product: product, verdict}) {
+  const [byQr, raw] = [qr, product].map((estimator) =>
+    estimator?.final[0] == null ? "–" : String(estimator.final.filter((v) => v > 0).length),
+  );
+  const decided = {regular: "none in the long run", chaotic: byQr, not_decided: "not decided"};
+  const remark = raw === "–" || raw === byQr ? "" : `${raw} by the raw product`;
+  return ["positive exponents (qr)", decided[verdict] ?? "–", remark];
+}
+
+function residualCard({qr, sum_rule_residual: residual, impacts}) {
+  if (residual != null) return ["sum rule residual", minus(residual.toExponential(1))];
+  return ["sum rule residual", "–", qr && impacts > 1 ? "undefined after sticking" : ""];
+}
+
+/** Cards in SI; the median of an even count is the upper of the middle two. */
+function engineeringCards({impacts, series, parameters}, {velocity, impulse, acceleration}) {
+  const {si, derived} = parameters;
+  const {relative_speed: speed} = impacts;
+  const median = (values) => values.toSorted((a, b) => a - b)[values.length >> 1];
+  const highest = shortTo(3, velocity.of(largestMagnitude(speed)));
+  const blow = inUnit(median(impacts.impulse.map(Math.abs)), impulse);
+  const remark = speed.length ? `median; at most ${highest}; impulse ${blow}` : "";
+  const peak = inUnit(largestMagnitude(series.x_ddot), acceleration);
+  const base = `${shortTo(4, si.f / derived.f0)} of f₀; base ± ${inMm(si.F)}`;
+  const load = parameters.forcing ? ["load", ""] : [`${shortTo(3, si.f)} Hz`, base];
+  return [
+    ["forcing", ...load],
+    ["impact speed", inUnit(median(speed), velocity), remark],
+    ["peak acceleration", peak, "of m₁ between the impacts"],
+  ];
+}
+
+/** Title of the window's cards. */
+function windowTitle({window, impacts}, {at}, requested) {
+  if (!window) return requested ? "Window without impacts" : "Run without impacts";
+  const whole = requested ? "Window" : "Whole run, first to last impact";
+  return `${whole}: ${at(window[0])} to ${at(window[1]).replace(/^.*= /, "")}, ${count(impacts, "impact")}`;
+}
+
+function summarise(answer, units) {
+  const {exponents, regime, energy, impacts, sticking, parameters} = answer;
+  const {qr} = exponents;
+  const {amplitude: free} = energy.without_absorber;
+  // Exponents are per unit of tau, even if times are in seconds.
+  const perTime = units.time.unit ? " per unit of τ" : "";
+  setTexts({"summary-title": windowTitle(exponents, units, parameters.window)});
+  const peak = `with absorber: |x| up to ${inMm(energy.peak)}`;
+  cards($("summary"), [
+    regimeCard(regime, units),
+    ["impacts per cycle, z", digits(regime.z, 3), rhythm(regime)],
+    verdictCard(exponents, regime),
+    ["λ₁ (qr)", qr ? digits(qr.final[0]) : "–", (qr ? withErrorOf(qr) : "") + perTime],
+    positivesCard(exponents),
+    residualCard(exponents),
+    ["dissipated by impacts", percent(energy.share_impacts), "of all dissipation"],
+    ["rms of x", percent(energy.rms_ratio), "of that without absorber"],
+    ...(free == null ? [] : [["amplitude without absorber", inMm(free), peak]]),
+  ]);
+  const stuck = sticking.side.length;
+  cards($("summary-run"), [
+    ["impacts", String(impacts.tau.length), "chatter included"],
+    ["sticking phases", String(stuck), stuck ? "shaded in the plots" : ""],
+    ["damping ζ", digits(parameters.derived.zeta, 5), parameters.damping.replaceAll("_", " ")],
+    ...(units.si ? engineeringCards(answer, units) : []),
+  ]);
+}
+
+const exponent = ({final, status}, k) => (status[k] === "minus_infinity" ? "−∞" : digits(final[k]));
+
+function tabulate(windows = [], {time}) {
+  reveal({"figure-windows": windows.length});
+  const span = time.unit ? ["from (s)", "to (s)"] : ["τ from", "to"];
+  const names = [...span, "impacts", "λ₁", "λ₂", "λ₃", "λ₄", "verdict"];
+  const rows = windows.map(({qr, asked, impacts, verdict}) => {
+    const [first, ...others] = [0, 1, 2, 3].map((k) => (qr ? exponent(qr, k) : "–"));
+    const lambda = [joined([first, qr && withErrorOf(qr)], " "), ...others];
+    const requested = asked.map((t) => (time.unit ? time.of(t).toFixed(2) : String(t)));
+    return [...requested, String(impacts), ...lambda, verdicts[verdict] ?? "–"];
+  });
+  $("windows").replaceChildren(...tableOf(names, rows));
+}
+
+/** Times at which half and a tenth of the energy are left, with and without the absorber. */
+function decayTimes(decay, {at}) {
+  const timeOf = (tau, before = "") => (tau == null ? "not in this run" : before + at(tau));
+  return Object.entries({tau_half: "half of the energy", tau_tenth: "a tenth"}).map(
+    ([name, what]) => {
+      const [tau, without] = [decay[name], decay.without_absorber[name]];
+      if ((tau ?? without) == null) return "";
+      return `${what} is left ${timeOf(tau, "at ")} (without absorber: ${timeOf(without)})`;
+    },
+  );
+}
+
+/**
+ * Shows the energy balance: the energy supplied by the base or present at the start is dissipated, or
+ * is left at the end. The fractions are of their sum, which equals the energy supplied. Compares rms
+ * and peak of x with those without the absorber.
+ */
+function accountEnergy(energy, units) {
+  const {input, damper, impacts, friction = 0, at_start: start, at_end: left, decay} = energy;
+  const total = damper + impacts + friction + left || 1;
+  const parts = {damper, impacts, ...(friction && {friction}), "left at the end": left};
+  const rows = Object.entries(parts).map(([name, value]) => [
+    name,
+    percent(value / total),
+    inUnit(value, units.energy),
+  ]);
+  const compared = Object.entries({rms: "rms", peak: "largest"}).map(([key, name]) => [
+    name,
+    inMm(energy[key]),
+    inMm(energy.without_absorber[key]),
+  ]);
+  $("energy-parts").replaceChildren(...tableOf(["energy to", "fraction", "amount"], rows));
+  $("energy-compared").replaceChildren(...tableOf(["|x|", "with absorber", "without"], compared));
+  const supply = joined([
+    input && `${inUnit(input, units.energy)} from the base`,
+    start && `${inUnit(start, units.energy)} at the start`,
+  ]);
+  setTexts({"energy-note": joined([supply, ...(decay ? decayTimes(decay, units) : [])], "; ")});
+  reveal({"energy-scale": !units.si});
+}
+
+// Derived parameters: unit and what they follow from.
+const derived = {
+  zeta: ["", "epsilon, lambda, damping"],
+  omega0: ["rad/s", "k1, m1"],
+  omega_d: ["", "zeta"],
+  A: ["m", "G, epsilon, lambda, Omega"],
+  phi: ["rad", "epsilon, lambda, Omega"],
+  cycle: ["", "Omega"],
+  cycle_s: ["s", "f"],
+  time_end_s: ["s", "tau_end, omega0"],
+  window_s: ["s", "window, omega0"],
+};
+
+function precise(value) {
+  if (Array.isArray(value)) return value.map(precise).join(" to ");
+  if (typeof value === "number") return minus(String(Number(value.toPrecision(6))));
+  if (typeof value === "object") return Object.keys(value).join(", ");
+  return String(value).replaceAll("_", " ");
+}
+
+/** Lists the parameters of a run: name, symbol, value with unit, and origin. */
+function listParameters(parameters, fieldOf) {
+  const {values, origins} = resolved(parameters);
+  const all = {...values, ...parameters.derived};
+  const known = [...Object.keys(fieldOf), ...Object.keys(derived)].filter(
+    (name) => name !== "R" && all[name] != null, // R: each wall has its own row
+  );
+  const rows = known.map((name) => {
+    const [unit, from] = derived[name] ?? [fieldOf[name].unit ?? ""];
+    const shown = unit === "dimensionless" ? "" : unit.replace("tau", "τ");
+    const origin = origins[name] ?? (from && `follows from ${from}`) ?? "";
+    return [name, symbolOf(name), `${precise(all[name])} ${shown}`.trim(), origin];
+  });
+  $("parameters").replaceChildren(...tableOf(["name", "symbol", "value", "origin"], rows));
 }

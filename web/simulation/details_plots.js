@@ -2,9 +2,9 @@
 import {reveal} from "../shared/dom.js";
 import {exponentRange} from "../shared/exponents.js";
 import {beads, curve, dots, levels, line, lines} from "../shared/marks.js";
-import {digits} from "../shared/numbers.js";
-import {exponentLines, halves, picked} from "./plot_group.js";
-import {alongRun, inUnits, largestMagnitude, logRange, mm, positive, run} from "./run.js";
+import {digits, mm} from "../shared/numbers.js";
+import {exponentLines, halves, picked} from "./plot_options.js";
+import {alongRun, inUnits, largestMagnitude, logRange, positive, run} from "./run.js";
 
 const estimators = ["qr", "eigenvalues", "raw_product"];
 const matrices = ["J", "M", "T"];

@@ -1,7 +1,8 @@
 // Drawings of the machine to scale at the cursor, with and without the absorber, shaken by the same
 // base: spring, damper, oscillator, walls, and the ball with a short trail; impacts flash. A band
-// below each shows how far its oscillator moves.
-import {$, setTexts} from "../shared/dom.js";
+// below each shows how far its oscillator moves. Dragging the ball sets its initial position y0,
+// dragging a wall the clearance b.
+import {$, on, setTexts} from "../shared/dom.js";
 import {lawsInSi} from "../shared/form.js";
 import {blank, font, Size} from "../shared/frame.js";
 import {drawText, ink} from "../shared/ink.js";
@@ -17,21 +18,12 @@ const rim = 14; // px of the oscillator outside its walls
 const bandHeight = 9; // px of the band below the machine
 
 let heldScale = null; // px per m while a part is dragged
-let last = null; // the machine with absorber as it is drawn
-
-/** Keeps the scale during a drag; null: ends that. */
-export function holdScale(scale) {
-  heldScale = scale;
-  redraw();
-}
-
-/** {px, scale, wall, x: displacement, ball: px} of the machine with the absorber. */
-export const drawn = () => last;
+let drawn = null; // the Drawing of the machine with the absorber
 
 const [leastTilt, mostTilt] = [4, 12].map((degrees) => (degrees * Math.PI) / 180);
 
 /**
- * {text, drawn} of an inclined track: small angles are exaggerated, large ones are drawn smaller, so
+ * {text, angle drawn} of an inclined track: small angles are exaggerated, large ones are drawn smaller, so
  * that the machine fits. Without an angle only the sign of gravity is known. null without gravity.
  */
 function tiltOf(parameters) {
@@ -40,10 +32,10 @@ function tiltOf(parameters) {
   const {inclination} = si ? lawsInSi(parameters) : {inclination: null};
   const size = clamp(Math.abs(inclination ?? leastTilt), leastTilt, mostTilt);
   const degrees = (radians) => `${shortTo(3, (radians * 180) / Math.PI)}°`;
-  const drawn = Math.sign(gravity) * size;
-  if (inclination === null) return {drawn, text: `, gravity ${inMm(gravity)}`};
-  const scale = drawn === inclination ? "" : `, drawn at ${degrees(drawn)}`;
-  return {drawn, text: `, inclined by ${degrees(inclination)}${scale}`};
+  const angle = Math.sign(gravity) * size;
+  if (inclination === null) return {angle, text: `, gravity ${inMm(gravity)}`};
+  const scale = angle === inclination ? "" : `, drawn at ${degrees(angle)}`;
+  return {angle, text: `, inclined by ${degrees(inclination)}${scale}`};
 }
 
 /** Draws a path in the notation of SVG. */
@@ -103,7 +95,7 @@ class Drawing {
     const tilt = tiltOf(run.answer.parameters);
     const text = `${title}: ± ${inMm(peak, 2)}${tilt?.text ?? ""}`;
     this.name("text", text, width / 2, 1, "top", `600 ${font}`);
-    if (tilt) this.turn(c, size, tilt.drawn);
+    if (tilt) this.turn(c, size, tilt.angle);
     ink(c, "soft");
     line(c, `M${anchor} ${floor + 0.5}H${width - 8}`);
     ink(c, "soft", 3);
@@ -159,7 +151,7 @@ function drawWith(canvas, size, cursor) {
   const title = "with absorber";
   const drawing = new Drawing(canvas, size, {x, peak: answer.energy.peak, title, colour: "accent"});
   const {c, px, wall, level, top, bottom, left, right} = drawing;
-  last = Object.assign(drawing, {ball: px(y)});
+  drawn = Object.assign(drawing, {ball: px(y)});
   const fill = (name, from, width) => {
     ink(c, name);
     c.fillRect(from, top, width, bottom - top);
@@ -230,5 +222,58 @@ export function showReduction({rms_ratio: ratio, rms, without_absorber: without}
     "reduction-figure": percent(Math.abs(1 - ratio)),
     "reduction-word": ratio <= 1 ? "less vibration" : "more vibration",
     "reduction-rms": `rms of x ${inMm(rms, 3)} instead of ${inMm(without.rms, 3)}`,
+  });
+}
+
+const reach = 14; // px within which a part is grabbed
+
+/** The part at the place of a pointer: "ball", "wall" or undefined. */
+function partAt(event) {
+  const {ball, wall} = drawn;
+  const x = drawn.along(event);
+  if (Math.abs(ball - x) < reach) return "ball";
+  return [1, -1].some((side) => Math.abs(wall(side) - x) < reach) ? "wall" : undefined;
+}
+
+/**
+ * set(fields, dragging) is called with y0 (m) or b (m). The scale is held during a drag, so that the
+ * part stays under the pointer.
+ */
+export function start(set) {
+  const [{canvas}] = machines;
+  let part;
+  let held; // the Drawing at the start of a drag
+  const drag = (event, dragging) => {
+    const {b, parameters} = run.motion;
+    const away = (held.along(event) - held.px(held.x)) / held.scale; // y - x
+    const most = 0.999 * b;
+    const [name, value] =
+      part === "ball"
+        ? ["y0", parameters.x0 + clamp(away, -most, most)]
+        : ["b", Math.max(Math.abs(away), 1e-4)];
+    set({[name]: Number(value.toPrecision(4))}, dragging);
+  };
+  const end = (event) => {
+    if (part) drag(event, false);
+    part = undefined;
+    heldScale = null;
+    redraw();
+  };
+  on(canvas, {
+    pointerdown(event) {
+      part = drawn && partAt(event);
+      if (!part) return;
+      event.preventDefault();
+      canvas.setPointerCapture(event.pointerId);
+      heldScale = drawn.scale;
+      if (part === "ball") viewport.point(0);
+      held = drawn;
+    },
+    pointermove(event) {
+      if (part) return drag(event, true);
+      canvas.style.cursor = drawn && partAt(event) ? "ew-resize" : "";
+    },
+    pointerup: end,
+    pointercancel: end,
   });
 }

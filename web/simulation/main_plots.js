@@ -4,10 +4,11 @@
 import {$, attributes, reveal, setTexts} from "../shared/dom.js";
 import {exponentRange} from "../shared/exponents.js";
 import {beads, curve, dots, levels, line, symbols} from "../shared/marks.js";
-import {firstFrom, inMm, lastUpTo, short} from "../shared/numbers.js";
+import {firstFrom, inMm, lastUpTo, mm, short} from "../shared/numbers.js";
 import {unitsOf} from "../shared/units.js";
-import {commonOptions, exponentLines, halves, PlotGroup, picked} from "./plot_group.js";
-import {alongRun, inUnits, largestMagnitude, logRange, mm, positive, run, viewport} from "./run.js";
+import {commonOptions, exponentLines, halves, picked} from "./plot_options.js";
+import {alongRun, inUnits, largestMagnitude, logRange, positive, run, viewport} from "./run.js";
+import {plotsIn} from "./words.js";
 
 const mostSamples = 100000; // samples in an exported table
 // Side of the impacts of each colour, and their name in tables.
@@ -19,7 +20,7 @@ let traced = null; // the motion in the visible range, cached
 let byWall; // the impacts at each wall
 
 export function start() {
-  plots = new PlotGroup($("instrument"));
+  plots = plotsIn($("instrument"));
   viewport.onCursor(tell);
 }
 

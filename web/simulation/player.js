@@ -27,13 +27,13 @@ function knock(strength) {
 
 export function start() {
   $("play").onclick = () => (frame ? pause() : play());
-  $("restart").onclick = () => restart("restart");
+  $("restart").onclick = () => restart();
   $("sound").onclick = toggleSound;
   $("record").onclick = film;
   $("full-screen").onclick = () => $("results").requestFullscreen();
   $("scrub").oninput = () => {
     const [from, to] = viewport.range;
-    viewport.point(from + ($("scrub").value / 1000) * (to - from), "scrub");
+    viewport.point(from + ($("scrub").value / 1000) * (to - from));
   };
   viewport.onCursor(cursorMoved);
   viewport.onZoom(showPlace);
@@ -42,8 +42,8 @@ export function start() {
 
 /** Called when another run is shown. */
 export function show() {
-  if (inView(viewport.cursor)) viewport.point(viewport.cursor, "show");
-  else restart("show");
+  if (inView(viewport.cursor)) viewport.point(viewport.cursor);
+  else restart();
 }
 
 const inView = (moment) => moment !== null && viewport.holds(moment);

@@ -5,7 +5,7 @@
 
 import {absoluteUrl, asCurl} from "../shared/api.js";
 import {$, element, press, setTexts} from "../shared/dom.js";
-import {isObject, isOfMotion, queryText, resolved, textOf} from "../shared/form.js";
+import {isObject, isOfMotion, queryOf, resolved, textOf} from "../shared/form.js";
 import {run} from "./run.js";
 import {differenceText, parameterLine} from "./sliders.js";
 
@@ -16,13 +16,18 @@ export class Request {
     this.fieldOf = Object.fromEntries(fields.map((f) => [f.name, f]));
   }
 
+  presetOf(name) {
+    return this.presets.find((preset) => preset.name === name);
+  }
+
+  /** The selected preset; undefined without one. */
   get preset() {
-    return this.presets.find((p) => p.name === this.name);
+    return this.presetOf(this.name);
   }
 
   /** Selects a preset, or none, and sets fields. Without either, the preset's values become given. */
   choose(name, fields) {
-    const chosen = this.presets.find((p) => p.name === name);
+    const chosen = this.presetOf(name);
     this.form.set(fields ?? (chosen ? {} : this.givenValues()));
     this.form.unfold({...chosen?.parameters});
     this.name = chosen?.name ?? "";
@@ -40,7 +45,7 @@ export class Request {
 
   /** The fields of a request and those of its preset. */
   merged({preset: name, ...fields}) {
-    return {...this.presets.find((p) => p.name === name)?.parameters, ...fields};
+    return {...this.presetOf(name)?.parameters, ...fields};
   }
 
   /** True when the motion, or the part of it that is analysed, is no longer that of the preset. */
@@ -51,7 +56,7 @@ export class Request {
 
   /** A request as text: its preset and the given fields of the motion. */
   textOf({preset: name, ...given}, parameters) {
-    const preset = this.presets.find((p) => p.name === name);
+    const preset = this.presetOf(name);
     const names = Object.keys(given).filter((field) => isOfMotion(this.fieldOf[field]));
     if (!preset) return parameterLine(parameters);
     const source = preset.source.split(",")[0];
@@ -90,17 +95,13 @@ export class Request {
     const given = Object.fromEntries([...new URLSearchParams(query)].map(spaced));
     const {preset: named = Object.keys(given).length ? "" : "fig3", ...fields} = given;
     this.choose(named, fields);
-    const unknown = Object.keys(fields).filter((name) => !this.form.inputs.has(name));
+    const unknown = this.form.unknown(fields);
     return named && !this.name ? [`preset=${named}`, ...unknown] : unknown;
   }
 }
 
 /** A request as a query. Without fields it is `preset=`, because an empty query selects fig3. */
-export function toQuery(fields) {
-  const texts = Object.entries(fields).map(([name, value]) => [name, queryText(value)]);
-  const entries = texts.filter(([, text]) => text !== undefined);
-  return String(new URLSearchParams(entries.length ? entries : {preset: ""}));
-}
+export const toQuery = (fields) => queryOf(fields) || "preset=";
 
 // Presets: figures and tables of the paper, some as chips, all in a menu; and the plots that
 // correspond to them.

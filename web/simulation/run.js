@@ -11,8 +11,6 @@ export function setRun(newest) {
 }
 
 // Preparing columns of an answer for plots.
-export const mm = (metres) => metres.map((v) => v * 1000);
-
 /** A column in other units. */
 export const inUnits = (column, quantity) => column.map(quantity.of);
 

@@ -11,7 +11,6 @@ import {isSampled, motionOf} from "../shared/motion.js";
 import {roundedRange} from "../shared/numbers.js";
 import {onUnits, unitsOf, unitsSwitch} from "../shared/units.js";
 import * as details from "./details.js";
-import * as grab from "./grab.js";
 import * as machine from "./machine.js";
 import * as mainPlots from "./main_plots.js";
 import * as pin from "./pin.js";
@@ -104,7 +103,7 @@ export class SimulationTab extends RequestTab {
     presetMenu.start(presets, (name) => this.choosePreset(name), read);
     pin.start(changed, read);
     this.listen(measure);
-    grab.start($("machine"), (fields, dragging) => this.set(fields, dragging));
+    machine.start((fields, dragging) => this.set(fields, dragging));
     this.strip = new Strip();
     startPlots();
     startSheet();

@@ -2,8 +2,9 @@
 import {$, attributes, element, setTexts} from "../shared/dom.js";
 import {captionOf} from "../shared/export.js";
 import {count, digits, percent, withError} from "../shared/numbers.js";
+import {PlotGroup} from "../shared/plot.js";
 import {regimes} from "../shared/quantities.js";
-import {run} from "./run.js";
+import {run, viewport} from "./run.js";
 import {parameterLine, valueText} from "./sliders.js";
 
 const untouched = ({verdict}) => (verdict ? "no impacts in the window" : "the ball meets no wall");
@@ -56,12 +57,19 @@ export function showSentence(answer, slider, units) {
   $("sentence").replaceChildren(`${valueText(slider, parameters)}: `, motion, " ", rest + end);
 }
 
-/** Title, description, caption and file name of an exported plot of the run shown. */
-export function aboutFigure(name) {
+/** Description, caption and file name of an exported plot of the run shown. */
+function aboutFigure(name) {
   const {title, notes} = captionOf($(`figure-${name}`));
   const caption = run ? parameterLine(run.answer.parameters) : "";
-  return {title, summary: `${title} ${notes}`, caption, name: `vines-${name}`};
+  return {summary: `${title} ${notes}`, caption, name: `vines-${name}`};
 }
+
+/** The plots of the run shown in a part of the page. */
+export const plotsIn = (part) =>
+  new PlotGroup(part, viewport, {
+    about: aboutFigure,
+    moments: () => run?.answer.impacts.tau ?? [],
+  });
 
 const summaries = {}; // of the figures, by name
 

@@ -3,9 +3,6 @@ import {linesOf, TemporaryError} from "../shared/api.js";
 import {defaultSet} from "../shared/form.js";
 import {coordinates} from "../shared/quantities.js";
 
-/** The indices that sort `values`. */
-const ascending = (values) => values.map((_, i) => i).sort((a, b) => values[a] - values[b]);
-
 const same = (v) => v;
 
 /** Borders of the cells of ascending places: the midpoints, and one beyond each end. */
@@ -23,7 +20,7 @@ function borders(at, log) {
  * value.
  */
 function arrange({parameter, values}, scale) {
-  const order = ascending(values);
+  const order = [...values.keys()].sort((a, b) => values[a] - values[b]);
   const sorted = order.map((i) => values[i]);
   const log = scale === "log";
   const [to, from] = log ? [Math.log, Math.exp] : [same, same];
@@ -144,10 +141,6 @@ export class SweepData {
     return rest;
   }
 
-  missing() {
-    return this.points.flatMap((point, i) => (point ? [] : [i]));
-  }
-
   /**
    * Index of the point at positions k, l, m of the ascending axes. The first axis varies fastest,
    * then the starts, then the other axes.
@@ -193,10 +186,9 @@ export class SweepData {
  * is aborted. Throws if the stream ends early.
  */
 export async function receive(data, signal, onLine) {
-  const missing = data.received ? {indices: data.missing()} : {};
+  const indices = data.points.flatMap((point, i) => (point ? [] : [i]));
+  const missing = data.received ? {indices} : {};
   for await (const {text, value} of linesOf("v1/sweep", {...data.request, ...missing}, signal)) {
-    if (value.type === "error")
-      throw new (value.status === 503 ? TemporaryError : Error)(value.detail);
     data.take(value, text);
     if (!signal.aborted) onLine(value);
   }

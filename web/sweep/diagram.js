@@ -10,10 +10,15 @@ import * as labels from "./axis_labels.js";
 import {dotsOf, lineOf, regimesOf, sectionOf} from "./points.js";
 import {missingPoint, SweepPlot, SweepView} from "./sweep_view.js";
 
-const startColours = ["c1", "minus", "c2", "c4", "c3"];
-export const startColour = (s) => startColours[s % startColours.length];
-
-const startShapes = ["dot", "box", "triangle", "diamond", "pointed"];
+const startStyles = [
+  {colour: "c1", shape: "dot", mark: "●"},
+  {colour: "minus", shape: "box", mark: "■"},
+  {colour: "c2", shape: "triangle", mark: "▲"},
+  {colour: "c4", shape: "diamond", mark: "◆"},
+  {colour: "c3", shape: "pointed", mark: "▼"},
+];
+/** Colour, symbol and key of a start. */
+export const startStyle = (s) => startStyles[s % startStyles.length];
 
 /** Applies `of` to the best or second motion of a point. */
 const ofOtherMotion = (of) => (p) => {
@@ -49,7 +54,7 @@ class Diagram extends SweepPlot {
 
   /** Colour of a start; `alone` if there is only one. */
   tint(start, alone) {
-    return this.view.several ? startColour(start) : alone;
+    return this.view.several ? startStyle(start).colour : alone;
   }
 
   line(start, of, colour, more) {
@@ -61,7 +66,7 @@ class Diagram extends SweepPlot {
     const {data, several} = this.view;
     const count = this.view.visiblePlaces().length / data.starts;
     const size = clamp((0.62 * frame.width) / Math.max(count, 1), 1.3, 3.4) * (several ? 1.15 : 1);
-    const shape = startShapes[start % startShapes.length];
+    const {shape} = startStyle(start);
     return dotsOf(this.view.byStart[start], of, {shape, size, ...more});
   }
 

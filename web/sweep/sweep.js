@@ -10,7 +10,7 @@ import {coordinates, menuOf, otherMotion, symbolOf} from "../shared/quantities.j
 import {onUnits, unitsSwitch} from "../shared/units.js";
 import * as labels from "./axis_labels.js";
 import {Layers, receive, SweepData} from "./data.js";
-import {countRegimes, DiagramView, startColour} from "./diagram.js";
+import {countRegimes, DiagramView, startStyle} from "./diagram.js";
 import {MapView} from "./map_view.js";
 import {showPeaks} from "./peaks.js";
 import {Refiner} from "./refine.js";
@@ -93,11 +93,10 @@ function showRegimes({points}) {
   }
 }
 
-/** Legend entry with a mark, in the colour of that name; `more` follows it. */
+/** Legend entry with a mark, both in a colour; `more` follows it. */
 function legendEntry(text, mark, colour, ...more) {
-  const key = dom.element("span", {className: "key"}, text);
-  key.dataset.mark = mark;
-  key.style.color = `var(--${colour})`;
+  const key = dom.keyOf(mark, colour, text);
+  key.dataset.colour = colour;
   return dom.element("li", {}, key, ...more);
 }
 
@@ -114,20 +113,16 @@ function showAttractors({choice, plots: [map]}) {
   $("sweep-attractors").replaceChildren(...items);
 }
 
-const startMarks = ["●", "■", "▲", "◆", "▼"]; // as the shapes of the points
-
 /** Legend entry of a start: its symbol and state. */
 function startKey(state, s) {
-  const mark = startMarks[s % startMarks.length];
-  return legendEntry(`${s + 1}: ${labels.fields(state)}`, mark, startColour(s));
+  const {mark, colour} = startStyle(s);
+  return legendEntry(`${s + 1}: ${labels.fields(state)}`, mark, colour);
 }
 
 export class SweepTab extends RequestTab {
   data = null; // the sweep shown
   view = null; // its view; null if no axis remains
   wanted = {}; // menu values for the next sweep, by name in the query
-  redrawing = 0; // timer
-  cost = 0; // of drawing, ms
 
   refiner = new Refiner({
     drawn: () => this.drawSoon(),
@@ -206,16 +201,11 @@ export class SweepTab extends RequestTab {
     const standard = {coordinate: "", beside: "", map: ""}; // the first entry
     this.wanted = {...standard, ...Object.fromEntries(given)};
     this.form.setQuery(new URLSearchParams(request));
-    this.run(ends);
-  }
-
-  submit() {
-    this.run();
-    this.scrollToResults();
+    this.send(ends);
   }
 
   /** ends: the range to show, for a sweep from the address. */
-  run(ends) {
+  send(ends) {
     this.form.showErrors([]);
     this.markStale();
     this.complete(Object.assign(new SweepData(this.form.request()), {ends}));
@@ -327,22 +317,13 @@ export class SweepTab extends RequestTab {
     dom.setTexts({"sweep-rate": `${grouped(received)} of ${grouped(total)} points${more}`});
   }
 
-  /** Draws at most ten times a second, using at most a fifth of the time. */
-  drawSoon() {
-    this.redrawing ||= setTimeout(() => this.draw(), Math.max(100, 4 * this.cost));
-  }
-
   draw() {
-    clearTimeout(this.redrawing);
-    this.redrawing = 0;
-    const began = performance.now();
     const values = Object.entries(menus).map(([name, {value}]) => [name, value]);
     this.view?.refresh(Object.fromEntries(values));
     showPeaks(this.data);
     showParts(this.data);
     showRegimes(this.data);
     if (this.view) showAttractors(this.view);
-    this.cost = performance.now() - began;
   }
 
   /** Draws a complete or interrupted sweep, or another choice. */

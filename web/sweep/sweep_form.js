@@ -1,7 +1,7 @@
 // The form of a sweep: axes, run of each point, shared fields; and its conversion to and from a
 // query. The fields of an axis have its name in front: axis1_from.
 import {$, element, fillMenu, setTexts} from "../shared/dom.js";
-import {BaseForm, defaultSet, queryText, smallScreen, unknownText} from "../shared/form.js";
+import {BaseForm, defaultSet, queryOf, smallScreen, unknownText} from "../shared/form.js";
 import {unitShown} from "../shared/units.js";
 
 const none = "none";
@@ -144,21 +144,18 @@ export class SweepForm extends BaseForm {
 
   /** A request as a query; an axis is parameter,from,to,count and, unless linear, its scale. */
   static toQuery({base, axes, ...run}) {
-    const query = new URLSearchParams();
-    for (const [i, {parameter, from, to, count, scale}] of axes.entries()) {
+    const texts = axes.map(({parameter, from, to, count, scale}, i) => {
       const parts = [parameter, from, to, count, ...(scale ? [scale] : [])];
-      query.set(axisNames[i], parts.join(","));
-    }
-    for (const [name, value] of Object.entries({...run, ...base}))
-      query.set(name, queryText(value));
-    return String(query);
+      return [axisNames[i], parts.join(",")];
+    });
+    return queryOf({...Object.fromEntries(texts), ...run, ...base});
   }
 
   /** Fills the form from a query. */
   setQuery(query) {
     const fields = Object.fromEntries(query);
-    const isKnown = (name) => axisNames.includes(name) || this.inputs.has(name);
-    setTexts({"sweep-note": unknownText(Object.keys(fields).filter((name) => !isKnown(name)))});
+    const unknown = this.unknown(fields).filter((name) => !axisNames.includes(name));
+    setTexts({"sweep-note": unknownText(unknown)});
     const given = axisNames.filter((name) => fields[name]).map((name) => fields[name].split(","));
     for (const [i, axis] of axisNames.entries()) {
       const parts = given[i] ?? (i ? [] : ["b"]);
@@ -167,11 +164,6 @@ export class SweepForm extends BaseForm {
     }
     this.set(fields);
     this.adapt(fields.reduce);
-  }
-
-  showErrors(errors, lead) {
-    const placed = errors.map((error) => ({...error, pointer: `/${this.nameOf(error)}`}));
-    return super.showErrors(placed, lead);
   }
 
   /** The field of an error; for one of a whole axis the end with the value at fault. */

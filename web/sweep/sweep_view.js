@@ -195,7 +195,7 @@ export class SweepView {
   /** Shows the tooltip of a place and scrolls to it. */
   goTo(...at) {
     for (const [i, viewport] of this.viewports.entries()) viewport.reveal(at[i]);
-    for (const [i, viewport] of this.viewports.entries()) viewport.point(at[i], "key");
+    for (const [i, viewport] of this.viewports.entries()) viewport.point(at[i]);
     this.showTip({plot: this.plots.find(({size}) => size.width), at, act: true});
   }
 

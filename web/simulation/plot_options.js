@@ -1,45 +1,13 @@
-// The plots of a run: lines over time and planes.
-import {exponentSeries} from "../shared/exponents.js";
-import {addExportButton} from "../shared/export.js";
-import {makeAccessible} from "../shared/gestures.js";
-import {bands, dots, levels, lines, uprights} from "../shared/marks.js";
-import {LinePlot, ScatterPlot} from "../shared/plot.js";
+// Options that several plots of a run share.
+import {exponentMarks} from "../shared/exponents.js";
+import {bands, dots, levels, uprights} from "../shared/marks.js";
 import {alongRun, run, viewport} from "./run.js";
-import {aboutFigure} from "./words.js";
-
-/** The plots inside an element by name: canvases are planes, the others lines over time. */
-export class PlotGroup {
-  constructor(container) {
-    this.all = {};
-    for (const node of container.querySelectorAll("[id^=plot-]")) {
-      const Kind = node.matches("canvas") ? ScatterPlot : LinePlot;
-      const name = node.id.replace("plot-", "");
-      const plot = new Kind(node, viewport);
-      const about = () => aboutFigure(name);
-      addExportButton(node.closest("figure"), plot, about);
-      makeAccessible(plot, about().title, () => run?.answer.impacts.tau ?? [], viewport);
-      this.all[name] = plot;
-    }
-  }
-
-  /** common: options of all plots over time, as from commonOptions. */
-  draw(name, options) {
-    this.all[name].draw({...this.common, ...options});
-  }
-
-  refresh() {
-    for (const plot of Object.values(this.all)) plot.refresh();
-  }
-}
 
 /** Options that draw the exponents of an estimator; range: of y. */
-export function exponentLines(estimator, range) {
-  const {history, status} = estimator ?? {};
-  const {series, columns} = exponentSeries(history, status);
-  const own = history ? columns : columns.map(() => []);
-  const [tau, ...padded] = alongRun(history?.tau ?? [], own);
-  return {marks: [levels({y: 0}), ...lines(tau, padded, series)], y: {label: "λ", range}};
-}
+export const exponentLines = (estimator, range) => ({
+  marks: [levels({y: 0}), ...exponentMarks(estimator, alongRun)],
+  y: {label: "λ", range},
+});
 
 /**
  * Groups points by the halves of the run, the first paler, so that the steady state stands out.
@@ -60,7 +28,7 @@ export const picked = (points, t) => ({
   t,
   use(i, clicked) {
     if (clicked) viewport.reveal(t[i]);
-    if (viewport.holds(t[i])) viewport.point(t[i], "pick");
+    if (viewport.holds(t[i])) viewport.point(t[i]);
   },
 });
 
