@@ -70,7 +70,7 @@ export class MeasurementTab extends RequestTab {
     views.start(() => ({name: this.file?.name ?? "", answer: this.answer}));
     const own = {prefix: "measure-", grouped: groups};
     this.form = new Form($("measure-fields"), fieldsOf(fields), own);
-    for (const [name, input] of this.form.inputs)
+    for (const {name, input} of this.form.fields)
       if (isColumn(name)) input.setAttribute("list", "measure-columns");
     this.list = new ImpactList(() => {
       for (const id of ["measure-again", "measure-reset"]) $(id).disabled = !this.list.edited;

@@ -70,7 +70,7 @@ export class MotionsTab extends RequestTab {
         ...{group: "motions", part: "own", narrow: true},
       })),
     );
-    const menu = this.form.inputs.get("parameter");
+    const menu = this.form.input("parameter");
     menu.onchange = () => {
       this.form.scale(ends, menu.value);
       for (const end of ends) this.form.replace(end, "");

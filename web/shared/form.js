@@ -144,19 +144,61 @@ export const defaultSet = "default set"; // value of `starts` in place of a list
 const automatic = ({group, default: standard}) =>
   group === "system" ? [new Option(`automatic: ${standard ?? "none"}`, "")] : [];
 
-// Types of fields other than number. Menus and check boxes: make(field) creates the input,
-// get(input, default) returns its value (undefined for the default), set(input, value, default)
-// sets it, without a value to the default.
-// Text inputs: read(text) parses the text, `hint` is the placeholder of an empty one.
+/** A value in the unit shown; anything but a number is returned unchanged. */
+export const shown = ({factor}, value) => times(value, factor);
+
+/** What an empty input stands for, before the first answer. */
+function placeholderOf(field) {
+  const note = (field.default_note ?? "").split(":")[0];
+  return note || textOf(shown(field, field.default ?? "")) || typeOf(field).hint || "";
+}
+
+/**
+ * A type whose input is a text, which read() converts to a value for JSON. The last digits of a value
+ * that was set, or most of a long list, may not show: it is kept in field.exact.
+ */
+const typed = (read, more) => ({
+  read,
+  make: (field) =>
+    element("input", {
+      type: "text",
+      inputMode: read === number ? "decimal" : "text",
+      placeholder: placeholderOf(field),
+    }),
+  get({input: {value: text}, exact, factor}) {
+    if (!text.trim()) return undefined;
+    const isExact = exact?.text === text;
+    if (isExact && isObject(exact.value)) return exact.value;
+    if (read !== number) return read(text);
+    return isExact ? number(String(exact.value)) : times(number(text), 1 / factor);
+  },
+  set(field, given) {
+    const value = given ?? "";
+    const text = textOf(shown(field, value));
+    field.input.value = text;
+    field.exact = {text, value};
+  },
+  suggest({input}, text) {
+    input.placeholder = text;
+  },
+  ...more,
+});
+
+// Types of fields: make(field) creates the input, get(field) returns its value (undefined for the
+// default), set(field, value) sets it, without a value to the default, suggest(field, text) shows what an
+// empty one stands for. `hint` is the placeholder of a text without default.
 const types = {
   choice: {
     wide: true,
     make: (field) =>
       element("select", {}, ...automatic(field), ...field.choices.map((c) => new Option(c))),
-    get: ({value, options}, standard) =>
+    get: ({input: {value, options}, default: standard}) =>
       value === (options[0].value && standard) ? undefined : value,
-    set(input, value, standard) {
+    set({input, default: standard}, value) {
       input.value = value ?? (input.options[0].value && standard);
+    },
+    suggest({input: {options}}, text) {
+      if (options[0].value === "") options[0].text = `automatic: ${text}`;
     },
   },
   choices: {
@@ -166,34 +208,31 @@ const types = {
       const labels = choices.map((c) => element("label", {}, boxOf(c), c));
       return element("div", {className: "checks line"}, ...labels);
     },
-    get(input, standard) {
+    get({input, default: standard}) {
       const chosen = [...input.querySelectorAll("input:checked")].map((box) => box.value);
       return chosen.length === standard.length ? undefined : chosen;
     },
-    set(input, chosen, standard) {
+    set({input, default: standard}, chosen) {
       for (const box of input.querySelectorAll("input"))
         box.checked = (chosen ?? standard).includes(box.value);
     },
+    suggest() {},
   },
-  interval: {read: interval},
-  numbers: {read: interval},
-  intervals: {
+  number: typed(number),
+  interval: typed(interval),
+  numbers: typed(interval),
+  intervals: typed((text) => partsOf(text).map(interval), {
     wide: true,
-    read: (text) => partsOf(text).map(interval),
     hint: "none; e.g. 0,500; 500,1000",
-  },
-  states: {
+  }),
+  states: typed((text) => (text.trim() === defaultSet ? defaultSet : partsOf(text).map(object)), {
     wide: true,
-    read: (text) => (text.trim() === defaultSet ? defaultSet : partsOf(text).map(object)),
     hint: "one; e.g. x0=0.01; x0=0, y0=0.002",
-  },
-  object: {wide: true, read: object},
-  text: {wide: true, read: (text) => text.trim()},
+  }),
+  object: typed(object, {wide: true}),
+  text: typed((text) => text.trim(), {wide: true}),
 };
-const typeOf = ({type}) => types[type] ?? {};
-
-const textInput = (field) =>
-  element("input", {type: "text", inputMode: typeOf(field).read ? "text" : "decimal"});
+const typeOf = ({type}) => types[type] ?? types.number;
 
 // Pairs of fields that express the same quantity: when one is filled, the other follows from it.
 const pairs = Object.entries({...equivalents, cycles: "tau_end"});
@@ -212,25 +251,29 @@ const times = (value, factor) =>
     ? value
     : Number((value * factor).toPrecision(15));
 
+/** Shows an origin; without one the value is not that of the last answer. */
+function showOrigin({origin}, title = "") {
+  Object.assign(origin, {textContent: originText(title), title});
+}
+
 /** On a small screen the groups are closed at first, because the results lie below them. */
 export const smallScreen = matchMedia("(max-width: 60rem)").matches;
 
 export class Form {
-  inputs = new Map();
-  errors = new Map();
-  rows = new Map();
-  parts = new Map();
-  exact = new Map(); // of numbers shown in another unit: {text, value}
+  parts = new Map(); // <details> of the groups
   replaced = [];
 
   /**
    * prefix: of ids, since a page can have several forms; grouped: the groups to show. A field's
-   * `label` is shown in place of its name.
+   * `label` is shown in place of its name. `fields` holds the shown ones, each with its factor, and its
+   * elements: row, input, origin, error.
    */
   constructor(container, fields, {prefix = "", grouped = groups} = {}) {
     this.prefix = prefix;
-    this.fields = fields.filter((f) => isShown(f) && f.group in grouped);
-    this.factors = new Map(fields.map((field) => [field.name, factorOf(field)]));
+    this.fields = fields
+      .filter((f) => isShown(f) && f.group in grouped)
+      .map((f) => ({...f, factor: factorOf(f)}));
+    this.named = new Map(this.fields.map((field) => [field.name, field]));
     for (const [group, [title, open, note = ""]] of Object.entries(grouped)) {
       const rows = this.fields.filter((f) => f.group === group).map((f) => this.row(f));
       const details = element(
@@ -248,72 +291,42 @@ export class Form {
 
   row(field) {
     const {name, label: title = name, type, minimum, maximum} = field;
-    const {make = textInput, set, wide} = typeOf(field);
+    const {make, set, wide} = typeOf(field);
     const input = make(field);
-    if (set) set(input, undefined, field.default);
-    else input.placeholder = this.placeholderOf(field);
     const error = element("p", {className: "error", id: `${this.prefix}error-${name}`});
+    const origin = element("span", {className: "origin"});
     input.setAttribute("aria-describedby", error.id);
-    input.addEventListener("input", () => this.showOrigin(name));
+    input.addEventListener("input", () => showOrigin(field));
     const {unit: own, factor} = unitShown(field.unit);
-    const unit = factor === factorOf(field) ? own : field.unit;
+    const unit = factor === field.factor ? own : field.unit;
     const shownUnit = element("span", {className: "unit"}, unit && `, ${unit}`);
     const named = element("span", {}, symbolOf(title).replaceAll("_", " "), shownUnit);
-    const ends = [minimum, maximum].map((v) => this.shown(name, v));
+    const ends = [minimum, maximum].map((v) => shown(field, v));
     const range = minimum === undefined ? "" : ` [${ends.join(" to ")}]`;
     const label = element(
       type === "choices" ? "div" : "label",
       {title: `${title}: ${field.description}${range}`},
-      element("span", {className: "name"}, named, element("span", {className: "origin"})),
+      element("span", {className: "name"}, named, origin),
       input,
     );
     const width = wide && !field.narrow ? " wide" : "";
     const row = element("div", {className: `field field-${name}${width}`}, label, error);
-    this.inputs.set(name, input);
-    this.errors.set(name, error);
-    this.rows.set(name, row);
+    Object.assign(field, {row, input, origin, error});
+    set(field);
     return row;
   }
 
-  /** Placeholder of an empty input before the first answer. */
-  placeholderOf(field) {
-    const note = (field.default_note ?? "").split(":")[0];
-    return note || textOf(this.shown(field.name, field.default ?? "")) || typeOf(field).hint || "";
-  }
-
-  /** A value in the unit shown; anything but a number is returned unchanged. */
-  shown(name, value) {
-    return times(value, this.factors.get(name));
-  }
-
-  /** Sets an input and remembers the exact value, whose last digits the text may not show. */
-  setValue(name, value) {
-    const text = textOf(this.shown(name, value));
-    this.inputs.get(name).value = text;
-    this.exact.set(name, {text, value});
-  }
-
-  /** The value of a text input for JSON; undefined if it is empty. */
-  read(field) {
-    const {name} = field;
-    const {value: text} = this.inputs.get(name);
-    const {read} = typeOf(field);
-    if (!text.trim()) return undefined;
-    const exact = this.exact.get(name);
-    if (exact?.text === text && isObject(exact.value)) return exact.value;
-    if (read) return read(text);
-    if (exact?.text === text) return number(String(exact.value));
-    return times(number(text), 1 / this.factors.get(name));
+  /** The input of a field. */
+  input(name) {
+    return this.named.get(name).input;
   }
 
   /** Fields that differ from their defaults, for JSON. */
   values() {
-    const values = this.fields.map((field) => {
-      const input = this.inputs.get(field.name);
-      if (input.disabled) return [];
-      const {get} = typeOf(field);
-      return [field.name, get ? get(input, field.default) : this.read(field)];
-    });
+    const values = this.fields.map((field) => [
+      field.name,
+      field.input.disabled ? undefined : typeOf(field).get(field),
+    ]);
     return Object.fromEntries(values.filter(([, value]) => value !== undefined));
   }
 
@@ -321,20 +334,16 @@ export class Form {
   parse(texts) {
     const value = ([name, text]) => {
       const known = fromQuery(text);
-      const {read = number, get} = typeOf(this.fields.find((f) => f.name === name) ?? {});
-      return [name, known !== text || get ? known : read(text)];
+      const {read} = typeOf(this.named.get(name) ?? {});
+      return [name, known === text && read ? read(text) : known];
     };
     return Object.fromEntries(Object.entries(texts).map(value));
   }
 
   set(values) {
     for (const field of this.fields) {
-      const {name} = field;
-      const value = fromQuery(values[name]);
-      const {set} = typeOf(field);
-      if (set) set(this.inputs.get(name), value, field.default);
-      else this.setValue(name, value ?? "");
-      this.showOrigin(name);
+      typeOf(field).set(field, fromQuery(values[field.name]));
+      showOrigin(field);
     }
     this.unfold(values);
     this.updateDisabled();
@@ -351,21 +360,11 @@ export class Form {
   showOrigins(parameters) {
     const {values, origins} = resolved(parameters);
     for (const field of this.fields) {
-      const {name} = field;
-      this.showOrigin(name, origins[name]);
-      const input = this.inputs.get(name);
-      const value = values[name];
-      const text =
-        value == null ? this.placeholderOf(field) : textOf(rounded(this.shown(name, value)));
-      if (!typeOf(field).set) input.placeholder = text;
-      else if (input.options?.[0].value === "") input.options[0].text = `automatic: ${text}`;
+      const {[field.name]: value} = values;
+      showOrigin(field, origins[field.name]);
+      const text = value == null ? placeholderOf(field) : textOf(rounded(shown(field, value)));
+      typeOf(field).suggest(field, text);
     }
-  }
-
-  /** Shows an origin; without one the value is not that of the last answer. */
-  showOrigin(name, title = "") {
-    const origin = this.rows.get(name).querySelector(".origin");
-    Object.assign(origin, {textContent: originText(title), title});
   }
 
   /** Disables exactly the fields that are set elsewhere. */
@@ -376,18 +375,19 @@ export class Form {
 
   /** Sets a value and clears its origin. */
   replace(name, value) {
-    this.setValue(name, value);
-    this.showOrigin(name);
+    const field = this.named.get(name);
+    typeOf(field).set(field, value);
+    showOrigin(field);
     this.updateDisabled();
   }
 
   /** The names among those of `fields` that the form does not have. */
   unknown(fields) {
-    return Object.keys(fields).filter((name) => !this.inputs.has(name));
+    return Object.keys(fields).filter((name) => !this.named.has(name));
   }
 
   filled(name) {
-    return Boolean(this.inputs.get(name)?.value?.trim());
+    return Boolean(this.named.get(name)?.input.value?.trim());
   }
 
   /** The group that no field can be given of: a system is given either in SI or reduced. */
@@ -403,12 +403,12 @@ export class Form {
   /** Disables fields that are set elsewhere, follow from another field or cannot be combined. */
   updateDisabled() {
     const {excludedGroup} = this;
-    for (const {name, group} of this.fields) {
+    for (const {name, group, input, row} of this.fields) {
       const other = others[name];
       const follows = !this.filled(name) && (this.filled(other) || group === excludedGroup);
       const off = follows || [name, other].some((each) => this.replaced.includes(each));
-      this.inputs.get(name).disabled = off;
-      this.rows.get(name).classList.toggle("off", off);
+      input.disabled = off;
+      row.classList.toggle("off", off);
     }
   }
 
@@ -419,27 +419,24 @@ export class Form {
 
   /** Shows errors at their fields, focuses the first if `lead`; returns those without a field. */
   showErrors(errors, lead = true) {
-    for (const {name} of this.fields) {
-      this.errors.get(name).textContent = "";
-      this.inputs.get(name).removeAttribute("aria-invalid");
+    for (const {input, error} of this.fields) {
+      error.textContent = "";
+      input.removeAttribute("aria-invalid");
     }
     const left = [];
     for (const error of errors) {
-      const name = this.nameOf(error);
-      const place = this.errors.get(name);
+      const {input, error: place} = this.named.get(this.nameOf(error)) ?? {};
       if (!place) {
         left.push(error);
         continue;
       }
       place.append(place.textContent && " ", error.detail);
-      const input = this.inputs.get(name);
       input.setAttribute("aria-invalid", "true");
       // The groups of the form lie in a further fold, which only an error that leads opens.
       for (let at = input.closest("details"); at; at = lead && at.parentElement.closest("details"))
         at.open = true;
     }
-    const first = this.fields.find(({name}) => this.errors.get(name).textContent);
-    if (lead && first) this.inputs.get(first.name).focus();
+    if (lead) this.fields.find(({error}) => error.textContent)?.input.focus();
     return left;
   }
 }
@@ -480,6 +477,6 @@ export class BaseForm extends Form {
   /** Sets the unit in which the ends of a range are typed to that of the parameter. */
   scale(ends, parameter) {
     const {factor} = unitShown(this.parameters.get(parameter)?.unit);
-    for (const name of ends) this.factors.set(name, factor);
+    for (const name of ends) this.named.get(name).factor = factor;
   }
 }

@@ -111,7 +111,7 @@ export class SimulationTab extends RequestTab {
 
   listen(measure) {
     const {form, request} = this;
-    for (const input of form.inputs.values()) {
+    for (const {input} of form.fields) {
       input.oninput = () => this.note();
       input.onchange = () => this.send();
     }
@@ -282,7 +282,7 @@ export class SimulationTab extends RequestTab {
 
   /** Sets fields, null to clear one; dragging: more changes follow. */
   set(fields, dragging) {
-    for (const [name, value] of Object.entries(fields)) this.form.replace(name, value ?? "");
+    for (const [name, value] of Object.entries(fields)) this.form.replace(name, value);
     this.note();
     this.send({dragging});
   }

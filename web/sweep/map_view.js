@@ -2,10 +2,9 @@
 // with a scale. Missing points take the colour of a coarser neighbour.
 import {font, ticks} from "../shared/frame.js";
 import {colour, drawText, drawTextUpwards, hex, ink, rgb} from "../shared/ink.js";
-import {kind, raster} from "../shared/marks.js";
+import {kind, pixel, raster} from "../shared/marks.js";
 import {clamp, lastUpTo, short} from "../shared/numbers.js";
 import {bestMotion, describe, quantityOf, regimeColour} from "../shared/quantities.js";
-import {pixel} from "../shared/raster.js";
 import {Viewport} from "../shared/viewport.js";
 import * as labels from "./axis_labels.js";
 import {startStyle} from "./diagram.js";

@@ -6,13 +6,12 @@ import {$} from "../shared/dom.js";
 
 import {RequestTab} from "../shared/job.js";
 import {percent} from "../shared/numbers.js";
-import {coordinates, menuOf, otherMotion, symbolOf} from "../shared/quantities.js";
+import * as q from "../shared/quantities.js";
 import {onUnits, unitsSwitch} from "../shared/units.js";
 import * as labels from "./axis_labels.js";
 import {Layers, receive, SweepData} from "./data.js";
 import {countRegimes, DiagramView, startStyle} from "./diagram.js";
 import {MapView} from "./map_view.js";
-import {showPeaks} from "./peaks.js";
 import {Refiner} from "./refine.js";
 import {grouped, SweepForm} from "./sweep_form.js";
 
@@ -75,7 +74,7 @@ function showParts({axes, section, defaultSet, starts, parameters, reduced, poin
     several,
     verdicts: !several, // the colours otherwise distinguish the starts
     startMenu: several || defaultSet,
-    motions: axes.length === 1 && (defaultSet || (!several && points.some(otherMotion))),
+    motions: axes.length === 1 && (defaultSet || (!several && points.some(q.otherMotion))),
     defaultSet,
     second: !defaultSet,
   };
@@ -117,6 +116,57 @@ function showAttractors({choice, plots: [map]}) {
 function startKey(state, s) {
   const {mark, colour} = startStyle(s);
   return legendEntry(`${s + 1}: ${labels.fields(state)}`, mark, colour);
+}
+
+// The table of peaks.
+const startsAndFree = {...q.startNames, free: "without the absorber"};
+
+/** Motions of a point from each start of the default set, and the one without the absorber. */
+const motionsOf = (p) => [
+  ...(p?.starts ?? []),
+  ...(p?.x_free == null ? [] : [{start: "free", x_max: p.x_free}]),
+];
+
+const alongAxis = (data) =>
+  data.axes[0].values
+    .flatMap((where, k) => motionsOf(data.points[data.index(k)]).map((m) => ({...m, where})))
+    .filter((m) => m.x_max != null);
+
+/** Motions of a sweep whose only axis is reduced. */
+function ofStarts(data) {
+  const points = data.points.filter((p) => p && !p.error);
+  const nameOf = (p) => (data.starts > 1 ? `start ${p.start + 1}` : "this start");
+  const own = points[0]?.starts ? [] : points.map((p) => ({...p, start: nameOf(p)}));
+  return [...own, ...motionsOf(points[0])];
+}
+
+/**
+ * Shows the table of the largest |x| from each start over a whole axis: for a reduction that leaves no
+ * axis, and for the default set of starts over one axis.
+ */
+function showPeaks(data) {
+  const {reduced, axes, defaultSet, request} = data;
+  const bare = reduced && !axes.length;
+  const shown = bare || (defaultSet && axes.length === 1 && !reduced);
+  dom.reveal({"figure-sweep-peaks": shown});
+  if (!shown) return;
+  const parameter = reduced ?? axes[0].parameter;
+  const which = request.reduce?.startsWith("min") ? "Smallest" : "Largest";
+  const title = `${which} |x| over ${q.symbolOf(parameter)}, from each start`;
+  dom.setTexts({"sweep-peaks-title": title});
+  const peaks = new Map(); // the highest of each start, in descending order
+  const motions = bare ? ofStarts(data) : alongAxis(data);
+  for (const m of motions.sort((a, b) => (b.x_max ?? -1) - (a.x_max ?? -1)))
+    if (!peaks.has(m.start)) peaks.set(m.start, m);
+  const head = ["start", "largest |x| (mm)", `at ${labels.label(parameter)}`, "regime", "verdict"];
+  const rows = [...peaks.values()].map((m) => [
+    startsAndFree[m.start] ?? m.start,
+    m.x_max == null ? "–" : (m.x_max * 1000).toFixed(1),
+    m.where == null ? "–" : labels.text(parameter, m.where),
+    m.regime ? q.regimeText(m.regime) : "–",
+    q.verdicts[m.verdict] ?? "–",
+  ]);
+  $("sweep-peaks").replaceChildren(...dom.tableOf(head, rows));
 }
 
 export class SweepTab extends RequestTab {
@@ -284,13 +334,13 @@ export class SweepTab extends RequestTab {
   fillMenus() {
     const {section, defaultSet, axes, states} = this.data;
     const {parameter = "", values = []} = axes[2] ?? {};
-    dom.setTexts({"sweep-slice-word": `where ${symbolOf(parameter)} =`});
+    dom.setTexts({"sweep-slice-word": `where ${q.symbolOf(parameter)} =`});
     const entries = {
-      coordinate: Object.entries(coordinates[section] ?? {}).map(([name, {title}]) => [
+      coordinate: Object.entries(q.coordinates[section] ?? {}).map(([name, {title}]) => [
         name,
         title,
       ]),
-      [axes.length > 1 ? "map" : "beside"]: menuOf(this.data),
+      [axes.length > 1 ? "map" : "beside"]: q.menuOf(this.data),
       start: defaultSet ? [[0, "worst"], ["best"]] : states.map((_, s) => [s, s + 1]),
       slice: values.map((v, m) => [m, labels.valueText(parameter, v)]),
     };

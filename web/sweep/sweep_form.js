@@ -1,7 +1,7 @@
 // The form of a sweep: axes, run of each point, shared fields; and its conversion to and from a
 // query. The fields of an axis have its name in front: axis1_from.
 import {$, element, fillMenu, setTexts} from "../shared/dom.js";
-import {BaseForm, defaultSet, queryOf, smallScreen, unknownText} from "../shared/form.js";
+import {BaseForm, defaultSet, queryOf, shown, smallScreen, unknownText} from "../shared/form.js";
 import {unitShown} from "../shared/units.js";
 
 const none = "none";
@@ -63,11 +63,11 @@ export class SweepForm extends BaseForm {
     this.notes = axisNames.map((axis) =>
       this.parts.get(axis).appendChild(element("p", {className: "note"})),
     );
-    this.errors.get("starts").before($("sweep-default"));
+    this.named.get("starts").error.before($("sweep-default"));
     container.addEventListener("input", ({target}) => {
-      for (const [name, input] of this.inputs) if (input === target) this.edited(name, input.value);
-      if (target === defaultSetBox)
-        this.inputs.get("starts").value = target.checked ? defaultSet : "";
+      const field = this.fields.find(({input}) => input === target);
+      if (field) this.edited(field.name, target.value);
+      if (target === defaultSetBox) this.input("starts").value = target.checked ? defaultSet : "";
       this.adapt();
       changed();
     });
@@ -80,7 +80,7 @@ export class SweepForm extends BaseForm {
   edited(name, value) {
     const axis = axisNames.find((each) => name === parameterOf(each));
     if (axis) for (const end of endsOf(axis)) this.replace(end, "");
-    if (axis && axis !== axisNames[0] && value !== none) this.inputs.get("section").value = none;
+    if (axis && axis !== axisNames[0] && value !== none) this.input("section").value = none;
   }
 
   /** The default of a field. */
@@ -90,7 +90,7 @@ export class SweepForm extends BaseForm {
 
   /** Parameters of the axes; "none" for a missing axis. */
   swept() {
-    return axisNames.map((axis) => this.inputs.get(parameterOf(axis)).value);
+    return axisNames.map((axis) => this.input(parameterOf(axis)).value);
   }
 
   /**
@@ -102,12 +102,12 @@ export class SweepForm extends BaseForm {
     for (const [i, axis] of axisNames.entries()) {
       const field = this.parameters.get(swept[i]);
       for (const part of axisParts)
-        this.rows.get(`${axis}_${part}`).hidden = !field && part !== "parameter";
+        this.named.get(`${axis}_${part}`).row.hidden = !field && part !== "parameter";
       this.notes[i].textContent = field ? noteOf(field) : "";
       const [from, to] = endsOf(axis);
       this.scale([from, to], swept[i]);
-      this.inputs.get(from).placeholder = `from ${this.shown(from, field?.minimum)}`;
-      this.inputs.get(to).placeholder = `to ${this.shown(to, field?.maximum)}`;
+      this.input(from).placeholder = `from ${shown(this.named.get(from), field?.minimum)}`;
+      this.input(to).placeholder = `to ${shown(this.named.get(to), field?.maximum)}`;
     }
     this.adaptRun(swept, reduce);
     this.showSize();
@@ -118,16 +118,15 @@ export class SweepForm extends BaseForm {
    * default set of starts or with a reduction, both of which report several motions.
    */
   adaptRun(swept, reduce) {
-    const {inputs} = this;
     const axes = swept.filter((name) => name !== none);
     const reductions = axes.flatMap((name) => [[`max over ${name}`], [`min over ${name}`]]);
-    fillMenu(inputs.get("reduce"), [[none], ...reductions], reduce);
-    const several = inputs.get("starts").value.trim() === defaultSet;
+    fillMenu(this.input("reduce"), [[none], ...reductions], reduce);
+    const several = this.input("starts").value.trim() === defaultSet;
     defaultSetBox.checked = several;
     const off = [];
     if (several) off.push("carry_state");
-    if (several || inputs.get("reduce").value !== none) off.push("section");
-    for (const name of off) inputs.get(name).value = none;
+    if (several || this.input("reduce").value !== none) off.push("section");
+    for (const name of off) this.input(name).value = none;
     this.disable([...off, ...axes]);
   }
 
