@@ -4,6 +4,7 @@
 import {get} from "./shared/api.js";
 import {$, attributes, on} from "./shared/dom.js";
 import {onColours} from "./shared/ink.js";
+import {joined} from "./shared/numbers.js";
 import {startTerms} from "./shared/terms.js";
 import {toQuery} from "./simulation/request.js";
 import {SimulationTab} from "./simulation/simulation.js";
@@ -73,8 +74,7 @@ function listenToButtons() {
 }
 
 function address(name, query) {
-  const parts = [embedded ? "embed=1" : "", name === "simulation" ? "" : `tab=${name}`, query];
-  return `?${parts.filter(Boolean).join("&")}`;
+  return `?${joined([embedded && "embed=1", name !== "simulation" && `tab=${name}`, query], "&")}`;
 }
 
 const writeAddress = (method) => history[method](null, "", address(current, queryOf(current)));

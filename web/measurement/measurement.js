@@ -78,10 +78,10 @@ export class MeasurementTab extends RequestTab {
     });
     this.presets = Object.fromEntries(presets.map(({name, ...preset}) => [name, preset]));
     this.listen();
-    this.listenToFiles();
   }
 
   listen() {
+    dom.onFile($("panel-measurement"), $("measure-drop"), (file) => this.readFile(file));
     presetMenu.onchange = () => this.choosePreset(presetMenu.value, this.ofColumns());
     $("measure-fields").onchange = () => {
       this.remember();
@@ -107,13 +107,6 @@ export class MeasurementTab extends RequestTab {
       const path = `v1/identify?${asQuery(this.sent ?? this.form.values())}`;
       dom.copy(asCurl({path, type: "text/csv", file: this.file?.name ?? "record.csv"}), this.say);
     };
-  }
-
-  /** Files are chosen or dropped on the tab. */
-  listenToFiles() {
-    const input = $("measure-file");
-    input.onchange = () => this.readFile(input.files[0]);
-    dom.onDrop($("panel-measurement"), $("measure-drop"), (file) => this.readFile(file));
   }
 
   query() {

@@ -1,7 +1,7 @@
 // The results of a measurement as cards, and the table of fitted parameters.
 
 import {$, cards, listWarnings} from "../shared/dom.js";
-import {count, digits, minus, withError} from "../shared/numbers.js";
+import {count, digits, joined, minus, withError} from "../shared/numbers.js";
 import {verdicts} from "../shared/quantities.js";
 import {isLeftOut} from "./impact_list.js";
 
@@ -35,7 +35,7 @@ function impactsCard({impacts: {status, tau}, sticking}) {
     stuck && `${count(stuck, "sticking phase")}, shaded`,
     unknown && `R of ${unknown} not known, at the ends`,
   ];
-  return ["impacts", tau.length, notes.filter(Boolean).join("; ")];
+  return ["impacts", tau.length, joined(notes, "; ")];
 }
 
 const restitutionCard = (wall, {R, standard_error: error, impacts}) => [

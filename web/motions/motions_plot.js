@@ -1,9 +1,9 @@
 // The diagram of all motions: dots for what the system settles on, lines for branches of periodic
 // orbits, named special points, and a marker of the parameter.
-import {attributes, element, on} from "../shared/dom.js";
+import {element, on, showAsSlider} from "../shared/dom.js";
 import {Frame, rangeOf} from "../shared/frame.js";
 import {curve, dots, texts} from "../shared/marks.js";
-import {clamp, short} from "../shared/numbers.js";
+import {clamp, joined, short} from "../shared/numbers.js";
 import {ZoomablePlot} from "../shared/plot.js";
 import {verdictColour} from "../shared/quantities.js";
 import * as labels from "../sweep/axis_labels.js";
@@ -74,15 +74,10 @@ export class MotionsPlot extends ZoomablePlot {
     super.point();
     this.marker.hidden = !this.frame || !this.viewport.holds(this.marked);
     if (this.marker.hidden) return;
-    const [from, to] = this.viewport.full;
     const {parameter} = this.motions.request;
     this.marker.style.transform = `translateX(${this.frame.px(this.marked)}px)`;
-    attributes(this.marker, {
-      "aria-valuemin": from,
-      "aria-valuemax": to,
-      "aria-valuenow": this.marked,
-      "aria-valuetext": labels.fields({[parameter]: this.marked}),
-    });
+    const text = labels.fields({[parameter]: this.marked});
+    showAsSlider(this.marker, this.viewport.full, this.marked, text);
   }
 
   cursorText(cursor) {
@@ -113,14 +108,13 @@ export class MotionsPlot extends ZoomablePlot {
 
   describe({value, stable, verdict, kind, period_cycles: cycles, impacts, multipliers}) {
     const {parameter} = this.motions.request;
-    const parts = [
+    return joined([
       labels.fields({[parameter]: value}),
       kind?.replace("_", " "),
       stable === undefined ? verdict?.replace("_", " ") : `${stable ? "" : "un"}stable`,
       cycles && `period ${cycles}, impacts ${impacts}`,
       multipliers && `|μ| ${short(multipliers.modulus[0])}`,
-    ];
-    return parts.filter(Boolean).join(", ");
+    ]);
   }
 
   click(x, _, {top}) {

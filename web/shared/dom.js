@@ -35,6 +35,15 @@ export const attributes = (node, all) => {
     if (value != null) node.setAttribute(name, value);
 };
 
+/** States range, value and its text of an element with the role slider. */
+export const showAsSlider = (node, [least, most], now, text) =>
+  attributes(node, {
+    "aria-valuemin": least,
+    "aria-valuemax": most,
+    "aria-valuenow": now,
+    "aria-valuetext": text,
+  });
+
 /** Shows or hides elements: {id: whether to show}. */
 export const reveal = (shown) => {
   for (const [id, is] of Object.entries(shown)) $(id).hidden = !is;
@@ -58,8 +67,12 @@ export const sayIn =
     $(id).classList.toggle("fault", fault);
   };
 
-/** read(file) gets a file that is dropped on a panel; zone: the element that shows the dragging. */
-export function onDrop(panel, zone, read) {
+/**
+ * read(file) gets a file that is dropped on a panel or chosen in the input of `zone`, which shows the
+ * dragging.
+ */
+export function onFile(panel, zone, read) {
+  zone.querySelector("input").onchange = ({target}) => read(target.files[0]);
   const drag = (event) => {
     event.preventDefault();
     zone.classList.toggle("over", event.type === "dragover");

@@ -3,7 +3,7 @@
 import {$, attributes, button, element, save, setTexts, tableOf} from "./dom.js";
 import {font} from "./frame.js";
 import {drawText, ink} from "./ink.js";
-import {short} from "./numbers.js";
+import {joined, short} from "./numbers.js";
 
 const size = {width: 900, height: 424};
 const heading = 44; // px above the plot for title and parameters
@@ -56,7 +56,7 @@ function show(plot, about) {
   const data = plot.numbers();
   const total = data.columns[0].length;
   const cut = total > rowsShown ? `the first ${rowsShown} of ${total} visible rows` : "";
-  const note = [caption, cut].filter(Boolean).join(" · ");
+  const note = joined([caption, cut], " · ");
   setTexts({"data-title": title, "data-summary": summary, "data-note": note});
   const rows = rowsOf(data.columns, rowsShown).map((values) => values.map(written));
   $("data-table").replaceChildren(...tableOf(data.names, rows));

@@ -1,6 +1,6 @@
 // Pointing at and zooming into a plot with mouse, touch and keyboard. A plot has a viewport for
 // x and can have one for y.
-import {attributes, element, on} from "./dom.js";
+import {attributes, element, on, showAsSlider} from "./dom.js";
 import {clamp, short} from "./numbers.js";
 
 const doubleClickTime = 250; // ms within which a second click makes a double click
@@ -226,9 +226,7 @@ export function makeAccessible({node}, name, moments, viewport) {
   const tell = (by) => {
     if (by === "play") return; // not announced 60 times a second
     const now = viewport.cursor ?? viewport.range[0];
-    const [least, most] = viewport.full;
-    const about = {"aria-valuemin": least, "aria-valuemax": most, "aria-valuenow": now};
-    attributes(node, {...about, "aria-valuetext": short(now)});
+    showAsSlider(node, viewport.full, now, short(now));
   };
   tell();
   viewport.onCursor(tell);

@@ -52,6 +52,9 @@ export const percent = orDash(
   (value) => `${(value * 100).toFixed(value < 0.1 && value >= 0.0005 ? 1 : 0)} %`,
 );
 
+/** The parts of a text that are not empty, joined. */
+export const joined = (parts, separator = ", ") => parts.filter(Boolean).join(separator);
+
 /** A count with its noun: 1 impact, 2 impacts. */
 export const count = (n, noun) => `${n} ${noun}${Number(n) === 1 ? "" : "s"}`;
 

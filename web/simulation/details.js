@@ -8,7 +8,7 @@ import {simulate} from "../shared/api.js";
 import {$, cards, countUp, reveal, sayIn, setTexts, tableOf} from "../shared/dom.js";
 import {resolved} from "../shared/form.js";
 import {Job} from "../shared/job.js";
-import {count, digits, inMm, minus, percent, shortTo} from "../shared/numbers.js";
+import {count, digits, inMm, joined, minus, percent, shortTo} from "../shared/numbers.js";
 import {symbolOf, verdicts} from "../shared/quantities.js";
 import {detailsOptions} from "./details_plots.js";
 import {commonOptions} from "./plot_options.js";
@@ -73,8 +73,6 @@ async function showModel() {
   const sketch = $("model-sketch");
   sketch.innerHTML = await (await fetch(sketch.dataset.src)).text();
 }
-
-const joined = (parts, separator = ", ") => parts.filter(Boolean).join(separator);
 
 const withErrorOf = ({standard_error: [error]}) => (error == null ? "" : `± ${digits(error)}`);
 

@@ -8,7 +8,7 @@ import {$} from "../shared/dom.js";
 import {Form, unknownText} from "../shared/form.js";
 import {Job, RequestTab} from "../shared/job.js";
 import {isSampled, motionOf} from "../shared/motion.js";
-import {roundedRange} from "../shared/numbers.js";
+import {joined, roundedRange} from "../shared/numbers.js";
 import {onUnits, unitsOf, unitsSwitch} from "../shared/units.js";
 import * as details from "./details.js";
 import * as machine from "./machine.js";
@@ -131,8 +131,7 @@ export class SimulationTab extends RequestTab {
       for (const step of this.drawing()) step();
       details.follow();
     });
-    dom.onDrop($("panel-simulation"), $("load"), (file) => this.readLoad(file));
-    $("load-file").onchange = ({target}) => this.readLoad(target.files[0]);
+    dom.onFile($("panel-simulation"), $("load"), (file) => this.readLoad(file));
     $("measure-this").onclick = () => run && measure(run.answer);
     const texts = formsOf("v1/simulate", () => request.fields());
     for (const one of $("copies").children)
@@ -324,7 +323,7 @@ export class SimulationTab extends RequestTab {
       view && `view=${roundedRange(view)}`,
       pinned !== null && `pinned=${encodeURIComponent(pinned)}`,
     ];
-    return [this.asked, ...more].filter(Boolean).join("&");
+    return joined([this.asked, ...more], "&");
   }
 
   /** Shows Fig. 3 in place of a run whose address has faults, and names them. */

@@ -1,11 +1,11 @@
 // The regime strip: a bifurcation diagram along the parameter moved last, computed by a sweep from
 // coarse to fine: the regimes, and lambda1, the largest |x| or x at the impacts. Its marker acts as
 // the slider.
-import {$, attributes, countUp, setTexts} from "../shared/dom.js";
+import {$, countUp, setTexts, showAsSlider} from "../shared/dom.js";
 import {Frame, rangeOf} from "../shared/frame.js";
 import {Job} from "../shared/job.js";
 import {levels} from "../shared/marks.js";
-import {clamp, digits, nearest, withError} from "../shared/numbers.js";
+import {clamp, digits, joined, nearest, withError} from "../shared/numbers.js";
 import {Plot} from "../shared/plot.js";
 import {quantities, regimeText, verdictColour, verdicts} from "../shared/quantities.js";
 import {Layers, receive, SweepData} from "../sweep/data.js";
@@ -193,12 +193,7 @@ export class Strip extends Plot {
   point() {
     const {range, value} = this;
     this.marker.style.transform = `translateX(${this.frame.px(this.toParameter(value))}px)`;
-    attributes(this.canvas, {
-      "aria-valuemin": range[0],
-      "aria-valuemax": range[1],
-      "aria-valuenow": value,
-      "aria-valuetext": this.textAt(value),
-    });
+    showAsSlider(this.canvas, range, value, this.textAt(value));
     if (!this.pointed) this.tell();
   }
 
@@ -219,7 +214,7 @@ export class Strip extends Plot {
     const own = [regime.type, regime.periodic ? "regular" : exponents.verdict];
     const there = [p.regime, p.periodic ? "regular" : p.verdict];
     if (own.join() === there.join()) return "";
-    const words = ([type, verdict]) => [type, verdicts[verdict]].filter(Boolean).join(", ");
+    const words = ([type, verdict]) => joined([type, verdicts[verdict]]);
     return `at the marker, after ${transient} cycles: ${words(there)}; the run above: ${words(own)}`;
   }
 
@@ -230,13 +225,13 @@ export class Strip extends Plot {
     const p = this.pointAt(value);
     if (!p?.regime) return where;
     const lambda = lambdaOf(p);
-    const parts = [
+    const rest = joined([
       regimeText(p.regime),
       verdicts[p.verdict],
       lambda != null && `λ₁ = ${withError(lambda, errorOf(p), 3)}`,
       p.z != null && `z = ${digits(p.z, 2)}`,
-    ];
-    return `${where}: ${parts.filter(Boolean).join(", ")}`;
+    ]);
+    return `${where}: ${rest}`;
   }
 
   /** The value under the pointer. */

@@ -1,7 +1,7 @@
 // The results of a run in words: a sentence, and descriptions of the plots.
 import {$, attributes, element, setTexts} from "../shared/dom.js";
 import {captionOf} from "../shared/export.js";
-import {count, digits, percent, withError} from "../shared/numbers.js";
+import {count, digits, joined, percent, withError} from "../shared/numbers.js";
 import {PlotGroup} from "../shared/plot.js";
 import {regimes} from "../shared/quantities.js";
 import {run, viewport} from "./run.js";
@@ -49,9 +49,7 @@ const amplitudeText = ({rms_ratio: ratio}) =>
 /** slider: its value begins the sentence. */
 export function showSentence(answer, slider, units) {
   const {exponents, regime, energy, parameters} = answer;
-  const rest = [lambdaText(exponents, regime, parameters), amplitudeText(energy)]
-    .filter(Boolean)
-    .join("; ");
+  const rest = joined([lambdaText(exponents, regime, parameters), amplitudeText(energy)], "; ");
   const end = rest && ".";
   const motion = element("b", {textContent: motionText(answer, units) + end});
   $("sentence").replaceChildren(`${valueText(slider, parameters)}: `, motion, " ", rest + end);

@@ -212,8 +212,8 @@ class QuantityDiagram extends Diagram {
     const ofStart = (s) => {
       const name = this.tint(s, "text");
       const dots = this.dots(frame, s, of, {tint: () => name});
-      const without = free && this.line(s, free, "wall", {width: 1.4, dash: [6, 4]});
-      return [this.line(s, of, name, {alpha: 0.35}), dots, ...(free ? [without] : [])];
+      const without = free ? [this.line(s, free, "wall", {width: 1.4, dash: [6, 4]})] : [];
+      return [this.line(s, of, name, {alpha: 0.35}), dots, ...without];
     };
     // Labelled bands of the regimes; omitted for several starts, whose regimes can differ.
     const named = {alpha: 0.2, textDown: 12, size: 12, texts: true};
