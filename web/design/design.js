@@ -3,7 +3,7 @@
 import {linesOf} from "../shared/api.js";
 import {$, cards, countUp, keyOf, setTexts, tableOf} from "../shared/dom.js";
 import {addExportButton} from "../shared/export.js";
-import {Form, unknownText} from "../shared/form.js";
+import {Form, queryOf, unknownText} from "../shared/form.js";
 import {makeAccessible} from "../shared/gestures.js";
 import {RequestTab} from "../shared/job.js";
 import {dots, line} from "../shared/marks.js";
@@ -69,6 +69,12 @@ export class DesignTab extends RequestTab {
     for (const [name, value] of Object.entries(this.form.values()))
       (hostFields.includes(name) ? request.base : request)[name] = value;
     return request;
+  }
+
+  /** The query of the form's request, the machine first. */
+  formQuery() {
+    const {base, ...own} = this.request();
+    return queryOf({...base, ...own});
   }
 
   /** Shows the form of a query, or an example; only a query is computed at once. */
