@@ -22,9 +22,7 @@ constexpr int depth_of_true = 2;
 std::vector<std::string> continued_names() {
     std::vector<std::string> names;
     for (const Field& f : sweep_base_fields())
-        if (f.type == FieldType::number &&
-            (is_of_system(f) || f.name == "gravity" || f.name == "inclination"))
-            names.push_back(f.name);
+        if (is_continued(f)) names.push_back(f.name);
     return names;
 }
 

@@ -7,7 +7,7 @@
 #include "api/system.hpp"
 #include "core/analysis/analysis.hpp"
 #include "core/analysis/perturbation.hpp"
-#include "core/measurement/identify.hpp"
+#include "core/measurement/measurement.hpp"
 
 namespace vines::api {
 

@@ -15,7 +15,7 @@ import {commands, identifications, requests} from "./requests.mjs";
 const nameOf = (name) => name.replace(/[^A-Za-z0-9.]+/g, "_").slice(0, 100);
 /** The text without version (a RegExp), commit and hashes. */
 const masked = (text, version) =>
-  text.replace(version, "VERSION").replace(/"(commit|sha256)":"[^"]*"/g, '"$1":"BUILD"');
+  text.replace(version, "VERSION").replace(/"(commit|sha256)":( ?)"[^"]*"/g, '"$1":$2"BUILD"');
 
 /** The lines of a sweep in the order of their indices. */
 const ordered = (text) => {
@@ -23,7 +23,8 @@ const ordered = (text) => {
     .trimEnd()
     .split("\n")
     .filter((line) => !line.startsWith('{"type":"progress"'));
-  const index = (line) => Number(line.match(/^{"type":"point","index":(\d+)/)?.[1] ?? -1);
+  const index = (line) =>
+    Number(line.match(/^{"type":"(?:point|sample)","index":(\d+)/)?.[1] ?? -1);
   const points = lines.filter((line) => index(line) >= 0).sort((a, b) => index(a) - index(b));
   const others = lines.filter((line) => index(line) < 0);
   return `${[...others.slice(0, 1), ...points, ...others.slice(1)].join("\n")}\n`;

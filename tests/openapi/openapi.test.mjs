@@ -142,6 +142,14 @@ test("responses to many requests match the document", async () => {
   for (const body of sweeps) await checked("/v1/sweep", {body});
   for (const body of basins) await checked("/v1/basins", {body});
   for (const body of continuations) await checked("/v1/continue", {body});
+  const upright = {base: {b: 0.015, damping: "closed_form"}, parameter: "gravity"};
+  await checked("/v1/continue", {body: {...upright, from: 0, to: 1e-4}});
+});
+
+test("a design after an impulse is a valid request, and one number stands for a range", () => {
+  const base = {m1: 2, f0: 8, damping_ratio: 0.01, m2: 0.04};
+  document.holds("DesignRequest", {base, initial_velocity: 0.5});
+  document.holds("DesignRequest", {base, f: 8, acceleration: 5, b: 0.05});
 });
 
 test("every preset with all parts included matches the document", async () => {

@@ -1,6 +1,7 @@
 // The motion that the page reconstructs from impacts equals that of the service up to rounding.
 import assert from "node:assert/strict";
 import {after, before, test} from "node:test";
+import {loadOf} from "../../web/measurement/record.js";
 import {Motion, motionOf} from "../../web/shared/motion.js";
 import {startService} from "../service.mjs";
 
@@ -141,4 +142,21 @@ test("under a load of the base the motion is relative to the base", async () => 
     const expected = x[i] - base(moment / omega0);
     assert.ok(Math.abs(motion.at(moment).x - expected) < 1e-9, `${moment}`);
   });
+});
+
+test("a recorded load is read in the units of its columns", () => {
+  const load = (name) =>
+    loadOf({
+      names: ["time_ms", name],
+      units: [],
+      columns: [
+        [0, 1],
+        [0, 2000],
+      ],
+    });
+  const time_s = [0, 0.001];
+  assert.deepEqual(load("base_acceleration (mm/s\u00b2)"), {time_s, acceleration_m_s2: [0, 2]});
+  assert.deepEqual(load("acceleration_mm_s2"), {time_s, acceleration_m_s2: [0, 2]});
+  assert.deepEqual(load("displacement_um"), {time_s, displacement_m: [0, 0.002]});
+  assert.deepEqual(load("force (kN)"), {time_s, force_N: [0, 2000000]});
 });

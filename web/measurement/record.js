@@ -163,7 +163,7 @@ export const columnsOf = (names, fields) =>
     ]),
   );
 
-/** Factors from the service's units to those of the plots: s, mm, m/s^2. */
+/** Factors from the service's units to those of the plots: s, mm, m/s^2; N. */
 const scales = new Map([
   ["s", 1],
   ["ms", 1e-3],
@@ -171,7 +171,10 @@ const scales = new Map([
   ["mm", 1],
   ["um", 1e-3],
   ["m/s2", 1],
+  ["mm/s2", 1e-3],
   ["g", 9.80665],
+  ["n", 1],
+  ["kn", 1e3],
 ]);
 /** A unit in the service's spelling; any other text in lower case, without some characters. */
 const spelling = (text) =>
@@ -182,9 +185,9 @@ const spelling = (text) =>
     .replace(/\u207b/g, "-")
     .replace(/[ ^*()[\]\u00b7]/g, "")
     .replace(/^(m?s)ec$/, "$1")
-    .replace(/^m(_s2|s-2|\/s\/s)$/, "m/s2");
+    .replace(/^(mm?)(_s2|s-2|\/s\/s)$/, "$1/s2");
 const otherUnits = new Set(
-  "- 1 n a deg degc \u00b0c k pa bar % rad kn nm cm dm km mil in inch ft us ns min h hz v mv mg gal cm/s2 mm/s2 ft/s2 m/s mm/s".split(
+  "- 1 a deg degc \u00b0c k pa bar % rad nm cm dm km mil in inch ft us ns min h hz v mv mg gal cm/s2 ft/s2 m/s mm/s".split(
     " ",
   ),
 );
@@ -248,7 +251,7 @@ export function loadOf(parsed) {
   const time_s = inSi(time, "s");
   if (acceleration) return {time_s, acceleration_m_s2: inSi(acceleration, "m/s2")};
   if (displacement) return {time_s, displacement_m: inSi(displacement, "m", 1e-3)};
-  return {time_s, force_N: [...force.values]};
+  return {time_s, force_N: inSi(force, "n")};
 }
 
 /** Fields of /v1/identify with the record in its own units. */

@@ -127,8 +127,8 @@ void add_requests(Json& schemas) {
     schemas["BasinsRequest"] = request_of(basins_fields(), {"box"});
     schemas["ContinueRequest"] = request_of(continue_fields(), {"parameter", "from", "to"});
     permit(schemas["ContinueRequest"], "switch", flag());
-    schemas["DesignRequest"] = request_of(design_fields(), {"base", "f"});
-    for (const char* name : {"f", "acceleration", "F", "b", "R", "m2"})
+    schemas["DesignRequest"] = request_of(design_fields(), {"base"});
+    for (const char* name : {"f", "acceleration", "F", "initial_velocity", "b", "R", "m2"})
         permit(schemas["DesignRequest"], name, number());
     schemas["SweepBase"] = request_of(sweep_base_fields());
     schemas["Axis"] = request_of(axis_fields(), {"parameter"});

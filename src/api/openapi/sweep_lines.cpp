@@ -88,7 +88,7 @@ Json multipliers() {
 
 Keys branch_orbit_keys() {
     return {
-        swept_keys(number(), "value of a continued parameter", simulate_fields_where(is_of_system)),
+        swept_keys(number(), "value of a continued parameter", simulate_fields_where(is_continued)),
         values_of(properties::branch_point),
         {"multipliers", multipliers(), "Floquet multipliers of a period, descending"},
         {"state", start(), "state of the orbit at a whole cycle, as the start of a simulation"}};

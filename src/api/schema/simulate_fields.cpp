@@ -322,6 +322,11 @@ bool is_of_system(const Field& f) {
     return f.group == "system" || f.group == "reduced" || f.group == "SI";
 }
 
+bool is_continued(const Field& f) {
+    return f.type == FieldType::number &&
+           (is_of_system(f) || f.name == "gravity" || f.name == "inclination");
+}
+
 FieldTable simulate_fields_where(bool (*keep)(const Field&)) {
     FieldTable table;
     std::ranges::copy_if(simulate_fields(), std::back_inserter(table), keep);
