@@ -160,8 +160,8 @@ bool follow_curves(
     if (!follow_branches(plan, start, length, points)) return false;
     if (points.found.empty())
         lines.no_orbit("no_such_point", "the branch has no special point of the kind of curve");
-    CurvePlan curve = r.curve_plan;
-    curve.stop = plan.stop;
+    BranchPlan curve = plan;
+    curve.family = r.curve_family;
     int number = 0;
     for (const SpecialPoint& point : points.found) {
         if (!follow_curve(curve, point, r.second_at, length, number, lines)) return false;
@@ -231,14 +231,8 @@ void read_curve(ContinueRequest& r, const Json& given, const SystemFields& field
     refuse_any(errors);
     const double from = given["second_from"], to = given["second_to"];
     r.second_at = *at;
-    r.curve_plan = {
-        .family =
-            {systems_along(fields, {r.parameter, r.second}),
-             {r.plan.family.unit[0], std::abs(to - from)}},
-        .from = {r.plan.from, from},
-        .to = {r.plan.to, to},
-        .resolution = r.plan.resolution,
-        .most_points = r.plan.most_points};
+    r.curve_family = {
+        systems_along(fields, {r.parameter, r.second}), {r.plan.family.ranges[0], {from, to}}};
 }
 
 /// Its parameter, its base and the range of the parameter. Returns the fields of the base's system.
@@ -294,9 +288,7 @@ ContinueRequest read_continue_request(const Json& object) {
     const SystemFields fields = read_family(r, given);
     const double from = given["from"], to = given["to"];
     r.plan = {
-        .family = {systems_along(fields, {r.parameter}), {std::abs(to - from)}},
-        .from = from,
-        .to = to,
+        .family = {systems_along(fields, {r.parameter}), {{from, to}}},
         .resolution = continued(given, "resolution"),
         .most_points = continued(given, "points"),
         .switches = continued(given, "switch")};
@@ -317,13 +309,14 @@ ContinueRequest read_continue_request(const Json& object) {
 }
 
 Json continuation_start(const ContinueRequest& r) {
+    const auto& [from, to] = r.plan.family.ranges[0];
     return {
         {"type", "start"},
         {"version", version()},
         {"commit", commit()},
         {"parameter", r.parameter},
-        {"from", r.plan.from},
-        {"to", r.plan.to},
+        {"from", from},
+        {"to", to},
         {"parameters", describe_system(r.base.system)},
         {"warnings", r.base.system.notes},
         {"request", r.given}};

@@ -24,7 +24,7 @@ struct ContinueRequest {
     std::optional<SpecialKind> curve;  ///< follow these points in two parameters
     std::string second;                ///< of a curve: name of the second parameter
     double second_at = 0;              ///< its value in the base
-    CurvePlan curve_plan;
+    ParameterFamily curve_family;      ///< of both parameters
 };
 
 /// Problem 422 naming every invalid field.

@@ -284,12 +284,13 @@ Json describe_exponents(
         j["verdict_reason"] = reason_of(w.judgement, w.growth, regime);
     }
     add_estimators(j, w.product, w.growth, shown, histories);
-    const auto add_slope = [&](bool is_shown, const char* estimator, double slope) {
-        if (is_shown) j[estimator]["slope"] = finite_or_null(slope);
+    const auto add_slope = [&](bool is_shown, const char* estimator, const ExponentHistory& h) {
+        if (is_shown)
+            j[estimator]["slope"] = finite_or_null(coarse_slope(h, w.product.start_tau()));
     };
-    add_slope(shown.qr, "qr", w.slopes.qr);
-    add_slope(shown.eigenvalues, "eigenvalues", w.slopes.eigenvalues);
-    add_slope(shown.raw_product, "raw_product", w.slopes.raw_product);
+    add_slope(shown.qr, "qr", w.product.qr_history());
+    add_slope(shown.eigenvalues, "eigenvalues", w.product.eigenvalues_history());
+    add_slope(shown.raw_product, "raw_product", w.product.raw_product_history());
     return j;
 }
 

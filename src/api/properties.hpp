@@ -149,8 +149,7 @@ inline constexpr Property<Recommendation> recommendation[] = {
     {{"x_max", "maximum of |x| over the measured cycles, m, for the worst start"},
      at<&Recommendation::x_max>},
     {{"regime", "regime, for the worst start", regime}, at<&Recommendation::regime>},
-    {{"start", "the worst start of the default set", word},
-     [](const Recommendation& r) { return Json(r.start.name); }},
+    {{"start", "the worst start of the default set", word}, at<&Recommendation::start>},
     {{"tolerance_ratio",
       "largest rms of x with F up to 20 % higher or 17 % lower and f up to 1 % off, over the "
       "largest without the absorber there"},

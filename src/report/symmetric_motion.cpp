@@ -1,11 +1,8 @@
 #include "report/symmetric_motion.hpp"
 
 #include <Eigen/LU>
-#include <algorithm>
 #include <cmath>
 #include <numbers>
-
-#include "core/stability/linear.hpp"
 
 namespace vines::report {
 
@@ -54,12 +51,7 @@ SymmetricMotion motion_at(const Parameters& p, const Flow& flow, double V) {
     impact.R = p.R_plus;
     const Matrix4 map =
         -saltation(p, impact).matrix() * transfer_of(leg_of(flow, half_cycle(p), false), p.epsilon);
-    const Eigen::Vector4cd values = eigenvalues_of(map);
-    SymmetricMotion motion{V, {values[0], values[1], values[2], values[3]}};
-    std::ranges::sort(motion.multipliers, [](const auto& a, const auto& b) {
-        return elementary::modulus(a) > elementary::modulus(b);
-    });
-    return motion;
+    return {V, eigenvalues_of(map)};
 }
 
 }  // namespace

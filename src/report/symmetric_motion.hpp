@@ -5,15 +5,15 @@
 #include <optional>
 
 #include "core/motion/elementary.hpp"
-#include "core/stability/transfer.hpp"
+#include "core/stability/exterior.hpp"
+#include "core/stability/linear.hpp"
 
 namespace vines::report {
 
 struct SymmetricMotion {
     double V;  ///< speed of the ball between the walls, m per unit of tau
     /// Multipliers of the map over half a period and the reflection (x, y) -> (-x, -y): -M J.
-    /// Descending moduli.
-    std::array<std::complex<double>, 4> multipliers;
+    Eigenvalues multipliers;
 
     bool stable() const { return elementary::modulus(multipliers[0]) < 1; }
 };

@@ -3,7 +3,7 @@
 #include <Eigen/QR>
 #include <cmath>
 
-#include "core/stability/transfer.hpp"
+#include "core/stability/exterior.hpp"
 
 namespace vines::bench {
 

@@ -51,10 +51,10 @@ void run_sweep_points(
     int threads, std::size_t count, const PointOptions& options,
     const std::function<Parameters(std::size_t)>& parameters_of) {
     RunControl control;
-    run_points(count, threads, options, control, [&](std::size_t i) {
+    parallel(count, threads, [&](std::size_t i) {
         const Parameters p = parameters_of(i);
         const State start = default_state(p);
-        return PointTask{{p, start, options.max_impacts}, {{"", start}}, [](const auto&) {}};
+        run_point({p, start, options.max_impacts}, start, options, control);
     });
 }
 

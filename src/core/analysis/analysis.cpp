@@ -12,17 +12,6 @@
 
 namespace vines {
 
-WindowExponents window_exponents(
-    const Interval& window, TransferProduct&& product, const Growth& growth, const Regime& regime) {
-    const Judgement judgement = judge(growth, regime, product.start_tau());
-    const double start = product.start_tau();
-    const ExponentSlopes slopes{
-        coarse_slope(product.qr_history(), start),
-        coarse_slope(product.eigenvalues_history(), start),
-        coarse_slope(product.raw_product_history(), start)};
-    return {window, std::move(product), growth, slopes, judgement};
-}
-
 void add_warnings(const TransferProduct& product, bool histories, std::vector<Warning>& warnings) {
     if (histories && product.options().raw_product && product.impacts() > 1 &&
         std::isnan(product.raw_product()[0]))
@@ -39,9 +28,6 @@ namespace {
 
 /// Points on each branch of the manifold: a smooth curve on a screen.
 constexpr std::size_t manifold_points = 200;
-
-/// Fractions of the initial energy whose times are reported.
-const std::vector<double> decay_fractions = {0.5, 0.1};
 
 double series_step(const AnalysisRequest& w) {
     const double requested = w.parameters.cycle() / w.samples_per_cycle;
@@ -92,7 +78,7 @@ struct AnalysisObservers {
           at_section_phase(w.parameters, 0, w.section_phase),
           cycle_peaks(w.window.from, w.window.to, w.parameters.cycle()),
           extremes(w.parameters, w.window.from, w.window.to, w.parts.extremes),
-          decay(w.parameters, w.window.from, decay_fractions),
+          decay(w.parameters, w.window.from),
           rhythm(w.parameters, w.window, w.parts.regime ? w.most_points : 0),
           half_cycles(w.parameters, w.window.from, w.window.to, w.most_points) {
         // Without a reservation, growing the lists takes longer than the simulation. Reserved
@@ -187,12 +173,14 @@ struct AnalysisConclusion {
             warn(warning::SeriesThinned{cycle / step, w.samples_per_cycle, w.most_points});
     }
 
+    void warn_if_cut(const char* name, long seen, std::size_t kept) {
+        if (seen > static_cast<long>(kept)) warn(warning::ListCut{name, seen, kept});
+    }
     /// Last entries of a list; warns if it had more.
     template <class Entry>
     std::vector<Entry> last_of(LastOf<Entry>& list, const char* name) {
         trim_to_last(list.entries, w.most_listed);
-        if (list.seen > static_cast<long>(list.entries.size()))
-            warn(warning::ListCut{name, list.seen, list.entries.size()});
+        warn_if_cut(name, list.seen, list.entries.size());
         return std::move(list.entries);
     }
 
@@ -208,9 +196,9 @@ struct AnalysisConclusion {
         ImpactCollector& list = o.impacts;
         list.finish();
         const ImpactRange listed = list.listed();
-        if (w.parts.impacts && listed.first > 0)
-            warn(warning::ListCut{
-                "impacts", listed.first + listed.count, static_cast<std::size_t>(listed.count)});
+        if (w.parts.impacts)
+            warn_if_cut(
+                "impacts", listed.first + listed.count, static_cast<std::size_t>(listed.count));
         if (!list.kept()) a.unkept_impacts = listed;
         a.impacts = std::move(list.entries);
         a.typical_speed = list.typical_speed;
@@ -221,9 +209,16 @@ struct AnalysisConclusion {
     void judge_motion() {
         const Growth growth = growth_of(o.lyapunov.product());
         find_regime(growth);
-        a.exponents.emplace(window_exponents(w.window, o.lyapunov.take(), growth, *a.regime));
+        a.exponents.emplace(judged(w.window, o.lyapunov.take(), growth));
         if (w.parts.exponents) add_warnings(a.exponents->product, true, a.warnings);
         further_windows();
+    }
+
+    /// A window with the verdict on it.
+    WindowExponents judged(
+        const Interval& window, TransferProduct&& product, const Growth& growth) const {
+        const Judgement judgement = judge(growth, *a.regime, product.start_tau());
+        return {window, std::move(product), growth, judgement};
     }
 
     void find_regime(const Growth& growth) {
@@ -256,8 +251,7 @@ struct AnalysisConclusion {
         a.windows.reserve(w.windows.size());
         for (std::size_t i = 0; i < w.windows.size(); ++i) {
             const Growth of_window = growth_of(o.windows.product(i));
-            a.windows.push_back(
-                window_exponents(w.windows[i], o.windows.take(i), of_window, *a.regime));
+            a.windows.push_back(judged(w.windows[i], o.windows.take(i), of_window));
             add_warnings(a.windows[i].product, false, a.warnings);
         }
     }
@@ -334,11 +328,10 @@ struct AnalysisConclusion {
         const Parameters& p = w.parameters;
         EnergyResult& e = a.energy.emplace();
         e.balance = o.energy->balance(a.reached);
-        if (p.G == 0) {
-            const auto alone = unattached_decay(p, w.start, a.reached.from, decay_fractions);
+        if (p.G == 0)
             e.decay = {
-                .with_absorber = {o.decay.tau[0], o.decay.tau[1]}, .without = {alone[0], alone[1]}};
-        }
+                .with_absorber = o.decay.times,
+                .without = unattached_decay(p, w.start, a.reached.from)};
         if (!w.parts.unattached) return;
         e.peak_least = o.cycle_peaks.least();
         e.unattached = unattached(p, w.start, a.reached.from, a.reached.to);
@@ -392,8 +385,7 @@ struct AnalysisConclusion {
         if (!p.linear) warn(warning::NoDistanceSlope{p.linear_until, p.linear_impacts});
         const auto seen = static_cast<long>(p.impacts.size());
         trim_to_last(p.impacts, w.most_listed);
-        if (seen > static_cast<long>(p.impacts.size()))
-            warn(warning::ListCut{"perturbed impacts", seen, p.impacts.size()});
+        warn_if_cut("perturbed impacts", seen, p.impacts.size());
     }
 };
 

@@ -4,7 +4,6 @@
 // once, in the order of the result. Callers never connect observers to simulate() themselves.
 #pragma once
 
-#include <functional>
 #include <optional>
 #include <variant>
 #include <vector>
@@ -63,8 +62,8 @@ struct AnalysisRequest {
 /// Callbacks that end the work early, polled every few events. Empty: never.
 struct Interrupt {
     /// Ends the run; the result describes the part that was reached.
-    std::function<bool()> run = {};
-    std::function<bool()> late = {};  ///< ends long computations after the run
+    StopRequest run = {};
+    StopRequest late = {};  ///< ends long computations after the run
 };
 
 /// Matrices of each impact for (x', x, y', y): J of the flight, M of the impact, T = M J.
@@ -87,29 +86,12 @@ struct Sections {
     std::vector<State> states;  ///< stroboscopic
 };
 
-/// Times at which the energy of a free decay falls to a half and to a tenth of its value at the
-/// window's start; empty if the motion does not get there.
-struct DecayTimes {
-    std::optional<double> half, tenth;
-};
-
-/// coarse_slope() of each estimator, per unit of tau; NaN if the estimator was not requested or has
-/// too few impacts.
-struct ExponentSlopes {
-    double qr, eigenvalues, raw_product;
-};
-
 struct WindowExponents {
     Interval asked;
     TransferProduct product;  ///< with the requested estimators
     Growth growth;            ///< by qr; NaN without qr
-    ExponentSlopes slopes;
     Judgement judgement;
 };
-
-/// Verdict and slopes of a window. `growth` belongs to the product, `regime` to the run.
-WindowExponents window_exponents(
-    const Interval& window, TransferProduct&& product, const Growth& growth, const Regime& regime);
 
 struct EnergyResult {
     EnergyBalance balance;

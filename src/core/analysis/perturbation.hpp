@@ -19,7 +19,7 @@
 #include <vector>
 
 #include "core/motion/record.hpp"
-#include "core/stability/transfer.hpp"
+#include "core/stability/exterior.hpp"
 
 namespace vines {
 

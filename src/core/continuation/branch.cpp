@@ -32,22 +32,16 @@ struct BranchEvent {
 };
 
 OrbitCheck checked(const OrbitEquations& equations, const BranchNode& node) {
-    return check_orbit(equations, node.at.z, node.values.approach);
+    return check_orbit(equations, node.at.z, node.approach);
 }
 
 OrbitPoint orbit_point(const OrbitEquations& equations, const BranchNode& node) {
-    return orbit_point(equations, node.at.z, node.values, checked(equations, node).measures);
+    return orbit_point(equations, node.at.z, node.multipliers, checked(equations, node).measures);
 }
 
 /// Follows one direction of one branch.
 class BranchFollower {
 public:
-    /// Result of a step.
-    struct Step {
-        std::optional<BranchEnd> end = {};
-        std::optional<Relative> onto = {};  ///< continue there
-    };
-
     BranchFollower(
         const BranchPlan& plan, int number, Relative start, BranchSink& sink,
         std::function<void(SpecialKind, Relative)> branches_off)
@@ -82,8 +76,11 @@ private:
     std::optional<BranchEnd> step();
     std::optional<BranchNode> next_node();
     bool clip_to_range(std::optional<BranchNode>& b);
-    bool clip_to_existence(std::optional<BranchNode>& b, OrbitCheck& found, SequenceFault& fault);
-    std::optional<std::vector<BranchEvent>> events_before(const BranchNode& b, double h) const;
+    OrbitCheck clip_to_existence(std::optional<BranchNode>& b);
+    std::optional<BranchEvent> located(
+        const BranchNode& b, SpecialKind kind,
+        const std::function<double(const BranchNode&)>& test) const;
+    std::optional<std::vector<BranchEvent>> events_before(const BranchNode& b) const;
     void report(const BranchEvent& event);
     std::optional<BranchEnd> pass_grazing(const SequenceFault& fault);
     bool is_closed() const;
@@ -98,24 +95,31 @@ private:
     long points_ = 0;
 };
 
+/// The sign change of a test between the current node and b, at the arclength h_; empty if it
+/// cannot be located.
+std::optional<BranchEvent> BranchFollower::located(
+    const BranchNode& b, SpecialKind kind,
+    const std::function<double(const BranchNode&)>& test) const {
+    const auto test_at = [&](double h) -> std::optional<double> {
+        const auto node = after(h);
+        return node ? std::optional(test(*node)) : std::nullopt;
+    };
+    const auto h = sign_change(test_at, 0, test(on_->node), h_, test(b), special_arc);
+    auto node = h ? after(*h) : std::nullopt;
+    return node ? std::optional(BranchEvent{*h, kind, std::move(*node)}) : std::nullopt;
+}
+
 /// Special points between the current node and b, in order; empty if one cannot be located.
-std::optional<std::vector<BranchEvent>> BranchFollower::events_before(
-    const BranchNode& b, double h) const {
+std::optional<std::vector<BranchEvent>> BranchFollower::events_before(const BranchNode& b) const {
     const BranchNode& a = on_->node;
     std::vector<BranchEvent> events;
     const auto locate = [&](double BranchNode::* test, SpecialKind kind) {
         if (std::signbit(a.*test) == std::signbit(b.*test) || a.*test == 0) return true;
-        const auto root = sign_change(
-            [&](double s) -> std::optional<double> {
-                const auto node = after(s);
-                return node ? std::optional((*node).*test) : std::nullopt;
-            },
-            0, a.*test, h, b.*test, special_arc);
-        auto node = root ? after(*root) : std::nullopt;
-        if (!node) return false;
+        auto event = located(b, kind, test);
+        if (!event) return false;
         // Two real multipliers with the product 1 change the sign, too.
-        if (kind != SpecialKind::torus || node->unit_pair())
-            events.push_back({*root, kind, std::move(*node)});
+        if (kind != SpecialKind::torus || event->node.unit_pair())
+            events.push_back(std::move(*event));
         return true;
     };
     const bool mirrored = on_->equations.sequence().mirrored;
@@ -155,30 +159,24 @@ std::optional<BranchNode> BranchFollower::next_node() {
 
 /// Ends the step at the limit of the range if it goes beyond; true if so.
 bool BranchFollower::clip_to_range(std::optional<BranchNode>& b) {
-    const double unit = plan_.family.unit[0], low = std::min(plan_.from, plan_.to) / unit,
-                 high = std::max(plan_.from, plan_.to) / unit, p = b->parameter();
-    if (p >= low && p <= high) return false;
-    const double limit = p > high ? high : low;
-    const auto root = sign_change(
-        [&](double s) -> std::optional<double> {
-            const auto node = after(s);
-            return node ? std::optional(node->parameter() - limit) : std::nullopt;
-        },
-        0, on_->node.parameter() - limit, h_, p - limit, special_arc);
-    auto node = root ? after(*root) : std::nullopt;
-    auto exact = node ? node_at_parameter(on_->equations, node->at.z, limit, p > high ? 1 : -1)
-                      : std::nullopt;
-    if (root) h_ = *root;
-    b = exact ? std::move(exact) : std::move(node);
+    const auto limit = plan_.family.end_before(0, b->parameter());
+    if (!limit) return false;
+    const int direction = b->parameter() > *limit ? 1 : -1;
+    auto there = located(
+        *b, SpecialKind::end, [&](const BranchNode& node) { return node.parameter() - *limit; });
+    b.reset();
+    if (!there) return true;
+    h_ = there->h;
+    b = node_at_parameter(on_->equations, there->node.at.z, *limit, direction);
+    if (!b) b = std::move(there->node);
     return true;
 }
 
-/// Ends the step where the orbit ceases to exist, if it does; true if so. Without a node if that
-/// cannot be located.
-bool BranchFollower::clip_to_existence(
-    std::optional<BranchNode>& b, OrbitCheck& found, SequenceFault& fault) {
-    found = checked(on_->equations, *b);
-    if (!found.fault) return false;
+/// Ends the step where the orbit ceases to exist, if it does: the check then has the fault. Without
+/// a node if that cannot be located.
+OrbitCheck BranchFollower::clip_to_existence(std::optional<BranchNode>& b) {
+    OrbitCheck found = checked(on_->equations, *b);
+    if (!found.fault) return found;
     double valid = 0, invalid = h_;
     b = on_->node;
     while (invalid - valid > special_arc) {
@@ -186,15 +184,14 @@ bool BranchFollower::clip_to_existence(
         auto node = after(middle);
         if (!node) {
             b.reset();
-            return true;
+            return found;
         }
         const OrbitCheck here = checked(on_->equations, *node);
         if (here.fault) invalid = middle, found = here;
         else valid = middle, b = std::move(node);
     }
-    fault = *found.fault;
     h_ = valid;
-    return true;
+    return found;
 }
 
 void BranchFollower::report(const BranchEvent& e) {
@@ -261,17 +258,17 @@ std::optional<BranchEnd> BranchFollower::step() {
             return BranchEnd::parent;
         }
     const bool leaves = clip_to_range(b);
-    OrbitCheck found;
-    SequenceFault fault{};
-    const bool ceases = b && clip_to_existence(b, found, fault);
     if (!b) return BranchEnd::not_decided;
-    const auto events = events_before(*b, h_);
+    const OrbitCheck found = clip_to_existence(b);
+    if (!b) return BranchEnd::not_decided;
+    const auto events = events_before(*b);
     if (!events) return BranchEnd::not_decided;
     for (const BranchEvent& e : *events) report(e);
     on_->node = std::move(*b);
-    if (ceases) return pass_grazing(fault);
+    if (found.fault) return pass_grazing(*found.fault);
     sink_.point(
-        number_, orbit_point(on_->equations, on_->node.at.z, on_->node.values, found.measures));
+        number_,
+        orbit_point(on_->equations, on_->node.at.z, on_->node.multipliers, found.measures));
     if (leaves) return BranchEnd::range;
     if (is_closed()) {
         is_loop = true;
@@ -284,11 +281,9 @@ std::optional<BranchEnd> BranchFollower::step() {
 }  // namespace
 
 OrbitPoint orbit_point(
-    const OrbitEquations& equations, const Unknowns& z, const OrbitValues& values,
+    const OrbitEquations& equations, const Unknowns& z, const Eigenvalues& eigenvalues,
     const OrbitMeasures& measures) {
-    OrbitPoint point{
-        equations.parameters(z), equations.sequence(), z, sorted_eigenvalues(values.transfer),
-        measures};
+    OrbitPoint point{equations.parameters(z), equations.sequence(), z, eigenvalues, measures};
     if (equations.sequence().mirrored)
         for (auto& m : point.multipliers) m *= m;
     return point;

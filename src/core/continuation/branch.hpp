@@ -10,8 +10,6 @@
 // new sequence if that exists on one side.
 #pragma once
 
-#include <string>
-
 #include "core/continuation/arclength.hpp"
 #include "core/continuation/orbit_check.hpp"
 
@@ -39,9 +37,8 @@ struct OrbitPoint {
     std::vector<double> parameters;
     ImpactSequence sequence;
     Unknowns z;
-    /// Floquet multipliers of a whole period, by descending modulus. Those below 1e-10 of the
-    /// largest are rounding errors.
-    std::array<std::complex<double>, 4> multipliers;
+    /// Floquet multipliers of a whole period. Those below 1e-10 of the largest are rounding errors.
+    Eigenvalues multipliers;
     OrbitMeasures measures;
 
     bool stable() const { return elementary::modulus(multipliers[0]) < 1; }
@@ -59,8 +56,9 @@ struct SpecialPoint {
     std::size_t impact = 0;
 };
 
+/// `eigenvalues`: of OrbitValues::transfer.
 OrbitPoint orbit_point(
-    const OrbitEquations& equations, const Unknowns& z, const OrbitValues& values,
+    const OrbitEquations& equations, const Unknowns& z, const Eigenvalues& eigenvalues,
     const OrbitMeasures& measures);
 
 /// Origin of a branch.
@@ -81,13 +79,13 @@ public:
 };
 
 struct BranchPlan {
-    ParameterFamily family;  ///< of one parameter, its unit |to - from|
-    double from, to;
-    double resolution = 0.01;  ///< largest step of the parameter, as a fraction of the range
+    ParameterFamily family;    ///< of one parameter; of two for follow_curve()
+    double resolution = 0.01;  ///< largest step of a parameter, as a fraction of its range
     long most_points = 1000;   ///< per direction
+    // Not for curves:
     std::size_t most_impacts = 200;
-    int switches = 0;                 ///< depth of branch switching
-    std::function<bool()> stop = {};  ///< true ends the computation; checked at each point
+    int switches = 0;       ///< depth of branch switching
+    StopRequest stop = {};  ///< true ends the computation; checked at each point
 };
 
 /// Follows the branch of an orbit in both directions, and branches from it. False if stopped.

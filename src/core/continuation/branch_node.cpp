@@ -1,6 +1,5 @@
 #include "core/continuation/branch_node.hpp"
 
-#include <algorithm>
 #include <cmath>
 
 #include "core/motion/elementary.hpp"
@@ -21,7 +20,7 @@ constexpr double similar_half = 0.3, equal_halves = 1e-6;
 constexpr int most_secants = 20;
 constexpr double last_secant = 1e-15;
 
-double doubling_test(const std::array<std::complex<double>, 4>& m) {
+double doubling_test(const Eigenvalues& m) {
     std::complex<double> product = 1;
     for (const auto& value : m) product *= value + 1.0;
     return product.real();
@@ -49,7 +48,7 @@ std::optional<ImpactSequence> halved(const ImpactSequence& s) {
 
 }  // namespace
 
-double torus_test(const std::array<std::complex<double>, 4>& m) {
+double torus_test(const Eigenvalues& m) {
     std::complex<double> product = 1;
     for (std::size_t i = 0; i < 4; ++i)
         for (std::size_t j = 0; j < i; ++j) product *= m[i] * m[j] - 1.0;
@@ -65,7 +64,7 @@ std::optional<std::complex<double>> BranchNode::unit_pair() const {
 
 CurveEquations as_curve(const OrbitEquations& equations) {
     return [&equations](const Unknowns& z, Eigen::VectorXd& residual, Eigen::MatrixXd* J) {
-        auto values = J ? equations.values(z, *J) : equations.values(z);
+        auto values = equations.values(z, J);
         if (!values) return false;
         residual = std::move(values->residual);
         return true;
@@ -74,11 +73,11 @@ CurveEquations as_curve(const OrbitEquations& equations) {
 
 std::optional<BranchNode> node_of(const OrbitEquations& equations, std::optional<CurvePoint> at) {
     if (!at) return std::nullopt;
-    auto values = equations.values(at->z);
+    const auto values = equations.values(at->z);
     if (!values) return std::nullopt;
-    const auto m = sorted_eigenvalues(values->transfer);
+    const Eigenvalues m = eigenvalues_of(values->transfer);
     const double fold = at->tangent(at->tangent.size() - 1);
-    return BranchNode{std::move(*at), std::move(*values), m, fold, doubling_test(m), torus_test(m)};
+    return BranchNode{std::move(*at), values->approach, m, fold, doubling_test(m), torus_test(m)};
 }
 
 std::optional<BranchNode> node_after(
@@ -119,7 +118,7 @@ std::optional<Relative> doubled_branch(const OrbitEquations& equations, const Br
     for (const double h : first_arcs) {
         auto away = node_after(doubled, from, h);
         if (away && away->at.tangent.dot(from.tangent) > 0.5 &&
-            !check_orbit(doubled, away->at.z, away->values.approach).fault)
+            !check_orbit(doubled, away->at.z, away->approach).fault)
             return Relative{doubled, std::move(*away)};
     }
     return std::nullopt;
@@ -195,7 +194,7 @@ std::optional<Relative> beyond_grazing(
     for (const double h : first_arcs)
         for (const double side : {1.0, -1.0}) {
             auto node = node_after(next, {changed->z, side * *tangent}, h);
-            if (node && !check_orbit(next, node->at.z, node->values.approach).fault)
+            if (node && !check_orbit(next, node->at.z, node->approach).fault)
                 return Relative{next, std::move(*node)};
         }
     return std::nullopt;

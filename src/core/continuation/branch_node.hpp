@@ -9,10 +9,9 @@ namespace vines {
 
 struct BranchNode {
     CurvePoint at;
-    OrbitValues values;
-    /// Eigenvalues of the transfer matrix, by descending modulus: over half a period if the orbit
-    /// is mirrored.
-    std::array<std::complex<double>, 4> multipliers;
+    std::vector<double> approach;  ///< OrbitValues::approach
+    /// Of the transfer matrix: over half a period if the orbit is mirrored.
+    Eigenvalues multipliers;
     // Test functions, which change sign at special points.
     double fold;      ///< component of the tangent along the parameter
     double doubling;  ///< product of (multiplier + 1)
@@ -24,7 +23,7 @@ struct BranchNode {
 };
 
 /// Product of (m_i m_j - 1), i < j.
-double torus_test(const std::array<std::complex<double>, 4>& multipliers);
+double torus_test(const Eigenvalues& multipliers);
 
 CurveEquations as_curve(const OrbitEquations& equations);  ///< refers to them
 

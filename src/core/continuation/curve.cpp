@@ -2,7 +2,6 @@
 
 #include <Eigen/LU>
 #include <algorithm>
-#include <cmath>
 
 #include "core/continuation/branch_node.hpp"
 
@@ -29,7 +28,7 @@ struct SpecialTest {
         if (kind == SpecialKind::grazing) return values->approach[impact] / equations.length();
         const Matrix4 T = values->transfer;
         if (kind == SpecialKind::fold) return (Matrix4::Identity() - T).determinant();
-        if (kind == SpecialKind::torus) return torus_test(sorted_eigenvalues(values->transfer));
+        if (kind == SpecialKind::torus) return torus_test(eigenvalues_of(T));
         return (Matrix4::Identity() + T).determinant();
     }
 };
@@ -39,7 +38,7 @@ CurveEquations with_test(const OrbitEquations& equations, const SpecialTest& tes
                const Unknowns& z, Eigen::VectorXd& residual, Eigen::MatrixXd* jacobian) {
         const Eigen::Index m = equations.equations();
         Eigen::MatrixXd J;
-        const auto values = jacobian ? equations.values(z, J) : equations.values(z);
+        const auto values = equations.values(z, jacobian ? &J : nullptr);
         const auto at = test(z);
         if (!values || !at) return false;
         residual.resize(m + 1);
@@ -71,17 +70,17 @@ OrbitCheck check_special(const SpecialTest& test, const Unknowns& z) {
 /// The point where a step first leaves the range of a parameter; empty if it does not. Without
 /// convergence the last point before.
 std::optional<CurvePoint> at_limit(
-    const CurvePlan& plan, const CurveEquations& curve, const CurvePoint& a, const CurvePoint& b) {
+    const ParameterFamily& family, const CurveEquations& curve, const CurvePoint& a,
+    const CurvePoint& b) {
     double part = 1, limit = 0;
     std::optional<Eigen::Index> crossed;
     for (int i = 0; i < 2; ++i) {
         const Eigen::Index at = a.z.size() - 2 + i;
-        const double unit = plan.family.unit[i], low = std::min(plan.from[i], plan.to[i]) / unit,
-                     high = std::max(plan.from[i], plan.to[i]) / unit, next = b.z(at);
-        if (next >= low && next <= high) continue;
-        const double end = next > high ? high : low, share = (end - a.z(at)) / (next - a.z(at));
+        const auto end = family.end_before(static_cast<std::size_t>(i), b.z(at));
+        if (!end) continue;
+        const double share = (*end - a.z(at)) / (b.z(at) - a.z(at));
         if (share > part) continue;
-        part = share, limit = end, crossed = at;
+        part = share, limit = *end, crossed = at;
     }
     if (!crossed) return std::nullopt;
     const Eigen::VectorXd normal = Eigen::VectorXd::Unit(a.z.size(), *crossed);
@@ -92,20 +91,21 @@ std::optional<CurvePoint> at_limit(
 }  // namespace
 
 bool follow_curve(
-    const CurvePlan& plan, const SpecialPoint& point, double second, double length, int number,
+    const BranchPlan& plan, const SpecialPoint& point, double second, double length, int number,
     BranchSink& sink) {
     const OrbitEquations equations(point.on.sequence, plan.family, length);
     const SpecialTest test{equations, point.kind, point.impact};
     const CurveEquations curve = with_test(equations, test);
     Unknowns z(point.on.z.size() + 1);
-    z << point.on.z, second / plan.family.unit[1];
-    z(z.size() - 2) = point.orbit.parameters[0] / plan.family.unit[0];
+    z << point.on.z, second / plan.family.unit(1);
+    z(z.size() - 2) = point.orbit.parameters[0] / plan.family.unit(0);
     const Eigen::VectorXd along = Eigen::VectorXd::Unit(z.size(), z.size() - 1);
     const auto begin = point_in_plane(curve, z, along, along.dot(z));
     for (const int direction : {1, -1}) {
         sink.branch({number, -1, point.kind, direction});
         const auto orbit_at = [&](const Unknowns& u, const OrbitCheck& check) {
-            return orbit_point(equations, u, *equations.values(u), check.measures);
+            return orbit_point(
+                equations, u, eigenvalues_of(equations.values(u)->transfer), check.measures);
         };
         if (!begin) {
             sink.special(number++, {SpecialKind::end, point.orbit, BranchEnd::not_decided});
@@ -129,7 +129,8 @@ bool follow_curve(
             }
             if (!b) end = end.value_or(BranchEnd::not_decided);
             if (end) break;
-            if (auto limit = at_limit(plan, curve, a, *b)) b = *limit, end = BranchEnd::range;
+            if (auto limit = at_limit(plan.family, curve, a, *b))
+                b = *limit, end = BranchEnd::range;
             check = check_special(test, b->z);
             if (check.fault) end = BranchEnd::grazing;
             else a = *b;

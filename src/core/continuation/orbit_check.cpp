@@ -127,7 +127,7 @@ bool is_symmetric(const ParameterFamily& family, const std::vector<double>& valu
     for (std::size_t i = 0; i < values.size(); ++i)
         for (const double side : {1.0, -1.0}) {
             std::vector<double> beside = values;
-            beside[i] += side * near_value * family.unit[i];
+            beside[i] += side * near_value * family.unit(i);
             const auto p = family.system_at(beside);
             if (p && !p->is_symmetric()) return false;
         }
@@ -159,8 +159,7 @@ std::optional<OrbitStart> orbit_start(
     const std::vector<double>& values) {
     if (orbit.sticks > 0 || orbit.impacts == 0) return std::nullopt;
     ImpactRecord record;
-    Observer* const observers[] = {&record};
-    follow(p, orbit.state, orbit.tau, (orbit.cycles + 0.5) * p.cycle(), {}, observers);
+    follow(p, orbit.state, orbit.tau, (orbit.cycles + 0.5) * p.cycle(), {}, {&record});
     std::vector<Impact> impacts = record.entries;
     const auto all = static_cast<std::size_t>(orbit.impacts);
     if (impacts.size() <= all) return std::nullopt;
@@ -176,7 +175,7 @@ std::optional<OrbitStart> orbit_start(
         start.z(static_cast<Eigen::Index>(4 + k)) = impacts[k + 1].tau - impacts[k].tau;
     }
     for (std::size_t i = 0; i < values.size(); ++i)
-        start.z(static_cast<Eigen::Index>(4 + n + i)) = values[i] / family.unit[i];
+        start.z(static_cast<Eigen::Index>(4 + n + i)) = values[i] / family.unit(i);
     return start;
 }
 

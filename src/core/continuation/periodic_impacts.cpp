@@ -3,10 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "core/continuation/arc.hpp"
 #include "core/motion/elementary.hpp"
 #include "core/stability/exterior.hpp"
-#include "core/stability/linear.hpp"
 
 namespace vines {
 
@@ -15,6 +13,38 @@ namespace {
 // Step of the central differences, in units of the parameter: errors of 1e-11 each from truncation
 // and rounding.
 constexpr double parameter_step = 1e-5;
+
+// Terms of the series over a step whose length times the fastest rate is at most 1: the first
+// omitted one is below 1e-19.
+constexpr int arc_terms = 20;
+
+/// A solution, or a derivative of one: both obey the same linear equations.
+struct ArcColumn {
+    double x, x_dot, sin, cos;
+};
+
+/// Advances a column over h. Adds up what exceeds x + x' h and x'.
+struct Excess {
+    double x = 0, x_dot = 0;
+};
+Excess advance(ArcColumn& c, const Flow::Coefficients& law, double h) {
+    const auto [stiffness, damping, forcing, Omega] = law;
+    ArcColumn term = c;
+    Excess excess;
+    for (int n = 1; n <= arc_terms; ++n) {
+        const double f = h / n;
+        term = {
+            f * term.x_dot, f * (forcing * term.sin - stiffness * term.x - damping * term.x_dot),
+            f * Omega * term.cos, -f * Omega * term.sin};
+        if (n > 1) excess.x += term.x;
+        excess.x_dot += term.x_dot;
+        c.sin += term.sin;
+        c.cos += term.cos;
+    }
+    c.x += c.x_dot * h + excess.x;
+    c.x_dot += excess.x_dot;
+    return excess;
+}
 
 using BetweenImpacts = OrbitEquations::BetweenImpacts;
 
@@ -84,6 +114,32 @@ void carry_transfer(
 
 }  // namespace
 
+Arc arc_over(const Flow::Coefficients& law, const Oscillation& start, double s) {
+    const auto [stiffness, damping, forcing, Omega] = law;
+    const double rate = std::max({1.0, stiffness, damping, Omega});
+    const double steps = std::ceil(s * rate), h = s / std::max(steps, 1.0);
+    // The motion; the unforced motion from x' = 1; the derivative with respect to the phase.
+    ArcColumn motion{start.x, start.x_dot, start.sin_theta, start.cos_theta}, free{0, 1, 0, 0},
+        phase{0, 0, start.cos_theta, -start.sin_theta};
+    Arc arc{};
+    double before = 0;  // x' - x0' at the start of the step
+    for (double k = 0; k < std::max(steps, 1.0); ++k) {
+        const Excess excess = advance(motion, law, h);
+        advance(free, law, h);
+        advance(phase, law, h);
+        arc.bend += before * h + excess.x;
+        before += excess.x_dot;
+    }
+    arc.end = {motion.x, motion.x_dot, motion.sin, motion.cos};
+    arc.bend /= s;
+    arc.gain = before;
+    // The unforced motion from (x', x) = (0, 1) is u' + damping u.
+    arc.transfer = {free.x_dot, -stiffness * free.x, free.x, free.x_dot + damping * free.x};
+    arc.x_by_theta = phase.x;
+    arc.x_dot_by_theta = phase.x_dot;
+    return arc;
+}
+
 ImpactSequence ImpactSequence::rotated() const {
     ImpactSequence next = *this;
     for (std::size_t k = 0; k < size(); ++k) next.sides[k] = side_after(k);
@@ -104,8 +160,8 @@ OrbitEquations::OrbitEquations(
 
 std::vector<double> OrbitEquations::parameters(const Unknowns& z) const {
     std::vector<double> values;
-    for (std::size_t i = 0; i < family_.unit.size(); ++i)
-        values.push_back(z(equations() + static_cast<Eigen::Index>(i)) * family_.unit[i]);
+    for (std::size_t i = 0; i < family_.ranges.size(); ++i)
+        values.push_back(z(equations() + static_cast<Eigen::Index>(i)) * family_.unit(i));
     return values;
 }
 
@@ -113,18 +169,13 @@ std::optional<Parameters> OrbitEquations::system(const Unknowns& z) const {
     return family_.system_at(parameters(z));
 }
 
-std::optional<OrbitValues> OrbitEquations::values(const Unknowns& z) const {
-    const auto p = system(z);
-    return p ? evaluated(z, *p, nullptr) : std::nullopt;
-}
-
 std::optional<OrbitValues> OrbitEquations::values(
-    const Unknowns& z, Eigen::MatrixXd& jacobian) const {
+    const Unknowns& z, Eigen::MatrixXd* jacobian) const {
     const auto p = system(z);
     if (!p) return std::nullopt;
-    jacobian.setZero(equations(), unknowns());
-    auto at = evaluated(z, *p, &jacobian);
-    if (!at) return std::nullopt;
+    if (jacobian) jacobian->setZero(equations(), unknowns());
+    auto at = evaluated(z, *p, jacobian);
+    if (!at || !jacobian) return at;
     for (Eigen::Index c = equations(); c < unknowns(); ++c) {
         // One-sided at the end of a parameter's range.
         Unknowns beside = z;
@@ -137,7 +188,7 @@ std::optional<OrbitValues> OrbitEquations::values(
             if (other) width += parameter_step;
         }
         if (width == 0) return std::nullopt;
-        jacobian.col(c) = difference / width;
+        jacobian->col(c) = difference / width;
     }
     return at;
 }
@@ -218,15 +269,6 @@ Unknowns OrbitEquations::rotated(const Unknowns& z) const {
     next.head<4>() << f.theta, f.x / length_, f.x_dot / length_, f.relative_speed / length_;
     for (Eigen::Index k = 0; k < n; ++k) next(4 + k) = z(4 + (k + 1) % n);
     return next;
-}
-
-std::array<std::complex<double>, 4> sorted_eigenvalues(const Frame& transfer) {
-    const Eigen::Vector4cd eigenvalues = eigenvalues_of(Matrix4(transfer));
-    std::array<std::complex<double>, 4> values;
-    std::copy(eigenvalues.begin(), eigenvalues.end(), values.begin());
-    std::ranges::stable_sort(
-        values, [](auto a, auto b) { return elementary::modulus(a) > elementary::modulus(b); });
-    return values;
 }
 
 }  // namespace vines

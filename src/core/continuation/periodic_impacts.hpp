@@ -13,12 +13,13 @@
 // breaks.
 #pragma once
 
-#include <complex>
+#include <algorithm>
+#include <cmath>
 #include <functional>
 #include <optional>
 #include <vector>
 
-#include "core/motion/impact.hpp"
+#include "core/motion/simulate.hpp"
 
 namespace vines {
 
@@ -47,8 +48,33 @@ struct ImpactSequence {
 struct ParameterFamily {
     /// The system for given values; empty if they form no valid one.
     std::function<std::optional<Parameters>(const std::vector<double>&)> system_at;
-    std::vector<double> unit;  ///< a typical change of each parameter, > 0
+    std::vector<Interval> ranges;  ///< of each parameter, in either direction
+
+    /// Unit of the i-th parameter: the width of its range, > 0.
+    double unit(std::size_t i) const { return std::abs(ranges[i].to - ranges[i].from); }
+    /// The end of the range, in its unit, that `value` lies beyond; empty within the range.
+    std::optional<double> end_before(std::size_t i, double value) const {
+        const auto& [from, to] = ranges[i];
+        const double low = std::min(from, to) / unit(i), high = std::max(from, to) / unit(i);
+        return value < low ? std::optional(low) : value > high ? std::optional(high) : std::nullopt;
+    }
 };
+
+/// The oscillator after a flight. x in m, x' in m per unit of tau.
+struct Arc {
+    Oscillation end;
+    double bend;        ///< (x - x0 - x0' s)/s, accurate for any s > 0
+    double gain;        ///< x' - x0'
+    Transfer transfer;  ///< derivative of (x', x) with respect to (x0', x0)
+    double x_by_theta;  ///< derivative of x with respect to the forcing phase at the start
+    double x_dot_by_theta;
+};
+
+/// The motion x'' = -stiffness x - damping x' + forcing sin(theta) over s > 0 from `start`, with
+/// its derivatives: by a Taylor series of (x, x', sin theta, cos theta) as in flow.hpp, for every
+/// damping and at resonance, but without tables, since a continuation changes the law at every
+/// step.
+Arc arc_over(const Flow::Coefficients& law, const Oscillation& start, double s);
 
 /// Unknowns of an orbit: theta, x/length, x'/length, (x' - y')/length, s_0, ..., s_(n-1) and the
 /// parameters, each divided by its unit.
@@ -72,16 +98,15 @@ public:
     double length() const { return length_; }
     /// Number of equations; the unknowns are the parameters more.
     Eigen::Index equations() const { return static_cast<Eigen::Index>(sequence_.size()) + 4; }
-    Eigen::Index unknowns() const { return equations() + std::ssize(family_.unit); }
+    Eigen::Index unknowns() const { return equations() + std::ssize(family_.ranges); }
 
     std::vector<double> parameters(const Unknowns& z) const;
     std::optional<Parameters> system(const Unknowns& z) const;
-    /// Empty without a valid system or with a flight of no duration.
-    std::optional<OrbitValues> values(const Unknowns& z) const;
-    /// The same with the Jacobian matrix, exact for all but the parameters. Those are central
-    /// differences: they affect the number of Newton's steps, but neither the zeros nor the
-    /// position of a fold, where the determinant of the exact part vanishes.
-    std::optional<OrbitValues> values(const Unknowns& z, Eigen::MatrixXd& jacobian) const;
+    /// Empty without a valid system or with a flight of no duration. Sets the Jacobian matrix
+    /// unless null, exact for all but the parameters. Those are central differences: they affect
+    /// the number of Newton's steps, but neither the zeros nor the position of a fold, where the
+    /// determinant of the exact part vanishes.
+    std::optional<OrbitValues> values(const Unknowns& z, Eigen::MatrixXd* jacobian = nullptr) const;
 
     /// The unknowns of sequence().rotated().
     Unknowns rotated(const Unknowns& z) const;
@@ -106,8 +131,5 @@ private:
     const ParameterFamily& family_;
     const double length_;
 };
-
-/// Eigenvalues of a transfer matrix by descending modulus.
-std::array<std::complex<double>, 4> sorted_eigenvalues(const Frame& transfer);
 
 }  // namespace vines

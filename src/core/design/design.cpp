@@ -37,8 +37,9 @@ constexpr double most_amplitude = 4, least_amplitude = 1.0 / 32;
 constexpr int amplitude_count = 36;
 constexpr long most_impacts_per_cycle = 200;
 
-/// Objectives of the worst and the best start by position: rows of b, columns of f.
-struct DesignMap {
+/// Objectives of the worst and the best start by position: rows of b, columns of f. Receives them
+/// from a sweep.
+struct DesignMap : SweepSink {
     std::vector<double> b, f;
     std::vector<double> worst, best;
     std::vector<State> start;       ///< of the worst motion
@@ -49,29 +50,20 @@ struct DesignMap {
         const auto after = std::ranges::lower_bound(b, value * (1 - same_b));
         return static_cast<std::size_t>(after - b.begin());
     }
-};
 
-class MapSink : public SweepSink {
-public:
-    explicit MapSink(DesignMap& map) : map_(map) {}
     void point(std::size_t line, const SweepPoint& point) override {
-        double worst = -infinity, best = infinity;
+        worst[line] = point.motions.empty() ? infinity : -infinity, best[line] = infinity;
         for (const Motion& m : point.motions) {
             const double value = m.result.measured ? m.result.objective : infinity;
-            if (value > worst) worst = value, map_.start[line] = m.from;
-            best = std::min(best, value);
+            if (value > worst[line]) worst[line] = value, start[line] = m.from;
+            best[line] = std::min(best[line], value);
             if (!m.result.measured) continue;
-            Extremes& e = map_.extreme[line];
+            Extremes& e = extreme[line];
             for (double Extremes::* of :
                  {&Extremes::impact_speed, &Extremes::impulse, &Extremes::impact_rate})
                 e.*of = std::max(e.*of, m.result.extremes.*of);
         }
-        map_.worst[line] = point.motions.empty() ? infinity : worst, map_.best[line] = best;
     }
-    void row(std::size_t, const RowSummary&) override {}
-
-private:
-    DesignMap& map_;
 };
 
 /// `count` values in a geometric row; both ends are exact.
@@ -154,8 +146,7 @@ struct DesignSearch {
             return PointSystem{p, start, options().max_impacts, nullptr, {si.omega0(), si.m1}};
         };
         for (std::size_t line = 0; line < size; ++line) sweep.lines.push_back(line);
-        MapSink into(m);
-        run_sweep(sweep, threads, control, into);
+        run_sweep(sweep, threads, control, m);
         poll(control);
         return m;
     }
@@ -263,10 +254,12 @@ struct DesignSearch {
         return f;
     }
 
-    double objective_with(const DesignPoint& p, double b, double R, const SiParameters& si) const {
+    /// The objective of another absorber in the worst case of p.
+    double objective_with(const DesignPoint& p, const BuiltAbsorber& a) const {
         const std::vector<double> at =
             p.amplitude < 1 ? std::vector{1, p.amplitude} : std::vector{1.0};
-        return judged(map({b}, at, denser_frequencies(p.f), R, si), b, at, R, p.m2).objective;
+        const DesignMap m = map({a.b}, at, denser_frequencies(p.f), a.R, a.si);
+        return judged(m, a.b, at, a.R, a.si.m2).objective;
     }
 
     /// Larger and larger changes of a value, up and down, while the objective stays within both
@@ -287,23 +280,19 @@ struct DesignSearch {
     }
 
     void set_margins(Design& d) const {
-        const DesignPoint& p = d.best;
-        const SiParameters host = host_with(p.m2);
-        const double best = objective_with(p, p.b, p.R, host);
-        d.b = margin_of(best, [&](double by) { return objective_with(p, by * p.b, p.R, host); });
-        d.R = margin_of(best, [&](double by) {
-            return by * p.R > 1 ? infinity : objective_with(p, p.b, by * p.R, host);
-        });
-        d.f0 = margin_of(best, [&](double by) {
-            SiParameters si = host;
-            si.k1 *= by * by;
-            return objective_with(p, p.b, p.R, si);
-        });
-        d.damping = margin_of(best, [&](double by) {
-            SiParameters si = host;
-            si.c1 *= by;
-            return objective_with(p, p.b, p.R, si);
-        });
+        const BuiltAbsorber nominal{host_with(d.best.m2), d.best.b, d.best.R};
+        const double best = objective_with(d.best, nominal);
+        const auto margin = [&](void (*change)(BuiltAbsorber&, double by)) {
+            return margin_of(best, [&](double by) {
+                BuiltAbsorber changed = nominal;
+                change(changed, by);
+                return changed.R > 1 ? infinity : objective_with(d.best, changed);
+            });
+        };
+        d.b = margin([](BuiltAbsorber& a, double by) { a.b *= by; });
+        d.R = margin([](BuiltAbsorber& a, double by) { a.R *= by; });
+        d.f0 = margin([](BuiltAbsorber& a, double by) { a.si.k1 *= by * by; });
+        d.damping = margin([](BuiltAbsorber& a, double by) { a.si.c1 *= by; });
     }
 
     /// Amplitudes with at least half of the reduction, from the largest of the plan on.

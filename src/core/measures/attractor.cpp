@@ -43,7 +43,7 @@ std::set<StateCell> cells_of(const Parameters& p, const State& s) {
 
 /// The cell to which Newton's method leads from the middle of another one.
 std::optional<StateCell> next_cell(
-    const Parameters& p, const StateCell& cell, int cycles, const std::function<bool()>& stop) {
+    const Parameters& p, const StateCell& cell, int cycles, const StopRequest& stop) {
     Eigen::Vector4d v;
     for (int i = 0; i < 4; ++i) v(i) = static_cast<double>(cell[i]) * p.b * cell_width;
     State middle = state_of(v);
@@ -59,8 +59,7 @@ std::optional<StateCell> next_cell(
     return next;
 }
 
-StateCell canonical_cell(
-    const Parameters& p, const State& s, int cycles, const std::function<bool()>& stop) {
+StateCell canonical_cell(const Parameters& p, const State& s, int cycles, const StopRequest& stop) {
     std::set<StateCell> cells = cells_of(p, s);
     for (std::size_t before = 0; cells.size() > 1 && cells.size() != before;) {
         std::set<StateCell> next;
@@ -79,8 +78,7 @@ void digest(std::uint64_t& hash, std::int64_t value) {
         hash = (hash ^ (static_cast<std::uint64_t>(value) >> 8 * byte & 0xff)) * 0x100000001b3;
 }
 
-std::string orbit_name(
-    const Parameters& p, const PeriodicOrbit& orbit, const std::function<bool()>& stop) {
+std::string orbit_name(const Parameters& p, const PeriodicOrbit& orbit, const StopRequest& stop) {
     if (orbit.contacts == 0) return "untouched";
     // The order of the cycles depends on the start. Positions are continuous even if a whole cycle
     // is the time of an impact.
@@ -107,8 +105,7 @@ std::string rounded_text(const char* format, double value) {
 
 }  // namespace
 
-AttractorName name_of(
-    const Parameters& p, const PeriodicOrbit& orbit, const std::function<bool()>& stop) {
+AttractorName name_of(const Parameters& p, const PeriodicOrbit& orbit, const StopRequest& stop) {
     AttractorName name{orbit_name(p, orbit, stop), std::nullopt};
     if (!p.is_symmetric()) return name;
     const auto half = follow(p, orbit.state, orbit.tau, 0.5 * p.cycle(), stop);
@@ -120,8 +117,7 @@ AttractorName name_of(
 }
 
 AttractorName name_of(
-    const Parameters& p, const Regime& r, Verdict verdict, double x_rms,
-    const std::function<bool()>& stop) {
+    const Parameters& p, const Regime& r, Verdict verdict, double x_rms, const StopRequest& stop) {
     if (r.orbit) return name_of(p, *r.orbit, stop);
     if (r.forced && r.untouched && r.untouched->for_ever) return {"untouched", "untouched"};
     if (r.quasi_periodic)

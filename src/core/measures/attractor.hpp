@@ -10,7 +10,6 @@
 // set is the name. Computations that also consider cells farther off reach the same set.
 #pragma once
 
-#include <functional>
 #include <optional>
 #include <string>
 
@@ -29,11 +28,11 @@ struct AttractorName {
 };
 
 AttractorName name_of(
-    const Parameters& parameters, const PeriodicOrbit& orbit, const std::function<bool()>& stop);
+    const Parameters& parameters, const PeriodicOrbit& orbit, const StopRequest& stop);
 
 /// Name of a measured motion with its rms of x.
 AttractorName name_of(
     const Parameters& parameters, const Regime& regime, Verdict verdict, double x_rms,
-    const std::function<bool()>& stop);
+    const StopRequest& stop);
 
 }  // namespace vines

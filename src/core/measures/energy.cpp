@@ -33,7 +33,7 @@ Energy::Energy(const Parameters& p, double tau_start, double tau_end)
       tau_end_(tau_end),
       free_(Flow::shared_free(p)),
       steps_({tau_start, tau_end}, p.cycle()),
-      next_step_(steps_.count() > 0 ? steps_.end_of(0) : infinity) {}
+      next_step_(steps_.end_of(0)) {}
 
 void Energy::on_stretch(const Stretch& stretch) {
     const double from = std::max(0.0, tau_start_ - stretch.tau),
@@ -44,7 +44,9 @@ void Energy::on_stretch(const Stretch& stretch) {
     if (is_stuck && !sticking_) sticking_.emplace(Flow::shared_sticking(parameters_));
     const Law& law = is_stuck ? *sticking_ : free_;
     const Oscillation begin = from > 0 ? stretch.flow.after(stretch.start, from) : stretch.start;
-    if (duration_ == 0) start_ = energy_of(begin, is_stuck ? begin.x_dot : stretch.y_dot);
+    if (duration_ == 0)
+        start_ = energy_of(
+            parameters_, {begin.x_dot, begin.x, is_stuck ? begin.x_dot : stretch.y_dot, 0});
     const bool in_closed_form = law.antiderivative && duration_ >= law.antiderivative->settled();
     // F cancels between stretches that follow the same law.
     if (duration_ == 0 || last_.is_stuck != is_stuck || last_.in_closed_form != in_closed_form) {
@@ -88,7 +90,7 @@ void Energy::add_curved(const Stretch& stretch, double from, double to) {
         const State a = stretch.at(begin), b = stretch.at(end);
         return parameters_.epsilon * parameters_.friction * std::abs((b.x - b.y) - (a.x - a.y));
     };
-    if (duration_ == 0) start_ = vines::energy_of(parameters_, stretch.at(from));
+    if (duration_ == 0) start_ = energy_of(parameters_, stretch.at(from));
     for (double s = from; s < to;) {
         const double step_end = next_step_ - stretch.tau;
         double next = std::min(to, s + widest);
@@ -98,8 +100,7 @@ void Energy::add_curved(const Stretch& stretch, double from, double to) {
         friction_ += slid(s, next);
         if (ends_step) {
             at_steps_.push_back({sum_(x_squared), sum_(x_dot_squared), impacts_, friction_});
-            next_step_ =
-                at_steps_.size() < steps_.count() ? steps_.end_of(at_steps_.size()) : infinity;
+            next_step_ = steps_.end_of(at_steps_.size());
             if (next == s && !(step_end < to)) break;
         }
         s = next;
@@ -120,7 +121,7 @@ void Energy::add_steps(const Law& law, const Oscillation& begin, double tau, dou
                                                law.antiderivative->at(law.flow->after(begin, part))
                                          : law.quadrature->over(begin, part));
         at_steps_.push_back({sum(x_squared), sum(x_dot_squared), impacts_, 0});
-        next_step_ = at_steps_.size() < steps_.count() ? steps_.end_of(at_steps_.size()) : infinity;
+        next_step_ = steps_.end_of(at_steps_.size());
     } while (next_step_ <= tau + duration);
 }
 
@@ -158,7 +159,7 @@ void Energy::on_impact(const Impact& i) {
         duration_ = peak_ = friction_ = work_ = 0;
         at_steps_.clear();
         end_ = {i.x_dot_after, i.x, i.y_dot_after, i.x - i.side * parameters_.b};
-        start_ = vines::energy_of(parameters_, end_);
+        start_ = energy_of(parameters_, end_);
         last_ = {after, 0, i.y_dot_after, false, false};
         return;
     }
@@ -180,19 +181,16 @@ Integrals Energy::integrals() const {
     return sum;
 }
 
-double Energy::energy_of(const Oscillation& o, double y_dot) const {
-    return vines::energy_of(parameters_, {o.x_dot, o.x, y_dot, 0});
-}
-
 EnergyBalance Energy::balance(const Interval& window) const {
     const Parameters& p = parameters_;
     const Integrals sum = integrals();
     const Oscillation o = end();
     const double input = p.load ? work_ : p.epsilon * p.A() * sum(x_dot_sin),
                  damper = 2 * p.zeta() * sum(x_dot_squared),
-                 at_end = p.has_straight_flights()
-                              ? energy_of(o, last_.is_stuck ? o.x_dot : last_.y_dot)
-                              : vines::energy_of(p, end_),
+                 at_end =
+                     p.has_straight_flights()
+                         ? energy_of(p, {o.x_dot, o.x, last_.is_stuck ? o.x_dot : last_.y_dot, 0})
+                         : energy_of(p, end_),
                  stored = at_end - start_;
     const double total = impacts_ + friction_ + damper, share = impacts_ / total,
                  rms = duration_ > 0 ? std::sqrt(sum(x_squared) / duration_) : 0;
@@ -289,13 +287,13 @@ double crossing_time(EnergyAt energy_at, double level, double high, double tau_s
     return tau_start + high;
 }
 
-}  // namespace
+struct DecayLevel {
+    std::optional<double> DecayTimes::* time;
+    double fraction;  ///< of the energy at the start
+};
+constexpr DecayLevel decay_levels[] = {{&DecayTimes::half, 0.5}, {&DecayTimes::tenth, 0.1}};
 
-Decay::Decay(const Parameters& p, double tau_start, std::vector<double> shares)
-    : tau(shares.size()),
-      parameters_(p),
-      tau_start_(tau_start),
-      shares_(std::move(shares)) {}
+}  // namespace
 
 void Decay::on_stretch(const Stretch& stretch) {
     const double from = tau_start_ - stretch.tau;
@@ -304,31 +302,30 @@ void Decay::on_stretch(const Stretch& stretch) {
     if (!at_start_) at_start_ = energy_at(std::max(0.0, from));
     if (*at_start_ == 0) return;  // at rest: no energy to lose
     const double end = energy_at(stretch.duration);
-    for (std::size_t k = 0; k < shares_.size(); ++k) {
-        const double level = shares_[k] * *at_start_;
-        if (!tau[k] && end <= level)
-            tau[k] = std::max(
+    for (const auto& [time, fraction] : decay_levels) {
+        const double level = fraction * *at_start_;
+        if (!(times.*time) && end <= level)
+            times.*time = std::max(
                 tau_start_, crossing_time(energy_at, level, stretch.duration, stretch.tau));
     }
 }
 
-std::vector<std::optional<double>> unattached_decay(
-    const Parameters& p, const State& start, double tau_start, const std::vector<double>& shares) {
-    std::vector<std::optional<double>> tau(shares.size());
+DecayTimes unattached_decay(const Parameters& p, const State& start, double tau_start) {
+    DecayTimes times;
     const Flow flow(1, 2 * p.zeta(), 0, p.Omega);
     const Oscillation begin = flow.after({start.x, start.x_dot, 0, 1}, tau_start);
     auto energy_at = [&](double s) {
         const Oscillation o = flow.after(begin, s);
         return 0.5 * (o.x * o.x + o.x_dot * o.x_dot);
     };
-    if (p.zeta() == 0 || energy_at(0) == 0) return tau;
-    for (std::size_t k = 0; k < shares.size(); ++k) {
-        const double level = shares[k] * energy_at(0);
+    if (p.zeta() == 0 || energy_at(0) == 0) return times;
+    for (const auto& [time, fraction] : decay_levels) {
+        const double level = fraction * energy_at(0);
         double high = 1;
         while (energy_at(high) > level && high < longest_decay) high *= 2;
-        if (high < longest_decay) tau[k] = crossing_time(energy_at, level, high, tau_start);
+        if (high < longest_decay) times.*time = crossing_time(energy_at, level, high, tau_start);
     }
-    return tau;
+    return times;
 }
 
 }  // namespace vines

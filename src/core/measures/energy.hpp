@@ -103,7 +103,6 @@ private:
     Integrals integrals() const;
     void add_steps(const Law& law, const Oscillation& begin, double tau, double duration);
     Oscillation end() const;
-    double energy_of(const Oscillation& o, double y_dot) const;
 };
 
 /// Empty unless the denominator is positive.
@@ -126,26 +125,29 @@ std::optional<double> free_amplitude(const Parameters& parameters);
 /// Steady motion without absorber at tau = 0: x and x', y = y' = 0; empty at undamped resonance.
 std::optional<State> free_steady_state(const Parameters& parameters);
 
-/// Observer of the times at which the energy of a free decay (G = 0) first falls to given fractions
-/// of its value at tau_start.
+/// Times at which the energy of a free decay (G = 0) first falls to a half and to a tenth of its
+/// value at the window's start; empty if the motion does not get there.
+struct DecayTimes {
+    std::optional<double> half, tenth;
+};
+
+/// Observer of these times.
 class Decay : public Observer {
 public:
-    Decay(const Parameters& parameters, double tau_start, std::vector<double> shares);
+    Decay(const Parameters& parameters, double tau_start)
+        : parameters_(parameters),
+          tau_start_(tau_start) {}
     void on_stretch(const Stretch&) override;
 
-    /// One per fraction; empty if the run ended before.
-    std::vector<std::optional<double>> tau;
+    DecayTimes times;
 
 private:
     const Parameters parameters_;
     const double tau_start_;
     std::optional<double> at_start_;
-    const std::vector<double> shares_;
 };
 
 /// The same times for the linear oscillator without absorber; empty if it is undamped or at rest.
-std::vector<std::optional<double>> unattached_decay(
-    const Parameters& parameters, const State& start, double tau_start,
-    const std::vector<double>& shares);
+DecayTimes unattached_decay(const Parameters& parameters, const State& start, double tau_start);
 
 }  // namespace vines

@@ -24,7 +24,6 @@ double k_of(double R) { return (1 - R) / (1 + R); }
 double manifold_C(double R, double Omega, double b, double V) {
     assert(R >= 0 && R <= 1 && Omega > 0 && V >= 0);
     const double W = V / Omega;
-    // C^2 = (pi W/2 - b)^2 + k^2 W^2
     return elementary::hypot(quarter_turn * W - b, k_of(R) * W);
 }
 

@@ -39,26 +39,6 @@ constexpr long most_impacts_per_cycle = 1000;  // exceeded by endless chatter (R
 // Longest time, in cycles, in which the next contact of a flying ball is searched.
 constexpr double longest_flight = 10000;
 
-void count_contacts(Regime& r, const RegimeEvidence& e) {
-    e.rhythm.finish({e.tau_start, e.tau_end});
-    const Synchrony& synchrony = e.rhythm.synchrony;
-    r.contacts = synchrony.contacts;
-    r.z = r.z_overall = e.rhythm.z();
-    r.z_error = e.rhythm.z_error();
-    CycleCounts counts = e.rhythm.cycle_counts();
-    r.moving_tau = std::move(counts.moving_tau);
-    r.moving_z = std::move(counts.moving_z);
-    r.cycles_with = std::move(counts.cycles_with);
-    r.stretches = e.rhythm.last_stretches();
-    r.stretch_count = synchrony.stretches.seen;
-    r.longest_synchronised = synchrony.longest;
-    if (const auto alone = std::ranges::find(r.cycles_with, 1.0); alone != r.cycles_with.end())
-        r.in_every_cycle = static_cast<int>(alone - r.cycles_with.begin());
-    if (r.contacts > 0)
-        r.synchronised =
-            static_cast<double>(synchrony.in_stretches) / static_cast<double>(r.contacts);
-}
-
 /// States at whole cycles up to tau_end.
 std::span<const State> states_before(const StroboscopicRecord& record, double tau_end) {
     std::size_t end = record.states.size();
@@ -100,7 +80,7 @@ std::vector<Return> returns(std::span<const State> states, const State& scale, d
 /// orbit is possible.
 std::optional<PeriodicOrbit> orbit_at_end(
     const Parameters& p, std::span<const State> states, const State& scale, double near,
-    const std::function<bool()>& stop, bool& tried) {
+    const StopRequest& stop, bool& tried) {
     int attempts = 0;
     std::size_t attempted = 0;
     for (const auto& [decade, cycles] : returns(states, scale, near)) {
@@ -140,8 +120,7 @@ std::optional<PeriodicOrbit> orbit_of(
     for (const int cycles : follow_rounds) {
         if (!tried) return std::nullopt;
         StroboscopicRecord on(p);
-        Observer* const observers[] = {&on};
-        if (!follow(p, s, 0, cycles * p.cycle() * (1 + past_last_cycle), e.stop, observers))
+        if (!follow(p, s, 0, cycles * p.cycle() * (1 + past_last_cycle), e.stop, {&on}))
             return std::nullopt;
         s = on.states.back();
         tried = false;
@@ -211,7 +190,7 @@ enum class Approach {
 /// Approach of a motion that is compared with the orbit at cycle k.
 Approach approach_of(
     const Parameters& p, const State& state, long k, const OrbitComparison& comparison,
-    const std::function<bool()>& stop) {
+    const StopRequest& stop) {
     State s = state;
     Approach approach = Approach::direct;
     const double look = cycles_of_look * p.cycle();
@@ -219,8 +198,7 @@ Approach approach_of(
     for (int done = 0; done < longest_departure; done += cycles_of_look) {
         StroboscopicRecord on(p);
         Lyapunov lyapunov(p, 0, look, {.qr = true});
-        Observer* const observers[] = {&on, &lyapunov};
-        if (!follow(p, s, 0, look * (1 + past_last_cycle), stop, observers)) return approach;
+        if (!follow(p, s, 0, look * (1 + past_last_cycle), stop, {&on, &lyapunov})) return approach;
         const TransferProduct& product = lyapunov.product();
         if (product.impacts() > 1)
             growth += product.qr()[0] * (product.end_tau() - product.start_tau());
@@ -335,11 +313,7 @@ void settle_later(
         const OrbitComparison comparison(p, *r.orbit, scale, round, s);
         long from = round;
         while (from > 0 && comparison.is_near(from - 1, on.states[from - 1])) --from;
-        r.capture = {
-            e.stroboscopic.tau_of(end + done + from),
-            {nan, nan, nan, nan},
-            r.orbit->exponents(p),
-            std::nullopt};
+        r.capture = Capture{e.stroboscopic.tau_of(end + done + from), r.orbit->exponents(p)};
         return;
     }
 }
@@ -360,8 +334,7 @@ bool held_for_ever(const Parameters& p, const State& at_whole_cycle) {
 
 /// End of a run without contacts.
 Regime::Untouched untouched_end(
-    const Parameters& p, const State& at_whole_cycle, double tau,
-    const std::function<bool()>& stop) {
+    const Parameters& p, const State& at_whole_cycle, double tau, const StopRequest& stop) {
     const bool held = p.friction > 0 && at_whole_cycle.y_dot == at_whole_cycle.x_dot;
     Regime::Untouched end{
         is_never_touched(p, at_whole_cycle) || (held && held_for_ever(p, at_whole_cycle)),
@@ -407,7 +380,10 @@ Regime regime_of(
     Regime r;
     r.forced = p.is_forced();
     r.has_period = !p.load;
-    count_contacts(r, e);
+    static_cast<ContactCounts&>(r) = e.rhythm.finish({e.tau_start, e.tau_end});
+    r.z = r.z_overall;
+    if (const auto alone = std::ranges::find(r.cycles_with, 1.0); alone != r.cycles_with.end())
+        r.in_every_cycle = static_cast<int>(alone - r.cycles_with.begin());
     const std::span<const State> states = states_before(e.stroboscopic, e.tau_end);
     // The first state in the window only shows that the window has any.
     if (r.forced && r.has_period && states.size() > 1 &&
@@ -418,10 +394,8 @@ Regime regime_of(
         r.search_stopped = !r.orbit && e.stop && e.stop();
         const auto arrival =
             r.orbit ? arrival_at(p, start, *r.orbit, states, scale, e) : std::nullopt;
-        if (arrival) {
-            r.capture = {
-                arrival->captured, {nan, nan, nan, nan}, r.orbit->exponents(p), std::nullopt};
-        } else r.orbit.reset();
+        if (arrival) r.capture = Capture{arrival->captured, r.orbit->exponents(p)};
+        else r.orbit.reset();
         if (!r.orbit && e.by_exponents == Verdict::chaotic) settle_later(p, states, scale, e, r);
         else if (!r.orbit && e.neutral)
             r.quasi_periodic = quasi_periodic(in_window(e, states), scale);

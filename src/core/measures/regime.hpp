@@ -8,9 +8,7 @@
 // curve (torus.hpp) is quasi-periodic.
 #pragma once
 
-#include <array>
 #include <optional>
-#include <vector>
 
 #include "core/measures/rhythm.hpp"
 #include "core/measures/torus.hpp"
@@ -32,32 +30,23 @@ struct Capture {
     /// of time); after the run's end if the run was continued (RegimeEvidence::settle_cycles).
     /// Empty if the run ends on its way to the orbit.
     std::optional<double> tau;
-    /// Exponents by qr from the first impact to tau or to the end; NaN with too few impacts.
-    Exponents before;
     Exponents after;  ///< from the Floquet multipliers
+    /// Exponents by qr from the first impact to tau or to the end; NaN with too few impacts, or if
+    /// not examined.
+    Exponents before = no_exponents;
     /// True if chaos before the capture is shown: by verdict_by_exponents() or
     /// chaotic_transient_end(). False if it is not shown. Empty: not examined.
-    std::optional<bool> chaotic_before;
+    std::optional<bool> chaotic_before = {};
 };
 
-struct Regime {
+struct Regime : ContactCounts {
     RegimeType type = RegimeType::none;
     bool forced = true;      ///< false for a free decay (G = 0), which has no regime
     bool has_period = true;  ///< false for a recorded load, which has neither orbit nor type
-    long contacts = 0;       ///< in the window
-    /// Contacts per forcing cycle: of the orbit if periodic, else between first and last contact.
+    /// Contacts per forcing cycle: of the orbit if periodic, else z_overall.
     double z = 0;
-    double z_overall = 0;  ///< from the first to the last contact, in any case
-    double z_error = nan;  ///< standard error of z_overall (Rhythm::z_error)
-    // Lists, as far as RegimeEvidence::rhythm keeps them.
-    std::vector<double> moving_tau, moving_z;  ///< over 10 cycles around tau
-    std::vector<double> cycles_with;           ///< fraction of cycles with 0, 1, 2, ... contacts
-    std::vector<SynchronyStretch> stretches;   ///< the last ones
-    long stretch_count = 0;                    ///< including stretches not listed
-    double synchronised = 0;                   ///< fraction of contacts in synchronised stretches
-    long longest_synchronised = 0;             ///< half cycles of the longest synchronised stretch
-    std::optional<PeriodicOrbit> orbit;        ///< the stable orbit that the run approaches
-    std::optional<Capture> capture;            ///< set together with orbit
+    std::optional<PeriodicOrbit> orbit;           ///< the stable orbit that the run approaches
+    std::optional<Capture> capture;               ///< set together with orbit
     std::optional<QuasiPeriodic> quasi_periodic;  ///< only without an orbit
     /// Contacts in each cycle, if all cycles have the same number of them.
     std::optional<int> in_every_cycle;
@@ -90,8 +79,8 @@ struct RegimeEvidence {
     /// The exponents permit a quasi-periodic motion (can_be_quasi_periodic()).
     bool neutral = false;
     double settle_cycles =
-        0;  ///< longest continuation of a chaotic run, to find out where it settles
-    std::function<bool()> stop = {};  ///< ends the search for an orbit, see Limits::stop
+        0;                  ///< longest continuation of a chaotic run, to find out where it settles
+    StopRequest stop = {};  ///< ends the search for an orbit, see Limits::stop
 };
 
 /// Regime of a run. With `exponents_before` also the exponents before a capture, which repeats the

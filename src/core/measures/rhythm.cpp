@@ -41,7 +41,7 @@ long whole_cycles(std::int64_t positions) {
 class CycleCounter {
 public:
     /// Keeps one of `every` entries of the moving z.
-    CycleCounter(CycleCounts& counts, std::size_t every) : counts_(counts), every_(every) {}
+    CycleCounter(ContactCounts& counts, std::size_t every) : counts_(counts), every_(every) {}
 
     /// `middle` of the cycles of the moving z that end with this one.
     void add(int contacts, double middle) {
@@ -61,7 +61,7 @@ public:
     }
 
 private:
-    CycleCounts& counts_;
+    ContactCounts& counts_;
     const std::size_t every_;
     std::size_t cycles_ = 0;
     long sum_ = 0;
@@ -119,7 +119,7 @@ void CyclePositions::add(double cycles) {
 
 Rhythm::Rhythm(const Parameters& p, const Interval& window, std::size_t most_listed)
     : ContactStream(p),
-      synchrony(0.5 * p.cycle(), most_listed),
+      synchrony_(0.5 * p.cycle(), most_listed),
       cycle_(p.cycle()),
       window_(window),
       most_listed_(most_listed),
@@ -133,52 +133,58 @@ void Rhythm::on_contact(const CountedContact& contact) {
 }
 
 void Rhythm::count(const CountedContact& contact) {
-    if (contacts() == 0) first_ = contact.tau;
+    if (synchrony_.contacts == 0) first_ = contact.tau;
     last_ = contact.tau;
-    synchrony.add(contact);
+    synchrony_.add(contact);
     if (most_listed_ > 0) positions_.add(contact.tau / cycle_);
     const double step = (contact.tau - window_.from) * steps_per_tau_;
     if (step >= 0 && step < static_cast<double>(in_steps_.size()))
         ++in_steps_[static_cast<std::size_t>(step)];
 }
 
-void Rhythm::finish(const Interval& reached) {
+ContactCounts Rhythm::finish(const Interval& reached) {
     flush_contacts();
     // A window that the run does not reach has shrunk to one instant at the run's end.
     if (before_ && before_->tau >= reached.from) count(*before_);
-    synchrony.finish();
-    reached_ = reached;
+    synchrony_.finish();
+    ContactCounts counts;
+    counts.contacts = synchrony_.contacts;
+    counts.z_overall = z(reached);
+    counts.z_error = z_error(reached);
+    if (most_listed_ > 0) count_cycles(reached, counts);
+    trim_to_last(synchrony_.stretches.entries, most_listed_);
+    counts.stretches = std::move(synchrony_.stretches.entries);
+    counts.stretch_count = synchrony_.stretches.seen;
+    if (counts.contacts > 0)
+        counts.synchronised =
+            static_cast<double>(synchrony_.in_stretches) / static_cast<double>(counts.contacts);
+    counts.longest_synchronised = synchrony_.longest;
+    return counts;
 }
 
-double Rhythm::z() const {
-    if (contacts() > 1) return static_cast<double>(contacts() - 1) * cycle_ / (last_ - first_);
-    const double duration = reached_.to - reached_.from;
-    return duration > 0 ? static_cast<double>(contacts()) * cycle_ / duration : 0;
+double Rhythm::z(const Interval& reached) const {
+    const long contacts = synchrony_.contacts;
+    if (contacts > 1) return static_cast<double>(contacts - 1) * cycle_ / (last_ - first_);
+    const double duration = reached.to - reached.from;
+    return duration > 0 ? static_cast<double>(contacts) * cycle_ / duration : 0;
 }
 
-double Rhythm::z_error() const {
-    const double reached = (reached_.to - window_.from) / steps_.duration();
+double Rhythm::z_error(const Interval& reached) const {
+    const double passed = (reached.to - window_.from) / steps_.duration();
     // A run that ends within the window has only counted whole steps.
     const auto steps = std::span(in_steps_).first(
-        std::min(in_steps_.size(), static_cast<std::size_t>(std::max(0.0, reached + 1e-9))));
+        std::min(in_steps_.size(), static_cast<std::size_t>(std::max(0.0, passed + 1e-9))));
     return error_of_modulated_sum(steps) * cycle_ /
            (static_cast<double>(steps.size()) * steps_.duration());
 }
 
-std::vector<SynchronyStretch> Rhythm::last_stretches() {
-    trim_to_last(synchrony.stretches.entries, most_listed_);
-    return std::move(synchrony.stretches.entries);
-}
-
-CycleCounts Rhythm::cycle_counts() const {
-    CycleCounts counts;
-    if (most_listed_ == 0) return counts;
-    const int cut_position = contacts() > 0 ? quiet_position(positions_) : 0;
+void Rhythm::count_cycles(const Interval& reached, ContactCounts& counts) const {
+    const int cut_position = counts.contacts > 0 ? quiet_position(positions_) : 0;
     const double cut = static_cast<double>(cut_position) / CyclePositions::parts,
-                 from = contacts() > 0 ? first_ - cycle_ : reached_.from;
+                 from = counts.contacts > 0 ? first_ - cycle_ : reached.from;
     const long first = static_cast<long>(std::ceil(from / cycle_ - cut)),
-               cycles = static_cast<long>(std::floor(reached_.to / cycle_ - cut)) - first;
-    if (cycles <= 0) return counts;
+               cycles = static_cast<long>(std::floor(reached.to / cycle_ - cut)) - first;
+    if (cycles <= 0) return;
     const auto moving = static_cast<std::size_t>(std::max(0L, cycles + 1 - moving_cycles));
     CycleCounter counter(counts, moving / most_listed_ + 1);
     long cycle = 0;
@@ -194,7 +200,6 @@ CycleCounts Rhythm::cycle_counts() const {
     });
     count_up_to(cycles);
     counter.finish();
-    return counts;
 }
 
 }  // namespace vines

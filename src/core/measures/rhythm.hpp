@@ -86,10 +86,19 @@ private:
     std::int64_t last_ = 0;
 };
 
-/// Distribution of the contacts over the forcing cycles.
-struct CycleCounts {
+/// Contacts of a window. The lists are as long as Rhythm keeps them.
+struct ContactCounts {
+    long contacts = 0;
+    double z_overall = 0;  ///< contacts per cycle, from the first to the last contact
+    /// Standard error of z_overall as an estimate for an infinite run (mean_error.hpp); NaN for
+    /// windows of fewer than 32 cycles.
+    double z_error = nan;
     std::vector<double> moving_tau, moving_z;  ///< contacts per cycle, over 10 cycles around tau
     std::vector<double> cycles_with;           ///< fraction of cycles with 0, 1, 2, ... contacts
+    std::vector<SynchronyStretch> stretches;   ///< the last ones
+    long stretch_count = 0;                    ///< including stretches not listed
+    double synchronised = 0;                   ///< fraction of contacts in synchronised stretches
+    long longest_synchronised = 0;             ///< half cycles of the longest synchronised stretch
 };
 
 /// Observer of the rhythm of the contacts in a window.
@@ -98,30 +107,22 @@ public:
     /// `most_listed`: maximum length of the lists that grow with the run; 0: no lists.
     Rhythm(const Parameters& parameters, const Interval& window, std::size_t most_listed);
 
-    /// Call once, after the run, with the part of the window that the run reached.
-    void finish(const Interval& reached);
-
-    double z() const;  ///< contacts per cycle, from the first to the last contact
-    /// Standard error of z as an estimate for an infinite run (mean_error.hpp); NaN for windows of
-    /// fewer than 32 cycles.
-    double z_error() const;
-    /// Starts one cycle before the first contact; the moving z is thinned to most_listed entries.
-    CycleCounts cycle_counts() const;
-    /// The last stretches, at most most_listed.
-    std::vector<SynchronyStretch> last_stretches();
-
-    long contacts() const { return synchrony.contacts; }
-
-    Synchrony synchrony;
+    /// The counts in the part of the window that the run reached; call once, after the run. Cycles
+    /// are counted from one before the first contact; the moving z is thinned to most_listed
+    /// entries.
+    ContactCounts finish(const Interval& reached);
 
 private:
     void on_contact(const CountedContact& contact) override;
     void count(const CountedContact& contact);
+    double z(const Interval& reached) const;
+    double z_error(const Interval& reached) const;
+    void count_cycles(const Interval& reached, ContactCounts& counts) const;
 
+    Synchrony synchrony_;
     const double cycle_;
     const Interval window_;
     const std::size_t most_listed_;
-    Interval reached_{};
     double first_ = 0, last_ = 0;
     std::optional<CountedContact> before_;  // the last contact before the window
     const WindowSteps steps_;

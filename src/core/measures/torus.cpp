@@ -120,17 +120,14 @@ public:
         std::ranges::sort(phases_);
     }
 
-    double largest_gap() const {
-        double largest = 0;
-        for (std::size_t i = 0; i < phases_.size(); ++i) largest = std::max(largest, apart(i, 1));
-        return largest;
-    }
-
-    double median_gap() const {
+    /// Between the phases of neighbours.
+    std::vector<double> gaps() const {
         std::vector<double> gaps;
         for (std::size_t i = 0; i < phases_.size(); ++i) gaps.push_back(apart(i, 1));
-        return median_of(std::move(gaps));
+        return gaps;
     }
+    double largest_gap() const { return std::ranges::max(gaps()); }
+    double median_gap() const { return median_of(gaps()); }
 
     struct Shape {
         double length, curvature;

@@ -32,10 +32,8 @@ Leg leg_of(const Stretch& s) {
 
 Saltation slip_of(const Leg& leg, double epsilon) { return saltation(epsilon, Slip{0, leg.slip}); }
 
-namespace {
-
 template <class Deviations>
-void carry_rows(Deviations& d, const Leg& leg, double epsilon) {
+void carry(Deviations& d, const Leg& leg, double epsilon) {
     const auto& [a11, a12, a21, a22] = leg.oscillator;
     using Row = Eigen::Matrix<double, 1, Deviations::ColsAtCompileTime>;
     Row x_dot = d.row(0), x = d.row(1);
@@ -49,14 +47,8 @@ void carry_rows(Deviations& d, const Leg& leg, double epsilon) {
     else d.row(3) += leg.duration * d.row(2);
 }
 
-}  // namespace
-
-void carry(Frame& deviations, const Leg& leg, double epsilon) {
-    carry_rows(deviations, leg, epsilon);
-}
-void carry(Eigen::Vector4d& deviation, const Leg& leg, double epsilon) {
-    carry_rows(deviation, leg, epsilon);
-}
+template void carry(Frame&, const Leg&, double);
+template void carry(Eigen::Vector4d&, const Leg&, double);
 
 Matrix4 transfer_of(const Leg& leg, double epsilon) {
     Frame J = Frame::Identity();
@@ -213,7 +205,7 @@ void PowerProduct::Scaled<n>::rescale() {
 template <int n>
 double PowerProduct::Scaled<n>::log_radius() const {
     if (!matrix.allFinite()) return nan;
-    const double radius = eigenvalues_of(matrix).unaryExpr(&elementary::modulus).maxCoeff();
+    const double radius = spectral_radius(matrix);
     return radius > least_radius ? log_scale + elementary::log(radius) : nan;
 }
 
@@ -256,6 +248,86 @@ Moduli PowerProduct::log_moduli() const {
     Moduli logs = {one, two - one, three - two, log_det_ - three};
     for (int k = rank_; k < 4; ++k) logs[k] = -infinity;
     return logs;
+}
+
+Moduli eigenvalue_moduli(const Matrix4& m) {
+    Moduli moduli;
+    std::ranges::transform(eigenvalues_of(m), moduli.begin(), elementary::modulus);
+    return moduli;
+}
+
+namespace {
+
+/// Moduli of J_i, or of T_i = M_i J_i, eq. (30), from the exterior powers.
+Moduli moduli_of(const ImpactTransfer& transfer, bool with_impact) {
+    PowerProduct product(transfer.epsilon);
+    for (const Leg& leg : transfer.legs) product.pass(leg);
+    if (with_impact) product.strike(transfer.M);
+    Moduli moduli = product.log_moduli();
+    for (double& m : moduli) m = elementary::exp(m);
+    return moduli;
+}
+
+}  // namespace
+
+Moduli ImpactTransfer::J_moduli() const {
+    Moduli moduli = {1, 1, 1, 1};
+    // Two blocks, eq. (19). The ball's, [1 0; s 1], is a Jordan block, which a solver would split.
+    const bool blocks =
+        std::ranges::all_of(legs, [](const Leg& leg) { return !leg.sticking && leg.slip == 1; });
+    if (blocks) {
+        for (const Leg& leg : legs) {
+            const auto& [a11, a12, a21, a22] = leg.oscillator;
+            const double n = static_cast<double>(leg.parts), half_trace = 0.5 * std::abs(a11 + a22);
+            // half_trace^2 minus the determinant, without the ones that cancel in a short flight.
+            const double d = 0.25 * (a11 - a22) * (a11 - a22) + a12 * a21;
+            const double large =
+                d > 0 ? elementary::log(half_trace + std::sqrt(d)) : 0.5 * leg.log_det;
+            moduli[2] = elementary::exp(n * large);
+            moduli[3] = elementary::exp(n * (leg.log_det - large));
+        }
+        return moduli;
+    }
+    return moduli_of(*this, false);
+}
+
+Moduli ImpactTransfer::M_moduli() const {
+    Moduli moduli = {1, 1, std::abs(M.R), std::abs(M.R_speed)};
+    std::ranges::sort(moduli, std::greater<>());
+    return moduli;
+}
+
+Moduli ImpactTransfer::T_moduli() const { return moduli_of(*this, true); }
+
+void TransferObserver::on_stretch(const Stretch& stretch) {
+    if (!begun_) return;
+    const bool sticking = stretch.sticking_side != 0;
+    const bool continues = !legs_.empty() && legs_.back().sticking == sticking &&
+                           legs_.back().resting == stretch.rests_inside() && legs_.back().slip == 1;
+    if (!continues) {
+        legs_.push_back(leg_of(stretch));
+        return;
+    }
+    Leg& leg = legs_.back();
+    leg = leg_of(
+        stretch.flow, stretch.duration + leg.duration * static_cast<double>(leg.parts), sticking,
+        stretch.rests_inside());
+}
+
+void TransferObserver::on_slip(const Slip& slip) {
+    if (!begun_) return;
+    if (legs_.empty())
+        legs_.push_back(
+            {.oscillator = {}, .duration = 0, .log_det = 0, .parts = 1, .sticking = false});
+    legs_.back().slip *= slip.ratio;
+}
+
+void TransferObserver::on_impact(const Impact& impact) {
+    if (impact.tau < window_.from || impact.tau > window_.to) return;
+    if (begun_) on_transfer(impact, saltation(parameters_, impact), legs_);
+    else on_first_impact(impact);
+    begun_ = true;
+    legs_.clear();
 }
 
 }  // namespace vines

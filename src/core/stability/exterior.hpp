@@ -1,5 +1,6 @@
-// Transport of deviations, and of the areas and volumes spanned by two and three of them, over
-// flights, sticking phases and impacts (exterior powers of the transfer matrices).
+// Transfer matrices of deviations: J over flights (19), projections over sticking phases, M at
+// impacts (27), T = M J (30); and their exterior powers, which transport the areas and volumes
+// spanned by two and three deviations.
 //
 // Under strong damping a flight shrinks deviations of the oscillator below double precision
 // relative to those of the ball, and near grazing the entries of M grow without bound. An area or
@@ -10,8 +11,9 @@
 
 #include <array>
 #include <span>
+#include <vector>
 
-#include "core/motion/simulate.hpp"
+#include "core/motion/record.hpp"
 
 namespace vines {
 
@@ -37,8 +39,8 @@ Leg leg_of(const Stretch& stretch);
 
 /// Transports deviations over one part: J of eq. (19), or for a sticking leg the projection onto
 /// the centre of mass followed by its motion. epsilon: mass ratio.
-void carry(Frame& deviations, const Leg& leg, double epsilon);
-void carry(Eigen::Vector4d& deviation, const Leg& leg, double epsilon);
+template <class Deviations>  // Frame or Eigen::Vector4d
+void carry(Deviations& deviations, const Leg& leg, double epsilon);
 /// J over all parts.
 Matrix4 transfer_of(const Leg& leg, double epsilon);
 /// The same over legs that follow each other.
@@ -81,6 +83,7 @@ struct Flag {
 
 /// Moduli of four eigenvalues, or their logarithms; descending.
 using Moduli = std::array<double, 4>;
+Moduli eigenvalue_moduli(const Matrix4& m);
 
 /// A product of transfer matrices represented by its exterior powers, rescaled as it grows. It
 /// gives the moduli of all four eigenvalues at any ratio between them: the largest eigenvalue of
@@ -113,6 +116,64 @@ private:
     Scaled<6> second_;
     double log_det_ = 0;
     int rank_ = 4;
+};
+
+/// The three matrices of one impact: J from the previous impact, its own M, and T = M J.
+struct ImpactTransfer {
+    double tau;
+    double epsilon;
+    Saltation M;
+    std::vector<Leg> legs;  ///< from the previous impact
+
+    Matrix4 J() const { return transfer_of(legs, epsilon); }
+    Matrix4 T() const { return M.times(J()); }
+    Moduli J_moduli() const;
+    /// Exactly 1, 1, R, R (section 4): M is triangular for the centre of mass and x - y.
+    Moduli M_moduli() const;
+    /// From the exterior powers: accurate for any damping and any entries of M.
+    Moduli T_moduli() const;
+};
+
+/// Passes on the impacts in [tau_start, tau_end], from the second one on, each with its M and the
+/// legs since the previous one; consecutive free flights form one leg.
+class TransferObserver : public Observer {
+public:
+    TransferObserver(const Parameters& parameters, double tau_start, double tau_end)
+        : parameters_(parameters),
+          window_{tau_start, tau_end} {}
+
+    void on_stretch(const Stretch& stretch) override;
+    void on_slip(const Slip& slip) override;
+    void on_impact(const Impact& impact) override;
+
+    const Interval& window() const { return window_; }
+
+protected:
+    virtual void on_first_impact(const Impact&) {}
+    virtual void on_transfer(
+        const Impact& impact, const Saltation& M, std::span<const Leg> legs) = 0;
+    double epsilon() const { return parameters_.epsilon; }
+
+private:
+    const Parameters parameters_;
+    const Interval window_;
+    std::vector<Leg> legs_;
+    bool begun_ = false;
+};
+
+/// The matrices of these impacts; keeps the last `most` and up to half as many more.
+class TransferRecord : public TransferObserver, public LastOf<ImpactTransfer> {
+public:
+    TransferRecord(
+        const Parameters& parameters, double tau_start, double tau_end,
+        std::size_t most = everything)
+        : TransferObserver(parameters, tau_start, tau_end),
+          LastOf(most) {}
+
+private:
+    void on_transfer(const Impact& impact, const Saltation& M, std::span<const Leg> legs) override {
+        add({impact.tau, epsilon(), M, {legs.begin(), legs.end()}});
+    }
 };
 
 }  // namespace vines

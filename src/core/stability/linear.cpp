@@ -3,7 +3,9 @@
 #include <Eigen/Eigenvalues>
 #include <Eigen/LU>
 #include <Eigen/QR>
+#include <algorithm>
 #include <cmath>
+#include <functional>
 
 #include "core/motion/elementary.hpp"
 
@@ -24,16 +26,27 @@ Eigen::VectorXcd solved(const Square& matrix) {
     return Eigen::VectorXcd::Constant(matrix.rows(), nan);
 }
 
+double largest_modulus(const Eigen::VectorXcd& values) {
+    return values.unaryExpr(&elementary::modulus).maxCoeff();
+}
+
 }  // namespace
 
-Eigen::Vector4cd eigenvalues_of(const Eigen::Matrix4d& matrix) { return solved(matrix); }
-Vector6cd eigenvalues_of(const Matrix6& matrix) { return solved(matrix); }
+Eigenvalues eigenvalues_of(const Eigen::Matrix4d& matrix) {
+    const Eigen::VectorXcd values = solved(matrix);
+    Eigenvalues sorted;
+    std::ranges::copy(values, sorted.begin());
+    std::ranges::stable_sort(sorted, std::greater<>(), elementary::modulus);
+    return sorted;
+}
 
 double spectral_radius(const Eigen::Matrix2d& m) {
     const double half_trace = 0.5 * m.trace(), det = m(0, 0) * m(1, 1) - m(0, 1) * m(1, 0),
                  D = half_trace * half_trace - det;
     return D < 0 ? std::sqrt(det) : std::abs(half_trace) + std::sqrt(D);
 }
+double spectral_radius(const Eigen::Matrix4d& m) { return largest_modulus(solved(m)); }
+double spectral_radius(const Matrix6& m) { return largest_modulus(solved(m)); }
 
 EigenBasis eigen_basis_of(const Eigen::Matrix4d& matrix) {
     const Eigen::EigenSolver<Square> solver{Square(matrix)};

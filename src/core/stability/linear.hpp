@@ -3,19 +3,21 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <array>
 #include <complex>
 
 namespace vines {
 
 using Matrix6 = Eigen::Matrix<double, 6, 6>;
-using Vector6cd = Eigen::Matrix<std::complex<double>, 6, 1>;
 
-/// Eigenvalues in no particular order; NaN if the solver does not converge.
-Eigen::Vector4cd eigenvalues_of(const Eigen::Matrix4d& matrix);
-Vector6cd eigenvalues_of(const Matrix6& matrix);
+/// Four eigenvalues by descending modulus; NaN if the solver does not converge.
+using Eigenvalues = std::array<std::complex<double>, 4>;
+Eigenvalues eigenvalues_of(const Eigen::Matrix4d& matrix);
 
-/// Largest modulus of an eigenvalue.
+/// Largest modulus of an eigenvalue; NaN if the solver does not converge.
 double spectral_radius(const Eigen::Matrix2d& matrix);
+double spectral_radius(const Eigen::Matrix4d& matrix);
+double spectral_radius(const Matrix6& matrix);
 
 /// Eigenvalues, and the inverse of the eigenvector matrix, which transforms a vector to eigenvector
 /// coordinates; it has non-finite entries if the eigenvector matrix is singular.

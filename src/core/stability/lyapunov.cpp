@@ -5,8 +5,8 @@
 // the cumulative sums of T lambda_k; the difference of neighbouring sums is T lambda_k. Each sum
 // has an error estimate: the angles by which rounding has separated the three subspaces, the
 // accumulated rounding of steep impacts, and for the determinant the deviation from its exact
-// value. An exponent is reported only if its error is at most most_residual. Powers delegates to
-// PowerProduct. Raw multiplies the matrices as the paper did.
+// value. An exponent is reported only if its error is at most most_residual. RawProduct multiplies
+// the matrices as the paper did.
 #include "core/stability/lyapunov.hpp"
 
 #include <algorithm>
@@ -33,8 +33,6 @@ constexpr double typical_rounding = 0.1 * rounding;
 // Sine of an angle that should be zero, far above the effect of rounding.
 constexpr double widest_separation = 1e-6;
 bool is_in_range(double product) { return product > least_product && product < most_product; }
-
-constexpr Exponents no_exponents = {nan, nan, nan, nan};
 
 /// Size of the entries of M that grow without bound near grazing; large above `steep`.
 double steepness_of(const Saltation& M) { return std::abs(M.r_x) + std::abs(M.r_y); }
@@ -92,32 +90,7 @@ Exponents descending(Exponents logs, int rank, double T) {
     return per_time(logs, rank, T);
 }
 
-const ExponentHistory& empty_history() {
-    static const ExponentHistory empty;
-    return empty;
-}
-
-}  // namespace
-
-Status status_of(double exponent) {
-    return std::isnan(exponent)   ? Status::not_converged
-           : std::isinf(exponent) ? Status::minus_infinity
-                                  : Status::ok;
-}
-
-std::size_t ExponentHistory::coarse_stride() const {
-    std::size_t stride = 1;
-    while ((tau.size() + stride - 1) / stride > shortest_history) stride *= 2;
-    return stride;
-}
-
-double rounding_floor(double lambda1, double T) {
-    return lambda1 + elementary::log(std::numeric_limits<double>::epsilon()) / T;
-}
-
-struct TransferProduct::Qr {
-    explicit Qr(std::size_t history) : thinned(history) {}
-
+struct Qr {
     Flag flag;
     std::array<double, 4> extracted_logs{};  // logarithms extracted from its four sizes
     double log_det = 0;                      // exact value for the flights: -2 zeta s
@@ -126,7 +99,6 @@ struct TransferProduct::Qr {
     /// Variances of the rounding errors in the logarithms of length, area and volume.
     std::array<double, 3> rounding_variances{};
     int since_rescale = 0;  // impacts since the last rescaling
-    ThinnedHistory thinned;
 
     void pass(const Leg& leg, double epsilon) {
         for (long k = 0; k < leg.parts; ++k) {
@@ -236,20 +208,8 @@ struct TransferProduct::Qr {
     }
 };
 
-struct TransferProduct::Powers {
-    Powers(double epsilon, std::size_t history)
-        : product(epsilon),
-          thinned(std::min(history, most_eigenvalue_entries)) {}
-
-    PowerProduct product;
-    ThinnedHistory thinned;
-};
-
-struct TransferProduct::Raw {
-    explicit Raw(std::size_t history) : thinned(history) {}
-
+struct RawProduct {
     Matrix4 product = Matrix4::Identity();
-    ThinnedHistory thinned;
 
     void multiply(std::span<const Leg> legs, const Saltation& M, double epsilon) {
         product = M.matrix() * transfer_of(legs, epsilon) * product;  // T_n ... T_1, eq. (30)
@@ -257,22 +217,56 @@ struct TransferProduct::Raw {
 
     Exponents exponents(double T) const {
         if (!(T > 0) || !product.allFinite()) return no_exponents;
-        const Eigen::Vector4cd eigenvalues = eigenvalues_of(product);
-        if (!eigenvalues.allFinite()) return no_exponents;
+        const Eigenvalues eigenvalues = eigenvalues_of(product);
+        if (!Eigen::Map<const Eigen::Vector4cd>(eigenvalues.data()).allFinite())
+            return no_exponents;
         Exponents lambda;
         for (int k = 0; k < 4; ++k)
-            lambda[k] = elementary::log(elementary::modulus(eigenvalues(k))) / T;  // (33)
+            lambda[k] = elementary::log(elementary::modulus(eigenvalues[k])) / T;  // (33)
         std::ranges::sort(lambda, std::greater<>());
         return lambda;
     }
 };
 
+}  // namespace
+
+Status status_of(double exponent) {
+    return std::isnan(exponent)   ? Status::not_converged
+           : std::isinf(exponent) ? Status::minus_infinity
+                                  : Status::ok;
+}
+
+std::size_t ExponentHistory::coarse_stride() const {
+    std::size_t stride = 1;
+    while ((tau.size() + stride - 1) / stride > shortest_history) stride *= 2;
+    return stride;
+}
+
+double rounding_floor(double lambda1, double T) {
+    return lambda1 + elementary::log(std::numeric_limits<double>::epsilon()) / T;
+}
+
+/// The requested estimators and their histories.
+struct TransferProduct::Estimators {
+    std::optional<Qr> qr;
+    std::optional<PowerProduct> powers;
+    std::optional<RawProduct> raw;
+    ThinnedHistory qr_history, powers_history, raw_history;
+};
+
 TransferProduct::TransferProduct(double epsilon, const ExponentOptions& o)
     : epsilon_(epsilon),
-      options_(o) {
-    if (o.qr) qr_ = std::make_unique<Qr>(std::max(o.history, shortest_history));
-    if (o.eigenvalues) powers_ = std::make_unique<Powers>(epsilon, o.history);
-    if (o.raw_product) raw_ = std::make_unique<Raw>(o.history);
+      options_(o),
+      estimators_(new Estimators{
+          {},
+          {},
+          {},
+          ThinnedHistory(std::max(o.history, shortest_history)),
+          ThinnedHistory(std::min(o.history, most_eigenvalue_entries)),
+          ThinnedHistory(o.history)}) {
+    if (o.qr) estimators_->qr.emplace();
+    if (o.eigenvalues) estimators_->powers.emplace(epsilon);
+    if (o.raw_product) estimators_->raw.emplace();
 }
 TransferProduct::~TransferProduct() = default;
 TransferProduct::TransferProduct(TransferProduct&&) noexcept = default;
@@ -283,42 +277,46 @@ void TransferProduct::start(double tau) {
 }
 
 void TransferProduct::append(std::span<const Leg> legs, const Saltation& M, double tau) {
+    auto& [qr, powers, raw, qr_history, powers_history, raw_history] = *estimators_;
     end_ = tau;
     ++impacts_;
     for (const Leg& leg : legs) {
         if (leg.sticking) rank_ = 2;  // only the two deviations of the centre of mass remain
         if (leg.resting || leg.slip == 0) rank_ = std::min(rank_, 3);
-        if (qr_) qr_->pass(leg, epsilon_);
-        if (powers_) powers_->product.pass(leg);
+        if (qr) qr->pass(leg, epsilon_);
+        if (powers) powers->pass(leg);
     }
     if (M.is_singular()) rank_ = std::min(rank_, 3);  // R = 0: x' - y' = 0 after it
-    if (qr_) {
-        qr_->strike(M);
-        qr_->thinned.add(tau, [&] { return descending(qr_->logs(rank_), rank_, tau - start_); });
+    if (qr) {
+        qr->strike(M);
+        qr_history.add(
+            tau, [&] { return descending(estimators_->qr->logs(rank_), rank_, tau - start_); });
     }
-    if (powers_) {
-        powers_->product.strike(M);
-        powers_->thinned.add(tau, [&] { return eigenvalues(); });
+    if (powers) {
+        powers->strike(M);
+        powers_history.add(tau, [&] { return eigenvalues(); });
     }
-    if (raw_) {
-        raw_->multiply(legs, M, epsilon_);
-        raw_->thinned.add(tau, [&] { return raw_product(); });
+    if (raw) {
+        raw->multiply(legs, M, epsilon_);
+        raw_history.add(tau, [&] { return raw_product(); });
     }
 }
 
 void TransferProduct::end_sticking() {
+    const auto& e = estimators_;
     const Leg projection{{}, 0, 0, 1, true};
     rank_ = 2;
-    if (qr_) qr_->pass(projection, epsilon_);
-    if (powers_) powers_->product.pass(projection);
-    if (raw_) raw_->product = transfer_of(projection, epsilon_) * raw_->product;
+    if (e->qr) e->qr->pass(projection, epsilon_);
+    if (e->powers) e->powers->pass(projection);
+    if (e->raw) e->raw->product = transfer_of(projection, epsilon_) * e->raw->product;
 }
 
 Exponents TransferProduct::qr() const {
-    if (!qr_) return no_exponents;
+    const auto& qr = estimators_->qr;
+    if (!qr) return no_exponents;
     const double T = end_ - start_;
-    Exponents logs = qr_->logs(rank_);
-    const auto errors = qr_->errors(rank_, most_residual * (end_ - start_));
+    Exponents logs = qr->logs(rank_);
+    const auto errors = qr->errors(rank_, most_residual * T);
     // The k-th exponent is the difference of two sums. If one is unknown, the order of all
     // following exponents is unknown, too.
     for (int k = 0; k < rank_; ++k)
@@ -329,54 +327,40 @@ Exponents TransferProduct::qr() const {
     return descending(logs, rank_, T);
 }
 Exponents TransferProduct::eigenvalues() const {
-    return powers_ ? per_time(powers_->product.log_moduli(), rank_, end_ - start_) : no_exponents;
+    const auto& powers = estimators_->powers;
+    return powers ? per_time(powers->log_moduli(), rank_, end_ - start_) : no_exponents;
 }
 Exponents TransferProduct::raw_product() const {
-    return raw_ ? raw_->exponents(end_ - start_) : no_exponents;
+    const auto& raw = estimators_->raw;
+    return raw ? raw->exponents(end_ - start_) : no_exponents;
 }
 const ExponentHistory& TransferProduct::qr_history() const {
-    return qr_ ? qr_->thinned.history() : empty_history();
+    return estimators_->qr_history.history();
 }
 const ExponentHistory& TransferProduct::eigenvalues_history() const {
-    return powers_ ? powers_->thinned.history() : empty_history();
+    return estimators_->powers_history.history();
 }
 const ExponentHistory& TransferProduct::raw_product_history() const {
-    return raw_ ? raw_->thinned.history() : empty_history();
+    return estimators_->raw_history.history();
 }
 
 double TransferProduct::sum_rule_residual() const {
-    if (!qr_ || impacts_ < 2) return nan;
-    const auto errors = qr_->errors(rank_, most_residual * (end_ - start_));
+    if (!estimators_->qr || impacts_ < 2) return nan;
+    const auto errors = estimators_->qr->errors(rank_, most_residual * (end_ - start_));
     return *std::ranges::max_element(errors) / (end_ - start_);
 }
 
-Lyapunov::Lyapunov(
-    const Parameters& parameters, double tau_start, double tau_end, const ExponentOptions& options)
-    : parameters_(parameters),
-      tau_start_(tau_start),
-      tau_end_(tau_end),
-      product_(parameters.epsilon, options) {}
-
-void Lyapunov::on_stretch(const Stretch& stretch) {
-    if (product_.impacts() > 0) since_impact_.extend(stretch);  // the window has started
-}
-
-void Lyapunov::on_slip(const Slip& slip) {
-    if (product_.impacts() > 0) since_impact_.slip(slip);
-}
-
-void Lyapunov::on_impact(const Impact& impact) {
-    if (impact.tau < tau_start_ || impact.tau > tau_end_) return;
-    if (product_.impacts() == 0) product_.start(impact.tau);
-    else {
-        const Saltation M = saltation(parameters_, impact);
-        product_.append(since_impact_.legs(), M, impact.tau);
-        const bool is_steep = steepness_of(M) > steep;
-        chatters_ = is_steep && steep_ && impact.side == side_;
-        steep_ = is_steep;
-    }
+void Lyapunov::on_first_impact(const Impact& impact) {
+    product_.start(impact.tau);
     side_ = impact.side;
-    since_impact_.reset();
+}
+
+void Lyapunov::on_transfer(const Impact& impact, const Saltation& M, std::span<const Leg> legs) {
+    product_.append(legs, M, impact.tau);
+    const bool is_steep = steepness_of(M) > steep;
+    chatters_ = is_steep && steep_ && impact.side == side_;
+    steep_ = is_steep;
+    side_ = impact.side;
 }
 
 const TransferProduct& Lyapunov::product() {
@@ -386,28 +370,28 @@ const TransferProduct& Lyapunov::product() {
 }
 
 void WindowedExponents::add(double tau_start, double tau_end) {
-    windows_.push_back({tau_start, tau_end, Lyapunov(parameters_, tau_start, tau_end, options_)});
+    windows_.emplace_back(parameters_, tau_start, tau_end, options_);
 }
 
 void WindowedExponents::on_stretch(const Stretch& stretch) {
-    for (Window* w : open_) w->lyapunov.on_stretch(stretch);
+    for (Lyapunov* w : open_) w->on_stretch(stretch);
 }
 
 void WindowedExponents::on_slip(const Slip& slip) {
-    for (Window* w : open_) w->lyapunov.on_slip(slip);
+    for (Lyapunov* w : open_) w->on_slip(slip);
 }
 
 void WindowedExponents::on_impact(const Impact& impact) {
     if (!begun_) {
-        for (Window& w : windows_) waiting_.push_back(&w);
+        for (Lyapunov& w : windows_) waiting_.push_back(&w);
         std::ranges::sort(
-            waiting_, [](const Window* a, const Window* b) { return a->tau_start > b->tau_start; });
+            waiting_, std::greater<>(), [](const Lyapunov* w) { return w->window().from; });
         begun_ = true;
     }
-    for (; !waiting_.empty() && waiting_.back()->tau_start <= impact.tau; waiting_.pop_back())
+    for (; !waiting_.empty() && waiting_.back()->window().from <= impact.tau; waiting_.pop_back())
         open_.push_back(waiting_.back());
-    std::erase_if(open_, [&](const Window* w) { return w->tau_end < impact.tau; });
-    for (Window* w : open_) w->lyapunov.on_impact(impact);
+    std::erase_if(open_, [&](const Lyapunov* w) { return w->window().to < impact.tau; });
+    for (Lyapunov* w : open_) w->on_impact(impact);
 }
 
 }  // namespace vines

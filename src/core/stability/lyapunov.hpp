@@ -26,12 +26,13 @@
 #include <memory>
 #include <vector>
 
-#include "core/stability/transfer.hpp"
+#include "core/stability/exterior.hpp"
 
 namespace vines {
 
 /// Exponents per unit of tau; -infinity beyond the rank, NaN if not converged.
 using Exponents = std::array<double, 4>;
+inline constexpr Exponents no_exponents = {nan, nan, nan, nan};
 
 /// ok: a number; minus_infinity: rank was lost; not_converged: fewer than two impacts in the
 /// window, or a product beyond the range of double (raw_product).
@@ -99,17 +100,13 @@ public:
     const ExponentHistory& raw_product_history() const;
 
 private:
-    struct Qr;
-    struct Powers;
-    struct Raw;
+    struct Estimators;
     const double epsilon_;
     const ExponentOptions options_;
     double start_ = 0, end_ = 0;
     long impacts_ = 0;
     int rank_ = 4;
-    std::unique_ptr<Qr> qr_;
-    std::unique_ptr<Powers> powers_;
-    std::unique_ptr<Raw> raw_;
+    std::unique_ptr<Estimators> estimators_;
 };
 
 /// Largest residual of an exponent that is still reported (TransferProduct::qr), per unit of tau.
@@ -120,15 +117,13 @@ double rounding_floor(double lambda1, double T);
 
 /// Observer that feeds the matrices of a run into a product, from the first impact at or after
 /// tau_start to the last at or before tau_end.
-class Lyapunov : public Observer {
+class Lyapunov : public TransferObserver {
 public:
     Lyapunov(
         const Parameters& parameters, double tau_start, double tau_end,
-        const ExponentOptions& options);
-
-    void on_stretch(const Stretch&) override;
-    void on_slip(const Slip&) override;
-    void on_impact(const Impact&) override;
+        const ExponentOptions& options)
+        : TransferObserver(parameters, tau_start, tau_end),
+          product_(parameters.epsilon, options) {}
 
     /// Call these after the run.
     const TransferProduct& product();
@@ -138,9 +133,9 @@ public:
     }
 
 private:
-    const Parameters parameters_;
-    const double tau_start_, tau_end_;
-    LegSequence since_impact_;
+    void on_first_impact(const Impact&) override;
+    void on_transfer(const Impact&, const Saltation& M, std::span<const Leg> legs) override;
+
     TransferProduct product_;
     /// The last impacts are the end of a chatter: their large entries of M let rounding separate
     /// the deviations, until the sticking phase that follows projects them. A window that ends
@@ -165,20 +160,16 @@ public:
 
     std::size_t size() const { return windows_.size(); }
     /// Call these after the run.
-    const TransferProduct& product(std::size_t i) { return windows_[i].lyapunov.product(); }
-    TransferProduct take(std::size_t i) { return windows_[i].lyapunov.take(); }
+    const TransferProduct& product(std::size_t i) { return windows_[i].product(); }
+    TransferProduct take(std::size_t i) { return windows_[i].take(); }
 
 private:
-    struct Window {
-        double tau_start, tau_end;
-        Lyapunov lyapunov;
-    };
     const Parameters parameters_;
     const ExponentOptions options_;
-    std::vector<Window> windows_;
+    std::vector<Lyapunov> windows_;
     // Windows not yet open, latest start first; filled at the first impact.
-    std::vector<Window*> waiting_;
-    std::vector<Window*> open_;
+    std::vector<Lyapunov*> waiting_;
+    std::vector<Lyapunov*> open_;
     bool begun_ = false;
 };
 

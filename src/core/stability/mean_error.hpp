@@ -13,8 +13,8 @@
 #include <algorithm>
 #include <cmath>
 #include <span>
-#include <vector>
 
+#include "core/motion/elementary.hpp"
 #include "core/motion/simulate.hpp"
 
 namespace vines {
@@ -43,7 +43,9 @@ public:
     }
     std::size_t count() const { return count_; }
     double duration() const { return (window_.to - window_.from) / static_cast<double>(count_); }
+    /// Infinity after the last step.
     double end_of(std::size_t step) const {
+        if (step >= count_) return infinity;
         return step + 1 == count_ ? window_.to
                                   : window_.from + static_cast<double>(step + 1) * duration();
     }

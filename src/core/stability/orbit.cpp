@@ -5,7 +5,6 @@
 
 #include "core/motion/elementary.hpp"
 #include "core/motion/record.hpp"
-#include "core/stability/linear.hpp"
 
 namespace vines {
 
@@ -71,15 +70,10 @@ private:
     const Parameters p_;
 };
 
-/// Eigenvalues by descending modulus. The solver's error is an ulp of the largest: small
-/// eigenvalues take their moduli from the exterior powers.
-std::array<std::complex<double>, 4> multipliers_of(
-    const Matrix4& monodromy, const PowerProduct& powers) {
-    const Eigen::Vector4cd eigenvalues = eigenvalues_of(monodromy);
-    std::array<std::complex<double>, 4> values;
-    for (int k = 0; k < 4; ++k) values[k] = eigenvalues(k);
-    std::ranges::stable_sort(
-        values, [](auto a, auto b) { return elementary::modulus(a) > elementary::modulus(b); });
+/// Eigenvalues. The solver's error is an ulp of the largest: small ones take their moduli from the
+/// exterior powers.
+Eigenvalues multipliers_of(const Matrix4& monodromy, const PowerProduct& powers) {
+    Eigenvalues values = eigenvalues_of(monodromy);
     const auto logs = powers.log_moduli();
     for (int k = 0; k < 4; ++k) {
         const double modulus = elementary::modulus(values[k]);
@@ -91,15 +85,12 @@ std::array<std::complex<double>, 4> multipliers_of(
     return values;
 }
 
-using Stop = std::function<bool()>;
-
 /// The middle of the longest flight in the cycle after a state at a whole cycle: far from events.
-double time_far_from_events(const Parameters& p, const State& start, const Stop& stop) {
+double time_far_from_events(const Parameters& p, const State& start, const StopRequest& stop) {
     ImpactRecord impacts;
     StickRecord sticks;
-    Observer* const observers[] = {&impacts, &sticks};
     const double cycle = p.cycle();
-    follow(p, start, 0, cycle, stop, observers);
+    follow(p, start, 0, cycle, stop, {&impacts, &sticks});
     double from = 0, length = 0, middle = 0.5 * cycle;
     std::size_t stick = 0;
     auto flight_to = [&](double tau) {
@@ -115,31 +106,22 @@ double time_far_from_events(const Parameters& p, const State& start, const Stop&
 }
 
 std::optional<State> after_period(
-    const Parameters& p, const State& s, double tau, int cycles, const Stop& stop,
-    std::span<Observer* const> observers) {
+    const Parameters& p, const State& s, double tau, int cycles, const StopRequest& stop,
+    std::initializer_list<Observer*> observers) {
     if (std::abs(s.x - s.y) > p.b) return std::nullopt;
     return follow(p, s, tau, cycles * p.cycle(), stop, observers);
-}
-
-/// Spectral radius: independent of the units, and at most the norm in any of them.
-double largest_modulus(const Matrix4& monodromy) {
-    double largest = 0;
-    for (const std::complex<double>& value : eigenvalues_of(monodromy))
-        largest = std::max(largest, elementary::modulus(value));
-    return monodromy.allFinite() ? largest : infinity;
 }
 
 /// Newton's method, in coordinates scaled to order one.
 std::optional<State> solve_return(
     const Parameters& p, State s, double tau, int cycles, const State& scale, double reach,
-    const Stop& stop) {
+    const StopRequest& stop) {
     const State guess = s;
     const Eigen::Vector4d unit = vector_of(scale);
     double miss_before = infinity;
     for (int step = 0, worse = 0; step < most_steps; ++step) {
         Monodromy monodromy(p);
-        Observer* const observers[] = {&monodromy};
-        const auto back = after_period(p, s, tau, cycles, stop, observers);
+        const auto back = after_period(p, s, tau, cycles, stop, {&monodromy});
         if (!back) return std::nullopt;
         const Eigen::Vector4d miss = (vector_of(*back) - vector_of(s)).cwiseQuotient(unit);
         const double size = miss.cwiseAbs().maxCoeff();
@@ -148,9 +130,10 @@ std::optional<State> solve_return(
             return s;
         if (size > miss_before && ++worse > most_worse_steps) return std::nullopt;
         miss_before = size;
-        const Matrix4 D = unit.asDiagonal().inverse() *
-                          (Matrix4(monodromy.matrix) - Matrix4::Identity()) * unit.asDiagonal();
-        if (!(D.norm() < most_stretch) && !(largest_modulus(monodromy.matrix) < most_stretch))
+        const Matrix4 M = monodromy.matrix, D = unit.asDiagonal().inverse() *
+                                                (M - Matrix4::Identity()) * unit.asDiagonal();
+        // The spectral radius is at most the norm, in any units.
+        if (!(D.norm() < most_stretch) && (!M.allFinite() || spectral_radius(M) >= most_stretch))
             return std::nullopt;
         // Neutral directions (a ball at rest, never hit) are left unchanged: the minimum-norm step.
         Eigen::Vector4d correction = -minimum_norm_solution(D, miss);
@@ -191,10 +174,11 @@ Exponents PeriodicOrbit::exponents(const Parameters& p) const {
 }
 
 std::optional<State> follow(
-    const Parameters& p, const State& start, double tau, double duration, const Stop& stop,
-    std::span<Observer* const> observers) {
-    const Outcome outcome =
-        simulate(p, start, {tau + duration, most_orbit_impacts, stop, tau}, observers);
+    const Parameters& p, const State& start, double tau, double duration, const StopRequest& stop,
+    std::initializer_list<Observer*> observers) {
+    const Outcome outcome = simulate(
+        p, start, {tau + duration, most_orbit_impacts, stop, tau},
+        std::span(observers.begin(), observers.size()));
     if (outcome.reason != End::tau_end) return std::nullopt;
     return outcome.state;
 }
@@ -204,13 +188,14 @@ namespace {
 /// The smallest period: the first divisor of `cycles` after which the state returns. Sets the
 /// results of the monodromy matrix over it; false if the search was stopped.
 bool find_smallest_period(
-    const Parameters& p, int cycles, const State& scale, const Stop& stop, PeriodicOrbit& orbit) {
+    const Parameters& p, int cycles, const State& scale, const StopRequest& stop,
+    PeriodicOrbit& orbit) {
     for (int divisor = 1; divisor <= cycles; ++divisor) {
         if (cycles % divisor != 0) continue;
         Monodromy monodromy(p);
         Powers powers(p);
-        Observer* const observers[] = {&monodromy, &powers};
-        const auto back = after_period(p, orbit.state, orbit.tau, divisor, stop, observers);
+        const auto back =
+            after_period(p, orbit.state, orbit.tau, divisor, stop, {&monodromy, &powers});
         if (!back) return false;
         orbit.closure = distance(*back, orbit.state, scale);
         if (divisor < cycles && orbit.closure > divisor_tolerance) continue;
@@ -223,14 +208,13 @@ bool find_smallest_period(
 }
 
 /// Counts the events in a period; false if the search was stopped.
-bool count_period(const Parameters& p, const Stop& stop, PeriodicOrbit& orbit) {
+bool count_period(const Parameters& p, const StopRequest& stop, PeriodicOrbit& orbit) {
     // Follows three periods and counts one from the first contact after a release: no chatter is
     // cut.
     ContactRecord contacts;
     ImpactRecord impacts;
-    Observer* const observers[] = {&contacts, &impacts};
     const double period = orbit.cycles * p.cycle();
-    if (!follow(p, orbit.state, orbit.tau, 3 * period, stop, observers)) return false;
+    if (!follow(p, orbit.state, orbit.tau, 3 * period, stop, {&contacts, &impacts})) return false;
     double from = contacts.sticks.empty() ? orbit.tau : contacts.sticks[0].tau_end;
     for (const CountedContact& c : contacts.contacts)
         if (c.tau >= from) {
@@ -251,7 +235,7 @@ bool count_period(const Parameters& p, const Stop& stop, PeriodicOrbit& orbit) {
 /// After half a period the forcing has the opposite sign only if the period is an odd number of
 /// cycles. Unequal walls can leave the motion between chatters symmetric, but not the chatters.
 bool is_symmetric(
-    const Parameters& p, const PeriodicOrbit& orbit, const State& scale, const Stop& stop) {
+    const Parameters& p, const PeriodicOrbit& orbit, const State& scale, const StopRequest& stop) {
     if (orbit.cycles % 2 == 0 || (!p.has_equal_walls() && orbit.impacts != 0)) return false;
     const auto half = follow(p, orbit.state, orbit.tau, 0.5 * orbit.cycles * p.cycle(), stop);
     return half && distance(state_of(-vector_of(*half)), orbit.state, scale) < symmetric_within;
@@ -261,7 +245,7 @@ bool is_symmetric(
 
 std::optional<PeriodicOrbit> find_orbit(
     const Parameters& p, const State& at_whole_cycle, int cycles, const State& scale, double reach,
-    const Stop& stop) {
+    const StopRequest& stop) {
     const double tau = time_far_from_events(p, at_whole_cycle, stop);
     const auto guess = follow(p, at_whole_cycle, 0, tau, stop);
     if (!guess) return std::nullopt;
@@ -329,11 +313,12 @@ constexpr double least_contraction = 1e-9;
 
 bool attracts(
     const Parameters& p, const PeriodicOrbit& orbit, const State& at_whole_cycle,
-    const State& scale, const Stop& stop) {
+    const State& scale, const StopRequest& stop) {
     // Without impacts the ball has two multipliers 1, and only the oscillator converges.
     const bool untouched = orbit.contacts == 0 && orbit.state.y_dot == 0;
-    const double largest = untouched ? spectral_radius(orbit.monodromy.topLeftCorner<2, 2>())
-                                     : elementary::modulus(orbit.multipliers[0]);
+    const double largest =
+        untouched ? spectral_radius(Eigen::Matrix2d(orbit.monodromy.topLeftCorner<2, 2>()))
+                  : elementary::modulus(orbit.multipliers[0]);
     const double per_period = -elementary::log(largest);
     if (!(per_period > least_contraction)) return false;
     std::optional<State> s = follow(p, at_whole_cycle, 0, orbit.tau, stop);
@@ -368,8 +353,7 @@ bool attracts(
 
 std::vector<State> whole_cycle_states(const Parameters& p, const PeriodicOrbit& orbit) {
     StroboscopicRecord record(p, 1);
-    Observer* const observers[] = {&record};
-    follow(p, orbit.state, orbit.tau, (orbit.cycles + 0.5) * p.cycle(), {}, observers);
+    follow(p, orbit.state, orbit.tau, (orbit.cycles + 0.5) * p.cycle(), {}, {&record});
     record.states.resize(orbit.cycles);
     return record.states;
 }

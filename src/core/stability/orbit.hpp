@@ -5,15 +5,17 @@
 // multipliers: the orbit is stable if all lie inside the unit circle.
 #pragma once
 
-#include <array>
-#include <complex>
 #include <functional>
 #include <optional>
 
 #include "core/motion/elementary.hpp"
+#include "core/stability/linear.hpp"
 #include "core/stability/lyapunov.hpp"
 
 namespace vines {
+
+/// Polled every few events, as Limits::stop; true ends the work. Empty: never.
+using StopRequest = std::function<bool()>;
 
 /// Scale of each component of a state: about the largest value that it takes.
 State scale_of(const Parameters& parameters, std::span<const State> states);
@@ -29,7 +31,7 @@ struct PeriodicOrbit {
     long contacts;
     long impacts, sticks;  ///< all, per period
     bool symmetric;        ///< x(tau + half the period) = -x(tau), and y alike
-    std::array<std::complex<double>, 4> multipliers;  ///< by descending modulus
+    Eigenvalues multipliers;
 
     Eigen::Matrix4d monodromy;  ///< derivative of the return map at `state`
 
@@ -42,13 +44,13 @@ struct PeriodicOrbit {
 /// The state at tau + duration of a motion from tau; nullopt after too many impacts or a stop.
 std::optional<State> follow(
     const Parameters& parameters, const State& start, double tau, double duration,
-    const std::function<bool()>& stop, std::span<Observer* const> observers = {});
+    const StopRequest& stop, std::initializer_list<Observer*> observers = {});
 
 /// The orbit with a period of `cycles` (or a divisor) near the state at a whole cycle, if Newton's
 /// method finds one within `reach` of it before it is stopped.
 std::optional<PeriodicOrbit> find_orbit(
     const Parameters& parameters, const State& at_whole_cycle, int cycles, const State& scale,
-    double reach, const std::function<bool()>& stop);
+    double reach, const StopRequest& stop);
 
 /// At this distance, in units of the scale, a motion follows an attracting orbit permanently: a
 /// chance return from order one would take 1e16 cycles or more.
@@ -60,7 +62,7 @@ inline constexpr double on_the_orbit = 1e-8;
 /// motion that only passes by does neither.
 bool attracts(
     const Parameters& parameters, const PeriodicOrbit& orbit, const State& at_whole_cycle,
-    const State& scale, const std::function<bool()>& stop);
+    const State& scale, const StopRequest& stop);
 
 /// The orbit's states at the whole cycles 1, ..., orbit.cycles after `tau`.
 std::vector<State> whole_cycle_states(const Parameters& parameters, const PeriodicOrbit& orbit);

@@ -76,7 +76,7 @@ Growth growth_of(const TransferProduct& product) {
     const ExponentHistory& h = product.qr_history();
     const double start = product.start_tau(), T = product.end_tau() - start,
                  lambda1 = product.qr()[0];
-    Growth g{lambda1, nan, {nan, nan, nan, nan}, lambda1 * T, nan, nan};
+    Growth g{lambda1, nan, no_exponents, lambda1 * T, nan, nan};
     const std::size_t stride = h.coarse_stride();
     for (std::size_t i = 0; i < h.tau.size(); i += stride)
         if (h.tau[i] >= start + 0.5 * T) {

@@ -39,7 +39,7 @@ constexpr double normal_95 = 1.96;
 /// Radius of a neighbourhood from which motions approach the orbit.
 double tested_radius(
     const Parameters& p, const PeriodicOrbit& orbit, const std::vector<State>& centres,
-    const State& scale, const std::function<bool()>& stop) {
+    const State& scale, const StopRequest& stop) {
     const double per_period = -elementary::log(elementary::modulus(orbit.multipliers[0])),
                  periods = std::ceil(
                      -elementary::log(contraction_in_test) / per_period + additional_periods);
@@ -73,12 +73,17 @@ bool has_same_statistics(const PointResult& one, const PointResult& other) {
            agree(one.x_rms, one.x_rms_error, other.x_rms, other.x_rms_error);
 }
 
+/// Number of components that vary in a box.
+long dimensions_of(const StartBox& box) {
+    return std::ranges::count_if(box, [](const Interval& i) { return i.from != i.to; });
+}
+
 bool is_chaotic(const PointResult& r) { return r.name.motion.starts_with("chaotic"); }
 
 }  // namespace
 
 KnownMotions::KnownMotions(
-    const Parameters& p, const std::vector<PointResult>& motions, const std::function<bool()>& stop)
+    const Parameters& p, const std::vector<PointResult>& motions, const StopRequest& stop)
     : parameters_(p) {
     std::vector<std::string> names;
     for (const PointResult& m : motions) {
@@ -122,8 +127,7 @@ std::vector<State> starts_in(
     // 1/(positive root of x^(d + 1) = x + 1) for d = 1, ..., 4; the recurrence adds its powers.
     constexpr double steps[] = {
         0.6180339887498949, 0.7548776662466927, 0.8191725133961645, 0.8566748838545029};
-    const auto varied =
-        std::ranges::count_if(box, [](const Interval& i) { return i.from != i.to; });
+    const long varied = dimensions_of(box);
     RandomSequence random(seed);
     std::array<double, 4> at{}, step{};
     double power = 1;
@@ -166,13 +170,10 @@ std::optional<PointSystem> Basins::system_of(const Place& place) const {
 void Basins::explore(int threads, const PointOptions& options, RunControl& control) {
     const std::size_t each = std::min(explored_starts, plan_.count);
     std::vector<PointResult> found(each * values());
-    run_points(found.size(), threads, options, control, [&](std::size_t i) {
+    parallel(found.size(), threads, [&](std::size_t i) {
         const auto system = system_of({i % each, {i / each}});
-        return !system ? std::nullopt
-                       : std::optional(PointTask{
-                             *system, {{"", system->start}}, [&found, i](std::vector<Motion> m) {
-                                 found[i] = std::move(m[0].result);
-                             }});
+        if (system) found[i] = run_point(*system, system->start, options, control);
+        else poll(control);
     });
     parallel(values(), threads, [&](std::size_t value) {
         const ComputePermit permit(control);
@@ -218,18 +219,13 @@ void Basins::run_pairs(int threads, const PointOptions& options, RunControl& con
                 if (inside && std::abs(s.x - s.y) <= systems_[value].parameters.b)
                     all.push_back({i * values() + value, distance, s});
             }
-    run_points(all.size(), threads, options, control, [&](std::size_t i) {
+    parallel(all.size(), threads, [&](std::size_t i) {
         const Neighbour& n = all[i];
-        PointSystem system = systems_[n.line % values()];
-        system.start = n.start;
-        return std::optional(PointTask{
-            system, {{"", n.start}}, [this, n](std::vector<Motion> m) {
-                const std::lock_guard lock(mutex_);
-                const PointResult &there = m[0].result,
-                                  &here = motions_[labels_[n.line] - 1].motion;
-                if (there.name.motion == "not_decided" || here.name.motion == "not_decided") return;
-                pairs_.push_back({n.line, n.distance, there.name.motion != here.name.motion});
-            }});
+        const PointResult there = run_point(systems_[n.line % values()], n.start, options, control);
+        const std::lock_guard lock(mutex_);
+        const PointResult& here = motions_[labels_[n.line] - 1].motion;
+        if (there.name.motion == "not_decided" || here.name.motion == "not_decided") return;
+        pairs_.push_back({n.line, n.distance, there.name.motion != here.name.motion});
     });
 }
 
@@ -308,8 +304,7 @@ std::optional<PeriodicOrbit> continued(
 }  // namespace
 
 void Basins::add_entropy(std::size_t value, BasinsAt& at) const {
-    const auto varied =
-        std::ranges::count_if(plan_.box, [](const Interval& i) { return i.from != i.to; });
+    const long varied = dimensions_of(plan_.box);
     const auto per_side = static_cast<int>(std::max(
         1.0,
         std::floor(elementary::pow(

@@ -11,7 +11,6 @@
 #include <array>
 #include <cstdint>
 #include <map>
-#include <memory>
 #include <mutex>
 
 #include "core/sweep/sweep.hpp"
@@ -24,7 +23,7 @@ public:
     /// From measured motions of the system; `stop` ends the tests early.
     KnownMotions(
         const Parameters& parameters, const std::vector<PointResult>& motions,
-        const std::function<bool()>& stop);
+        const StopRequest& stop);
 
     /// The motion to which a state at a whole cycle leads; null if unknown.
     const PointResult* reached_from(const State& at_whole_cycle) const;

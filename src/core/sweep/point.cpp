@@ -21,8 +21,7 @@ constexpr double cycles_between_looks = 4;
 
 /// Run from a state at a whole cycle: the forcing phase is that of tau = 0.
 Outcome cycles_from(
-    const Parameters& p, const State& from, double tau, double cycles,
-    const std::function<bool()>& stop) {
+    const Parameters& p, const State& from, double tau, double cycles, const StopRequest& stop) {
     return simulate(
         p, from,
         {.tau_end = tau + cycles * p.cycle(),
@@ -93,8 +92,7 @@ double reference_rms(
 }
 
 /// Last state at a whole cycle: a run that ended within a cycle continues to its end.
-std::optional<State> last_state(
-    const Parameters& p, Outcome end, const std::function<bool()>& stop) {
+std::optional<State> last_state(const Parameters& p, Outcome end, const StopRequest& stop) {
     if (end.reason == End::max_impacts) {
         const double into = end.tau / p.cycle();
         end = cycles_from(p, end.state, end.tau, std::ceil(into) - into, stop);
@@ -146,8 +144,7 @@ Interval measured_part(const Parameters& p, const PointOptions& o) {
 }
 
 PointResult measure(
-    const Parameters& p, const State& start, const PointOptions& options,
-    const std::function<bool()>& stop) {
+    const Parameters& p, const State& start, const PointOptions& options, const StopRequest& stop) {
     PointResult r;
     State begin = start;
     for (double left = p.load ? 0 : std::round(options.transient_cycles); left > 0;) {
@@ -184,6 +181,30 @@ PointResult measure(
     return r;
 }
 
+PointResult run_point(
+    const PointSystem& system, const State& start, PointOptions options, RunControl& control) {
+    const ComputePermit permit(control);
+    const auto stop = [&control] { return control.stop_or_yield(); };
+    if (stop()) throw Stopped();
+    options.max_impacts = system.max_impacts;
+    options.known = system.known.get();
+    options.units = system.units;
+    PointResult result = measure(system.parameters, start, options, stop);
+    if (result.outcome.reason == End::stopped || stop()) throw Stopped();
+    ++control.runs;
+    control.impacts += static_cast<std::size_t>(result.impacts);
+    return result;
+}
+
+std::vector<Motion> run_starts(
+    const PointSystem& system, const std::vector<NamedStart>& starts, const PointOptions& options,
+    RunControl& control) {
+    std::vector<Motion> motions;
+    for (const auto& [name, state] : starts)
+        motions.push_back({name, state, run_point(system, state, options, control)});
+    return motions;
+}
+
 bool differs_in_steady_state(const PointResult& one, const PointResult& other) {
     const Regime &a = one.regime, &b = other.regime;
     // The motion without impacts is unique.
@@ -216,25 +237,6 @@ State carried(const State& s, const Parameters& from, const Parameters& to) {
 namespace {
 
 double peak_of(const Motion& m) { return m.result.objective; }
-
-const Motion* from_start(const SweepPoint& point, const std::string& name) {
-    const auto m = std::ranges::find_if(point.motions, [&](const Motion& motion) {
-        return motion.start == name && motion.result.measured;
-    });
-    return m == point.motions.end() ? nullptr : &*m;
-}
-
-std::vector<std::string> start_names(std::span<const SweepPoint> row) {
-    std::vector<std::string> names;
-    for (const SweepPoint& point : row)
-        for (const Motion& m : point.motions)
-            if (std::ranges::find(names, m.start) == names.end()) names.push_back(m.start);
-    return names;
-}
-
-}  // namespace
-
-namespace {
 
 /// Mean of a Poisson distribution whose probability of at most `count` events is `probability`.
 double poisson_mean(int count, double probability) {
@@ -303,10 +305,17 @@ RowSummary summary_of(std::span<const SweepPoint> row, bool largest, bool defaul
     auto offer = [&](Peak& peak, std::size_t at, const Motion* m) {
         if (m && (!peak.motion || beats(peak_of(*m), peak_of(*peak.motion)))) peak = {at, m};
     };
+    auto peak_from = [&](const std::string& start) -> Peak& {
+        const auto known = std::ranges::find(s.starts, start, &RowSummary::FromStart::start);
+        if (known != s.starts.end()) return known->peak;
+        s.starts.push_back({start, {}});
+        return s.starts.back().peak;
+    };
     s.points = row.size();
-    for (std::string& name : start_names(row)) s.starts.push_back({std::move(name), {}});
     for (std::size_t k = 0; k < row.size(); ++k) {
         const SweepPoint& point = row[k];
+        for (const Motion& m : point.motions)
+            offer(peak_from(m.start), k, m.result.measured ? &m : nullptr);
         const auto motions = ranked(point);
         if (motions.empty()) {
             ++s.missing;
@@ -314,7 +323,6 @@ RowSummary summary_of(std::span<const SweepPoint> row, bool largest, bool defaul
         }
         offer(s.worst, k, motions.back());
         offer(s.best, k, motions.front());
-        for (auto& of_start : s.starts) offer(of_start.peak, k, from_start(point, of_start.start));
         const auto x_free = motions.back()->result.x_free;
         if (x_free && (!s.x_free || beats(*x_free, *s.x_free))) s.x_free = x_free;
         if (!default_set && !point.second) continue;

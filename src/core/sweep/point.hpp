@@ -5,7 +5,6 @@
 // the largest objective (peak); a row of points is summarised by its extreme peaks.
 #pragma once
 
-#include <functional>
 #include <memory>
 #include <optional>
 #include <span>
@@ -112,7 +111,7 @@ inline constexpr long transient_impacts_per_cycle = 1000;
 /// Runs one point from a state at tau = 0. Invalid once `stop` (as in Limits) returned true.
 PointResult measure(
     const Parameters& parameters, const State& start, const PointOptions& options,
-    const std::function<bool()>& stop);
+    const StopRequest& stop);
 
 /// The measured part of a run from tau = 0. A load is measured as a whole; if it has no end or is a
 /// shock, for the measured cycles. The transient of a harmonic forcing is a run of its own.
@@ -188,21 +187,13 @@ struct RowSummary {
 /// Summary of a row: the largest peaks, or without `largest` the smallest.
 RowSummary summary_of(std::span<const SweepPoint> row, bool largest, bool default_set);
 
-/// A point, its starts, and the receiver of the motions, in the order of the starts.
-struct PointTask {
-    PointSystem system;
-    std::vector<NamedStart> starts;
-    std::function<void(std::vector<Motion>)> done;  ///< called on the computing thread
-};
-
-/// Computes a motion by measure() on the calling thread. Throws Stopped on a stop request.
+/// Computes a motion by measure() on the calling thread, with a permit. Throws Stopped on a stop
+/// request.
 PointResult run_point(
     const PointSystem& system, const State& start, PointOptions options, RunControl& control);
-
-/// Computes task_at(0), ..., task_at(count - 1). Each task is created when it is due; an empty one
-/// is skipped. Throws Stopped after a stop request.
-void run_points(
-    std::size_t count, int threads, const PointOptions& options, RunControl& control,
-    const std::function<std::optional<PointTask>(std::size_t)>& task_at);
+/// The same from each of the starts, in their order.
+std::vector<Motion> run_starts(
+    const PointSystem& system, const std::vector<NamedStart>& starts, const PointOptions& options,
+    RunControl& control);
 
 }  // namespace vines

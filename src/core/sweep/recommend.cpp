@@ -44,20 +44,23 @@ using Try = Recommendation;
 
 class StoppedFromOutside : public RunControl {
 public:
-    explicit StoppedFromOutside(const std::function<bool()>& stop) : stop_(stop) {}
+    explicit StoppedFromOutside(const StopRequest& stop) : stop_(stop) {}
     bool stop_or_yield() override { return stop_ && stop_(); }
 
 private:
-    const std::function<bool()>& stop_;
+    const StopRequest& stop_;
 };
 
-void take_worst(Try& t, const std::vector<NamedStart>& starts, const std::vector<Motion>& motions) {
-    for (std::size_t i = 0; i < motions.size(); ++i) {
-        const PointResult& r = motions[i].result;
-        // A motion that is not measured, for too many impacts, excludes its b.
+/// A b with the worst of the motions there. A motion that is not measured, for too many impacts,
+/// excludes its b.
+Try worst_of(double b, const std::vector<Motion>& motions) {
+    Try t{b};
+    for (const Motion& m : motions) {
+        const PointResult& r = m.result;
         const double ratio = r.measured ? r.x_rms_ratio : infinity;
-        if (ratio > t.x_rms_ratio) t = {t.b, ratio, starts[i], r.x_max, r.regime.type};
+        if (ratio > t.x_rms_ratio) t = {b, ratio, m.start, r.x_max, r.regime.type};
     }
+    return t;
 }
 
 /// The search in one system, apart from b.
@@ -67,20 +70,14 @@ struct Search {
     RunControl& control;
     std::vector<Try> tries = {};  // at the given frequency
 
-    std::vector<Try> tried(const Parameters& p, const std::vector<double>& bs) const {
+    std::vector<Try> tried(Parameters p, const std::vector<double>& bs) const {
         std::vector<Try> result;
-        for (const double b : bs) result.push_back({b});
-        run_points(bs.size(), 1, length_of_try, control, [&](std::size_t i) {
-            Parameters at = p;
-            at.b = bs[i];
-            std::vector<NamedStart> starts = default_starts(at);
-            return std::optional(PointTask{
-                {at, {}, length_of_try.max_impacts},
-                starts,
-                [&result, i, starts](const std::vector<Motion>& motions) {
-                    take_worst(result[i], starts, motions);
-                }});
-        });
+        for (const double b : bs) {
+            p.b = b;
+            const PointSystem system{p, {}, length_of_try.max_impacts};
+            result.push_back(
+                worst_of(b, run_starts(system, default_starts(p), length_of_try, control)));
+        }
         return result;
     }
 
@@ -199,7 +196,7 @@ Recommendations recommendations(Search& s, const std::vector<double>& row) {
 
 }  // namespace
 
-Recommendations recommended_b(const Parameters& p, const std::function<bool()>& stop) {
+Recommendations recommended_b(const Parameters& p, const StopRequest& stop) {
     const auto C = free_amplitude(p);
     if (!p.has_straight_flights() || !p.has_constant_R() || !p.has_equal_walls() || p.R_plus == 1 ||
         !C || *C == 0)

@@ -21,7 +21,7 @@ inline constexpr double F_tolerance = 1.2, f_tolerance = 0.01;
 struct Recommendation {
     double b;                ///< m
     double x_rms_ratio = 0;  ///< rms of x over that without absorber, below 1, for the worst start
-    NamedStart start = {};   ///< the worst start, which the following two values describe as well
+    std::string start = {};  ///< the worst start, which the following two values describe as well
     double x_max = 0;        ///< m
     RegimeType regime = RegimeType::none;
     double fold_share = 0;  ///< amplitude at the fold over that without absorber
@@ -41,6 +41,6 @@ struct Recommendations {
 /// The worst case is over all starts. Empty if no b reduces the rms, if there is no amplitude
 /// without absorber (undamped resonance, no forcing) or no manifold with a fold (R = 1, or
 /// different R of the walls), or if `stop` returned true.
-Recommendations recommended_b(const Parameters& parameters, const std::function<bool()>& stop);
+Recommendations recommended_b(const Parameters& parameters, const StopRequest& stop);
 
 }  // namespace vines

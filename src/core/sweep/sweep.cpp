@@ -1,8 +1,7 @@
-// Independent points are computed coarse to fine, as tasks that share all cores (points.cpp).
-// Points that depend on a neighbour are computed in rows, as many rows at a time as there are
-// threads: first all motions whose starts need no neighbour; then, with the default set of starts,
-// a pass up and a pass down each row, which continue from each point's worst motion, or, with
-// `carry`, one pass in its direction.
+// Independent points are computed coarse to fine, on all cores. Points that depend on a neighbour
+// are computed in rows, as many rows at a time as there are threads: first all motions whose starts
+// need no neighbour; then, with the default set of starts, a pass up and a pass down each row,
+// which continue from each point's worst motion, or, with `carry`, one pass in its direction.
 #include "core/sweep/sweep.hpp"
 
 #include <algorithm>
@@ -82,9 +81,7 @@ struct Sweep {
     void run() {
         if (plan.by_rows()) return run_rows();
         const std::vector<std::size_t> lines = plan.in_order ? plan.lines : coarse_to_fine();
-        run_points(lines.size(), threads, plan.options, control, [&](std::size_t i) {
-            return single(lines[i]);
-        });
+        parallel(lines.size(), threads, [&](std::size_t i) { run_single(lines[i]); });
     }
 
     SweepPoint begun(const Place& place) const {
@@ -126,20 +123,11 @@ struct Sweep {
         return run_point(system, start, plan.options, control);
     }
 
-    /// Task that computes a line; a point without a valid system is reported at once.
-    std::optional<PointTask> single(std::size_t line) {
+    void run_single(std::size_t line) {
         SweepPoint point = begun(plan.grid.place_of(line));
-        if (!point.system) {
-            hand_out(line, point);
-            return std::nullopt;
-        }
-        const PointSystem system = *point.system;
-        return PointTask{
-            system, starts_of(system, line),
-            [this, line, point = std::move(point)](std::vector<Motion> motions) mutable {
-                take_single(point, std::move(motions));
-                hand_out(line, point);
-            }};
+        if (point.system) run_own_starts(point, line);
+        hand_out(line, point);
+        if (!point.system) poll(control);
     }
 
     /// The point's own start and, at regular intervals, a second one: the middle, or the wall if
@@ -154,7 +142,9 @@ struct Sweep {
         return starts;
     }
 
-    static void take_single(SweepPoint& point, std::vector<Motion> motions) {
+    void run_own_starts(SweepPoint& point, std::size_t number) const {
+        auto motions =
+            run_starts(*point.system, starts_of(*point.system, number), plan.options, control);
         if (motions.size() > 1) point.second = std::move(motions[1]);
         point.motions.push_back(std::move(motions[0]));
     }
@@ -199,24 +189,21 @@ struct Sweep {
     void run_fresh(std::span<Row> rows) {
         const std::size_t n = plan.grid.row();
         for (Row& row : rows) row.points.resize(n);
-        run_points(rows.size() * n, threads, plan.options, control, [&](std::size_t task) {
-            return fresh(rows[task / n], task % n);
+        parallel(rows.size() * n, threads, [&](std::size_t task) {
+            run_fresh(rows[task / n], task % n);
         });
     }
 
-    /// Task of the k-th point of a row.
-    std::optional<PointTask> fresh(Row& row, std::size_t k) {
+    /// The same for the k-th point of a row.
+    void run_fresh(Row& row, std::size_t k) {
         Place place = row.place;
         place.at[plan.grid.inner()] = k;
         SweepPoint& point = row.points[k] = begun(place);
-        if (!point.system || plan.carry != Carry::none) return std::nullopt;
-        if (!plan.default_set)
-            return PointTask{
-                *point.system, starts_of(*point.system, row.wanted[0] * plan.grid.row() + k),
-                [&point](std::vector<Motion> motions) { take_single(point, std::move(motions)); }};
-        return PointTask{
-            *point.system, default_starts(point.system->parameters),
-            [&point](std::vector<Motion> motions) { point.motions = std::move(motions); }};
+        if (!point.system || plan.carry != Carry::none) return poll(control);
+        if (plan.default_set)
+            point.motions = run_starts(
+                *point.system, default_starts(point.system->parameters), plan.options, control);
+        else run_own_starts(point, row.wanted[0] * plan.grid.row() + k);
     }
 
     /// Passes up and down are independent of each other and run at the same time.

@@ -68,13 +68,13 @@ private:
     std::size_t runs_per_point() const { return default_set ? most_starts : 1; }
 };
 
-/// Receives results, from several threads at once: one point per line or, with a reduced axis, a
-/// summary per row.
+/// Receives results, from several threads at once: one point per line or, only with a reduced axis,
+/// a summary per row.
 class SweepSink {
 public:
     virtual ~SweepSink() = default;
     virtual void point(std::size_t line, const SweepPoint& point) = 0;
-    virtual void row(std::size_t line, const RowSummary& row) = 0;
+    virtual void row(std::size_t /*line*/, const RowSummary&) {}
 };
 
 /// Lines where a second start was tried, and those of them whose steady state depends on the start.

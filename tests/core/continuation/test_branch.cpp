@@ -5,7 +5,6 @@
 #include <numbers>
 
 #include "../support.hpp"
-#include "core/continuation/arc.hpp"
 #include "core/continuation/branch.hpp"
 #include "core/measures/energy.hpp"
 #include "core/stability/orbit.hpp"
@@ -69,9 +68,7 @@ Recorded continued(
                  change(changed, values[0]);
                  return is_physical(changed) ? std::optional(changed) : std::nullopt;
              },
-             {std::abs(to - from)}},
-        .from = from,
-        .to = to,
+             {{from, to}}},
         .switches = switches};
     const auto orbit = settled_orbit(p, cycles);
     REQUIRE(orbit);
@@ -106,8 +103,7 @@ void check_points(const Recorded& r, const std::function<Parameters(double)>& sy
                 elementary::modulus(found->multipliers[k]) ==
                 doctest::Approx(elementary::modulus(orbit.multipliers[k])).epsilon(1e-6));
         Energy energy(p, 0, orbit.sequence.cycles() * p.cycle());
-        Observer* const observers[] = {&energy};
-        follow(p, s, 0, orbit.sequence.cycles() * p.cycle(), {}, observers);
+        follow(p, s, 0, orbit.sequence.cycles() * p.cycle(), {}, {&energy});
         const EnergyBalance balance = energy.balance({0, orbit.sequence.cycles() * p.cycle()});
         CHECK(orbit.measures.x_max == doctest::Approx(balance.peak).epsilon(1e-7));
         CHECK(orbit.measures.x_rms == doctest::Approx(balance.rms).epsilon(1e-7));
@@ -166,14 +162,14 @@ TEST_CASE("the Jacobian matrix of an orbit's equations is their difference quoti
             changed.Omega = values[0];
             return std::optional(changed);
         },
-        {0.2}};
+        {{0, 0.2}}};
     for (const bool mirrored : {false, true}) {
         // Not an orbit: the equations hold for any unknowns.
         const OrbitEquations equations({{1, -1, -1}, mirrored, mirrored ? 3 : 2}, family, 0.003);
         Unknowns z(8);
         z << 0.4, 0.7, -0.9, -1.1, 2.1, 1.7, 2.4, 1 / 0.2;
         Eigen::MatrixXd J;
-        const auto at = equations.values(z, J);
+        const auto at = equations.values(z, &J);
         REQUIRE(at);
         for (Eigen::Index c = 0; c < 8; ++c) {
             CAPTURE(c);
@@ -311,9 +307,7 @@ TEST_CASE("limits of points and a stop request end a computation") {
                  changed.b = values[0];
                  return std::optional(changed);
              },
-             {0.02}},
-        .from = 0.005,
-        .to = 0.025,
+             {{0.005, 0.025}}},
         .most_points = 5};
     const auto orbit = settled_orbit(p, 1);
     REQUIRE(orbit);

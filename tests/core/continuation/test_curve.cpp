@@ -34,9 +34,8 @@ std::optional<Parameters> by_b_and_R(double b, double R) {
 Collected branch_along_b(double b, double R, double from, double to) {
     const Parameters p = *by_b_and_R(b, R);
     BranchPlan plan{
-        .family = {[R](const std::vector<double>& v) { return by_b_and_R(v[0], R); }, {to - from}},
-        .from = from,
-        .to = to};
+        .family = {
+            [R](const std::vector<double>& v) { return by_b_and_R(v[0], R); }, {{from, to}}}};
     const State s = simulate(p, default_state(p), {1000 * p.cycle(), 1000000, {}}, {}).state;
     const auto orbit = find_orbit(p, s, 1, scale_of(p, {&s, 1}), 0.5, {});
     REQUIRE(orbit);
@@ -65,12 +64,10 @@ TEST_CASE("a curve of special points passes through those of other branches") {
         const Collected branch = branch_along_b(b, 0.6, from, to);
         const SpecialPoint* const begin = branch.first(kind);
         REQUIRE(begin);
-        const CurvePlan plan{
-            .family =
-                {[](const std::vector<double>& v) { return by_b_and_R(v[0], v[1]); },
-                 {to - from, 0.02}},
-            .from = {from, 0.59},
-            .to = {to, 0.61}};
+        const BranchPlan plan{
+            .family = {
+                [](const std::vector<double>& v) { return by_b_and_R(v[0], v[1]); },
+                {{from, to}, {0.59, 0.61}}}};
         Collected curve;
         CHECK(follow_curve(plan, *begin, 0.6, 0.003, 0, curve));
         CHECK(curve.specials.size() == 2);

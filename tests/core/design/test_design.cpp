@@ -229,12 +229,12 @@ TEST_CASE("after an impulse the time to a tenth of the energy is that of a free 
         Parameters p;
         p.epsilon = 0.02, p.lambda = 1, p.G = 0, p.Omega = 1;
         p.b = d->best.b, p.R_plus = p.R_minus = 0.2;
-        Decay decay(p, 0, {0.1});
+        Decay decay(p, 0);
         Observer* const observers[] = {&decay};
         State start = default_state(p);
         start.x_dot = a * 0.5 / omega0;
         simulate(p, start, {.tau_end = 60 * p.cycle()}, observers);
-        worst = std::max(worst, *decay.tau[0] / omega0);
+        worst = std::max(worst, *decay.times.tenth / omega0);
     }
     CHECK(d->best.objective >= worst * (1 - 1e-9));
     CHECK(d->best.objective < 1.5 * worst);

@@ -6,7 +6,7 @@
 
 #include "../support.hpp"
 #include "core/measures/manifold.hpp"
-#include "core/stability/transfer.hpp"
+#include "core/stability/exterior.hpp"
 
 using namespace vines;
 using namespace vines::test;

@@ -71,10 +71,9 @@ TEST_CASE(
         ContactRecord list;
         Rhythm rhythm(p, {0, 300}, everything);
         record(p, default_state(p), 300, 100000, {&list, &rhythm});
-        rhythm.finish({0, 300});
+        const ContactCounts counts = rhythm.finish({0, 300});
         const auto& contacts = list.contacts;
-        REQUIRE(rhythm.contacts() == static_cast<long>(contacts.size()));
-        const CycleCounts counts = rhythm.cycle_counts();
+        REQUIRE(counts.contacts == static_cast<long>(contacts.size()));
         REQUIRE(counts.moving_tau.size() > 1);
         const double cycle = p.cycle();
         double mean = 0, sum = 0;
@@ -102,8 +101,8 @@ TEST_CASE("bounded lists hold every n-th moving_z and the last synchronised inte
     const std::size_t most = 7;
     Rhythm all(p, {0, 2000}, everything), thinned(p, {0, 2000}, most), none(p, {0, 2000}, 0);
     record(p, default_state(p), 2000, 1000000, {&all, &thinned, &none});
-    for (Rhythm* rhythm : {&all, &thinned, &none}) rhythm->finish({0, 2000});
-    const CycleCounts whole = all.cycle_counts(), few = thinned.cycle_counts();
+    const ContactCounts whole = all.finish({0, 2000}), few = thinned.finish({0, 2000}),
+                        without = none.finish({0, 2000});
     // With this stride the list has at most `most` entries.
     const std::size_t every = whole.moving_z.size() / most + 1;
     REQUIRE(few.moving_z.size() == (whole.moving_z.size() + every - 1) / every);
@@ -112,19 +111,19 @@ TEST_CASE("bounded lists hold every n-th moving_z and the last synchronised inte
         CHECK(few.moving_z[k] == whole.moving_z[k * every]);
     }
     CHECK(few.cycles_with == whole.cycles_with);
-    CHECK(none.cycle_counts().cycles_with.empty());
-    const auto stretches = all.last_stretches(), last = thinned.last_stretches();
+    CHECK(without.cycles_with.empty());
+    const auto &stretches = whole.stretches, &last = few.stretches;
     REQUIRE(stretches.size() > most);
     REQUIRE(last.size() == most);
     CHECK(last.back().tau_end == stretches.back().tau_end);
     CHECK(last.front().tau_start == stretches[stretches.size() - most].tau_start);
-    CHECK(none.last_stretches().empty());
-    for (const Rhythm* rhythm : {&thinned, &none}) {
-        CHECK(rhythm->contacts() == all.contacts());
-        CHECK(rhythm->z() == all.z());
-        CHECK(rhythm->synchrony.longest == all.synchrony.longest);
-        CHECK(rhythm->synchrony.in_stretches == all.synchrony.in_stretches);
-        CHECK(rhythm->synchrony.stretches.seen == all.synchrony.stretches.seen);
+    CHECK(without.stretches.empty());
+    for (const ContactCounts* counts : {&few, &without}) {
+        CHECK(counts->contacts == whole.contacts);
+        CHECK(counts->z_overall == whole.z_overall);
+        CHECK(counts->longest_synchronised == whole.longest_synchronised);
+        CHECK(counts->synchronised == whole.synchronised);
+        CHECK(counts->stretch_count == whole.stretch_count);
     }
 }
 

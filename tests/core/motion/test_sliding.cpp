@@ -10,7 +10,6 @@
 #include "core/measures/energy.hpp"
 #include "core/motion/record.hpp"
 #include "core/stability/exterior.hpp"
-#include "core/stability/linear.hpp"
 #include "core/stability/lyapunov.hpp"
 #include "whole_run.hpp"
 

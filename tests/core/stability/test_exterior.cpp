@@ -7,7 +7,7 @@
 #include <limits>
 
 #include "../support.hpp"
-#include "core/stability/transfer.hpp"
+#include "core/stability/exterior.hpp"
 
 using namespace vines;
 using namespace vines::test;

@@ -30,14 +30,12 @@ std::vector<std::string> run(Basins& basins, const BasinPlan& plan, std::size_t 
     RunControl control;
     std::vector<std::string> names(plan.count * plan.values.size());
     basins.explore(1, {}, control);
-    run_points(names.size(), 1, {}, control, [&](std::size_t i) {
+    for (std::size_t i = 0; i < names.size(); ++i) {
         const auto system = basins.system_of({i / plan.values.size(), {i % plan.values.size()}});
-        return std::optional(
-            PointTask{*system, {{"", system->start}}, [&, i](std::vector<Motion> m) {
-                          names[i] = m[0].result.name.motion;
-                          basins.add(i, m[0].result);
-                      }});
-    });
+        const PointResult result = run_point(*system, system->start, {}, control);
+        names[i] = result.name.motion;
+        basins.add(i, result);
+    }
     if (pairs > 0) basins.run_pairs(1, {}, control);
     return names;
 }

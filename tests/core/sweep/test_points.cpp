@@ -7,7 +7,7 @@
 
 #include "../support.hpp"
 #include "core/sweep/parallel.hpp"
-#include "core/sweep/point.hpp"
+#include "core/sweep/sweep.hpp"
 
 using namespace vines;
 using namespace vines::test;
@@ -21,17 +21,25 @@ struct CountingControl : RunControl {
     long polls = 0, stop_after = 1'000'000'000;
 };
 
+struct NoSink : SweepSink {
+    void point(std::size_t, const SweepPoint&) override {}
+};
+
 }  // namespace
 
 TEST_CASE("points without a valid system poll the stop request as well") {
     CountingControl control;
     control.stop_after = 100;
     std::size_t looked_at = 0;
-    const auto no_system = [&looked_at](std::size_t) -> std::optional<PointTask> {
+    SweepPlan plan;
+    plan.grid.steps = {1000};
+    for (std::size_t line = 0; line < 1000; ++line) plan.lines.push_back(line);
+    plan.system_at = [&looked_at](const Place&) -> std::optional<PointSystem> {
         ++looked_at;
         return std::nullopt;
     };
-    CHECK_THROWS_AS(run_points(1000, 1, {}, control, no_system), Stopped);
+    NoSink sink;
+    run_sweep(plan, 1, control, sink);
     CHECK(looked_at < 200);
 }
 
