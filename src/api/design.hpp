@@ -28,6 +28,8 @@ struct DesignRequest {
 
 /// Problem 422 naming every invalid field.
 DesignRequest read_design_request(const Json& object);
+/// The name of a value with a tolerance: of an amplitude, that of the load's field.
+const char* name_in(const DesignRequest& request, Toleranced what);
 
 /// Number of absorbers so far; another thread can read it.
 using DesignCount = std::atomic<std::size_t>;

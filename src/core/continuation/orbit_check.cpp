@@ -39,10 +39,10 @@ std::optional<Contact> first_contact(
     FlightStart start{
         f.oscillation(), ball.y,         ball.y_dot, f.side, leaves ? f.relative_speed : 0,
         leaves ? 1 : 2,  0.5 * p.gravity};
-    const auto search = start.is_straight() ? fast_contact : next_contact;
     std::vector<GrazingPoint> grazing;
     for (double passed = 0; passed < limit; passed += flow.reach()) {
-        auto contact = search(flow, start, p.b, std::min(limit - passed, flow.reach()), grazing);
+        auto contact =
+            fast_contact(flow, start, p.b, std::min(limit - passed, flow.reach()), grazing);
         if (contact) {
             contact->s += passed;
             return contact;

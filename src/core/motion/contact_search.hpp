@@ -55,7 +55,6 @@ struct FlightStart {
         if (y_2 != 0) p.add(2, y_2);
         return p;
     }
-    bool is_straight() const { return y_2 == 0 && !shift; }
 };
 
 struct Contact {

@@ -325,11 +325,8 @@ RowSummary summary_of(std::span<const SweepPoint> row, bool largest, bool defaul
         offer(s.best, k, motions.front());
         const auto x_free = motions.back()->result.x_free;
         if (x_free && (!s.x_free || beats(*x_free, *s.x_free))) s.x_free = x_free;
-        if (!default_set && !point.second) continue;
-        const bool elsewhere =
-            default_set ? depends_on_start(motions)
-                        : differs_in_steady_state(motions.back()->result, point.second->result);
-        s.depends_on_start = s.depends_on_start.value_or(false) || elsewhere;
+        if (const auto elsewhere = depends_on_start(point, default_set))
+            s.depends_on_start = s.depends_on_start.value_or(false) || *elsewhere;
     }
     return s;
 }

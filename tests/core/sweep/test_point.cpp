@@ -151,6 +151,14 @@ TEST_CASE(
     CHECK(low.x_free == 6);
 }
 
+TEST_CASE("a second start without a measured motion shows no dependence on the start") {
+    std::vector<SweepPoint> row(1);
+    row[0].motions = {motion("", 2)};
+    row[0].second = unmeasured("");
+    CHECK(depends_on_start(row[0], false) == false);
+    CHECK(summary_of(row, true, false).depends_on_start == false);
+}
+
 TEST_CASE("a row without measured motions has no peak and no dependence on the start") {
     std::vector<SweepPoint> row(2);
     row[1].motions = {unmeasured("")};
