@@ -668,7 +668,7 @@ class DesignFields(TypedDict, total=False):
     acceleration: Iterable[float] | float
     F: Iterable[float] | float
     forcing: Forcing
-    initial_velocity: Iterable[float]
+    initial_velocity: Iterable[float] | float
     b: Iterable[float] | float
     R: Iterable[float] | float
     m2: Iterable[float] | float

@@ -33,8 +33,9 @@ TrueMotion motion_after(double settling, double b, double R_plus, double R_minus
 
 TrueMotion settled_motion(double b, double R_plus, double R_minus, double seconds) {
     // A chaotic motion sticks occasionally: takes the first part without sticking.
-    for (double settling = 20; settling < 600; settling += 10) {
-        TrueMotion motion = motion_after(settling, b, R_plus, R_minus, seconds);
+    const double step = std::max(10.0, seconds / 10);
+    for (int k = 0; k < 60; ++k) {
+        TrueMotion motion = motion_after(20 + k * step, b, R_plus, R_minus, seconds);
         if (motion.sticks.empty()) return motion;
     }
     throw std::runtime_error("every part of the motion sticks");
