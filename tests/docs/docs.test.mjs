@@ -266,7 +266,10 @@ async function published(name, shown, got, check) {
     if (!process.env.PUBLISH) throw error;
     const text = await read(name);
     assert.equal(text.split(shown).length, 2, `${name} shows once:\n${shown}`);
-    await writeFile(new URL(name, root), text.replace(shown, () => got));
+    await writeFile(
+      new URL(name, root),
+      text.replace(shown, () => got),
+    );
   }
 }
 

@@ -51,7 +51,8 @@ RunFrom run_without_sticking(const Parameters& p) {
     }
 }
 
-/// Limits of a product in double precision, from y at the start: what it retains of the exponents, and for how long.
+/// Limits of a product in double precision, from y at the start: what it retains of the exponents,
+/// and for how long.
 void limits_of_the_computer(Report& report, double y, const TransferProduct& product) {
     const Exponents qr = product.qr(), raw = product.raw_product();
     const double T = product.end_tau() - product.start_tau(),
@@ -64,8 +65,8 @@ void limits_of_the_computer(Report& report, double y, const TransferProduct& pro
         "then a matrix of rank one plus rounding, and its third exponent is the rounding floor "
         "lambda1 - ln(1/2.2e-16)/T (dashed in the plot): {:.4f} from this start, compared with "
         "{:.4f} by raw_product and {:.4f} by qr.",
-        y, range / qr[0], rounded_from(qr, 2), rounded_from(qr, 1),
-        rounding_floor(raw[0], T), raw[2], qr[2]));
+        y, range / qr[0], rounded_from(qr, 2), rounded_from(qr, 1), rounding_floor(raw[0], T),
+        raw[2], qr[2]));
 }
 
 void constancy(Report& report, const std::vector<PaperRun>& neighbours) {
@@ -175,8 +176,8 @@ void transient_exponents(Report& report, RunCache& runs) {
     const BothRuns both = runs.both(0.022);
     const auto [y, beside] = run_without_sticking(both.here.parameters);
     const TransferProduct &product = beside.product(), &other = both.by_equation.product();
-    const std::string from = fmt::format(
-        "from y(0) = {:.8f} m with {} sticking phases", y, sticking_phases(beside));
+    const std::string from =
+        fmt::format("from y(0) = {:.8f} m with {} sticking phases", y, sticking_phases(beside));
     report.heading("Fig. 5: transient Lyapunov exponents, b = 22 mm");
     std::vector<Plot> histories = exponent_histories(both.here.product());
     histories.push_back(exponent_histories(product)[1]);
