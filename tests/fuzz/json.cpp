@@ -2,6 +2,7 @@
 // and each request is read or refused.
 #include "api/identify.hpp"
 #include "api/parse.hpp"
+#include "api/simulate.hpp"
 #include "fuzz.hpp"
 
 using namespace vines;

@@ -2,6 +2,7 @@
 #include "api/identify.hpp"
 #include "api/parse.hpp"
 #include "api/schema/tables.hpp"
+#include "api/simulate.hpp"
 #include "fuzz.hpp"
 
 using namespace vines;
