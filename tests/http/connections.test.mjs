@@ -555,8 +555,10 @@ test("requests that wait for a compute slot get it in the order of arrival", asy
     await until(async () => (await inFlight(one.url)) + order.length > i);
   }
   await Promise.all(all);
+  // Up to four requests per slot try to compute at once before they wait: on a busy machine one of
+  // them can enter the queue after the others.
   const late = order.map((i, position) => Math.abs(i - position));
-  assert.ok(Math.max(...late) <= 2, `ended in the order ${order}`);
+  assert.ok(Math.max(...late) <= 4, `ended in the order ${order}`);
 });
 
 test("a stop under load loses no request; each connection closes after an answer", async () => {
