@@ -142,7 +142,8 @@ struct FastSearch {
         if constexpr (bends) ends -= y_2 * flow.squared_times(from + 1);
         const double least = inside(h);
         if (from == 0 && !leaves_wall && std::abs(left) >= b - eta) return SearchResult::undecided;
-        const double departure = leaves_wall ? duration_of_departure() : 0;
+        const bool is_slow = leaves_wall && (is_released || w < M2 * (Flow::block * h));
+        const double departure = is_slow ? duration_of_departure() : 0;
         for (int i = 0; i < Flow::block; ++i) {
             const int k = from + i;
             const double right = ends[i];
@@ -181,7 +182,9 @@ struct FastSearch {
     /// monotone, or rule 1 holds with the curvature in this cell.
     bool is_empty(int k, double left, double right) const {
         const Oscillation o = flow.roughly_at(lo, k);
-        const double rate = o.x_dot - y_dot_at(k * h), a = relative_acceleration(o);
+        const double rate = o.x_dot - y_dot_at(k * h);
+        if (std::abs(rate) > M2 * h) return true;
+        const double a = relative_acceleration(o);
         if (rises(rate, a) || rises(-rate, -a)) return true;
         const double wall = left + right > 0 ? 1 : -1, bulge = std::max(0.0, M3 * h - wall * a);
         return std::max(wall * left, wall * right) < b - bulge * (h * h / 8) - eta &&
