@@ -86,7 +86,7 @@ test("an identification of a list of impacts ends after a signal", async () => {
     y_dot_after: column((k) => (k % 2 ? -0.01 : 0.01)),
   };
   writeFileSync(at("list.json"), JSON.stringify({b: 0.015, impacts: list}));
-  const options = {signal: "SIGINT", until: hasComputed(0.2)};
+  const options = {signal: "SIGINT", until: hasComputed(0.6)};
   await ends(["identify", at("list.json")], options, 130, /^vines: the identification was stopped/);
 });
 
