@@ -172,7 +172,7 @@ bool follow_curves(
 
 /// The orbit on which the base settles, or that it states; otherwise reports why there is none.
 std::optional<PeriodicOrbit> first_orbit(
-    const ContinueRequest& r, const std::function<bool()>& stop, ContinuationLines& lines) {
+    const ContinueRequest& r, const vines::StopRequest& stop, ContinuationLines& lines) {
     const Parameters& p = r.base.system.parameters;
     std::optional<PeriodicOrbit> orbit;
     if (r.settles) {

@@ -24,15 +24,18 @@ bool is_between_points(const std::string& type) {
     return type == "done" || type == "progress" || type == "warning" || type == "error";
 }
 
-/// Adds the point of a line. Throws std::runtime_error if another line has a different one.
+/// Adds the point of a line of the file `name`. Throws std::runtime_error if the present one, from
+/// this or another file, differs.
 void add_point(
-    SweepFile& file, const SweepFile::Line& line, std::size_t index, const std::string& name) {
+    SweepFile& file, const SweepFile::Line& line, std::size_t index, const std::string& name,
+    bool from_other_file) {
     const auto [there, is_new] = file.points.try_emplace(index, line);
     if (!is_new && there->second.text != line.text)
         fail_in_line(
             name, line.number,
             fmt::format(
-                "point {} differs from the same point in line {}", index, there->second.number));
+                "point {} differs from the same point in {}", index,
+                from_other_file ? "another file" : fmt::format("line {}", there->second.number)));
 }
 
 }  // namespace
@@ -66,7 +69,7 @@ SweepFile parse_sweep_file(const std::string& text, const std::string& name, Lin
             const std::string fault = checks == LineChecks::full ? check->fault_of(line, json)
                                                                  : check->fault_of_index(json);
             if (!fault.empty()) fail_in_line(name, number, fault);
-            add_point(file, {line, number}, json["index"].get<std::size_t>(), name);
+            add_point(file, {line, number}, json["index"].get<std::size_t>(), name, false);
         } else if (number == 1 || !is_between_points(type)) {
             fail_in_line(name, number, "not a line of a sweep");
         }
@@ -101,13 +104,7 @@ void add(SweepFile& all, const std::string& path, const std::string& first_path)
     if (part.start != all.start)
         throw std::runtime_error(fmt::format(
             "{} belongs to another sweep than {}: its first line differs", path, first_path));
-    for (const auto& [index, line] : part.points) {
-        const auto [there, added] = all.points.try_emplace(index, line);
-        if (!added && there->second.text != line.text)
-            fail_in_line(
-                path, line.number,
-                fmt::format("point {} differs from the same point in another file", index));
-    }
+    for (const auto& [index, line] : part.points) add_point(all, line, index, path, true);
 }
 
 std::size_t first_missing(const SweepFile& file) {

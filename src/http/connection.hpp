@@ -91,7 +91,7 @@ public:
     /// request, or closes: with a reset if the answer is broken off, so that the client does not
     /// take the part for the whole.
     void deliver(std::size_t max_bytes = std::numeric_limits<std::size_t>::max());
-    /// Of the answer; deliver() ends the delivery once it is cancelled.
+    /// Outbox of the present answer; deliver() ends the delivery once it is cancelled.
     Outbox& outbox() const { return *delivery_->outbox; }
 
     /// Starts a lingering close: closes the sending side, and discards what the client still sends

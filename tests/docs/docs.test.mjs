@@ -258,18 +258,18 @@ function sameOutput(shown, got, command) {
   });
 }
 
-/** Fails if `check` does, or with PUBLISH=1 writes `got` in place of `shown`. */
-async function published(name, shown, got, check) {
+/** Fails if `check` does, or with PUBLISH=1 writes `got` in place of `shown`: pairs of both. */
+async function published(name, pairs, check) {
   try {
     check();
   } catch (error) {
     if (!process.env.PUBLISH) throw error;
-    const text = await read(name);
-    assert.equal(text.split(shown).length, 2, `${name} shows once:\n${shown}`);
-    await writeFile(
-      new URL(name, root),
-      text.replace(shown, () => got),
-    );
+    let text = await read(name);
+    for (const [shown, got] of pairs) {
+      assert.equal(text.split(shown).length, 2, `${name} shows once:\n${shown}`);
+      text = text.replace(shown, () => got);
+    }
+    await writeFile(new URL(name, root), text);
   }
 }
 
@@ -287,7 +287,7 @@ test("the commands that the documents show print what they show", async () => {
   for (const [name, text] of Object.entries(documents))
     for (const {command, output} of transcripts(text).flat()) {
       const got = await run("bash", ["-o", "pipefail", "-c", here(command)], {cwd: folder, env});
-      await published(name, output, got, () => sameOutput(output, got, `${name}: ${command}`));
+      await published(name, [[output, got]], () => sameOutput(output, got, `${name}: ${command}`));
       ++count;
     }
   await rm(folder, {recursive: true});
@@ -299,10 +299,13 @@ test("the bottom line and the table of the findings are what vines reproduce pri
     between(documents["docs/paper.md"], name),
   );
   const printed = await run(program, ["reproduce"]);
-  const first = printed.slice(0, printed.indexOf("\n") + 1);
-  await published("docs/paper.md", shown[0], first, () => assert.equal(shown[0], first));
-  const rest = printed.slice(first.length + 1);
-  await published("docs/paper.md", shown[1], rest, () => assert.equal(shown[1], rest));
+  const end = printed.indexOf("\n") + 1;
+  const parts = [printed.slice(0, end), printed.slice(end + 1)];
+  await published(
+    "docs/paper.md",
+    [0, 1].map((k) => [shown[k], parts[k]]),
+    () => assert.equal(shown.join("\n"), printed),
+  );
   const rows = shown[1].split("\n").filter((line) => line.startsWith("|"));
   for (const row of rows) assert.equal(row.split("|").length, 10, row);
 });

@@ -11,7 +11,7 @@ namespace vines::api::document {
 
 namespace {
 
-/// By operation.
+/// Example requests of each operation.
 const Json& requests() {
     static const Json all = Json::parse(R"json({
     "simulate_by_query": {"preset": "fig11", "include": ["regime", "energy"]},

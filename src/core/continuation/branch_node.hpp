@@ -10,7 +10,7 @@ namespace vines {
 struct BranchNode {
     CurvePoint at;
     std::vector<double> approach;  ///< OrbitValues::approach
-    /// Of the transfer matrix: over half a period if the orbit is mirrored.
+    /// Eigenvalues of the transfer matrix over a period, or half of it if the orbit is mirrored.
     Eigenvalues multipliers;
     // Test functions, which change sign at special points.
     double fold;      ///< component of the tangent along the parameter

@@ -83,17 +83,8 @@ public:
     RunContacts(const IdentifiedSystem& system, double tau) : system_(system), tau_(tau) {}
 
     void on_impact(const Impact& of_run) override {
-        const Impact i = system_.measured(of_run, tau_);
-        impacts.push_back(
-            {{.tau = i.tau,
-              .side = i.side,
-              .x = i.x,
-              .x_dot_before = i.x_dot_before,
-              .x_dot_after = i.x_dot_after,
-              .x_ddot_before = i.x_ddot_before,
-              .y_dot_before = i.y_dot_before,
-              .y_dot_after = i.y_dot_after,
-              .is_hidden = true}});
+        impacts.push_back({listed(system_.measured(of_run, tau_))});
+        impacts.back().is_hidden = true;
     }
     void on_stretch(const Stretch& s) override {
         if (s.sticking_side != 0) {

@@ -36,6 +36,18 @@ ImpactFault fault_of(const IdentifiedImpact& i, double since, double pulse, doub
 
 }  // namespace
 
+IdentifiedImpact listed(const Impact& i) {
+    return {
+        .tau = i.tau,
+        .side = i.side,
+        .x = i.x,
+        .x_dot_before = i.x_dot_before,
+        .x_dot_after = i.x_dot_after,
+        .x_ddot_before = i.x_ddot_before,
+        .y_dot_before = i.y_dot_before,
+        .y_dot_after = i.y_dot_after};
+}
+
 void complete_impacts(const Parameters& p, std::vector<IdentifiedImpact>& impacts, double pulse) {
     const double typical = median(values_of(
         impacts, [](const IdentifiedImpact& i) { return i.is_hidden ? nan : std::abs(i.jump()); }));

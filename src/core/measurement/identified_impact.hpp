@@ -55,6 +55,9 @@ struct IdentifiedImpact {
     double jump() const { return x_dot_after - x_dot_before; }
 };
 
+/// An impact of a run, as a list of impacts states it.
+IdentifiedImpact listed(const Impact& impact);
+
 /// Sets R, momentum_error and fault of each impact from its velocities. Two impacts closer than
 /// `pulse` (tau) are one impact detected twice.
 void complete_impacts(

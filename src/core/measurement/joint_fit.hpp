@@ -101,8 +101,8 @@ struct FittedEffect {
 
 /// Residual of one sensor; empty without it.
 struct SensorResidual {
-    /// Of each sample: of the displacement in the sensor's own scale, of the acceleration with
-    /// pulses and noise.
+    /// Residual of each sample: displacements in the sensor's own scale, accelerations with pulses
+    /// and noise.
     std::vector<double> left;
     double noise = 0;  ///< its standard deviation; NaN without the sensor
     /// Its standard deviation divided by that of its part unrelated to the motion

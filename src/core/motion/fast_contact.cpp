@@ -142,6 +142,7 @@ struct FastSearch {
         if constexpr (bends) ends -= y_2 * flow.squared_times(from + 1);
         const double least = inside(h);
         if (from == 0 && !leaves_wall && std::abs(left) >= b - eta) return SearchResult::undecided;
+        // A faster flight is soon so far from the wall that rule 1 applies.
         const bool is_slow = leaves_wall && (is_released || w < M2 * (Flow::block * h));
         const double departure = is_slow ? duration_of_departure() : 0;
         for (int i = 0; i < Flow::block; ++i) {
@@ -172,8 +173,8 @@ struct FastSearch {
         return -3 * flow.jerk(lo) / M4;
     }
 
-    /// True if x - y - or its negative, for `wall` = -1 - rises throughout a cell, given its first
-    /// two derivatives at the left end.
+    /// True if x - y or y - x rises throughout a cell, given its first two derivatives at the left
+    /// end.
     bool rises(double first, double second) const {
         return first + std::min(0.0, second * h) > 0.5 * M3 * (h * h);
     }

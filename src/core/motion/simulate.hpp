@@ -87,12 +87,15 @@ public:
     virtual void on_release(double /*tau*/) {}
 };
 
+/// Polled every few events; true ends the work. Empty: never.
+using StopRequest = std::function<bool()>;
+
 /// Limits of a run. Reaching one is a result, not an error.
 struct Limits {
     double tau_end = 1709;      ///< contacts at tau_end itself belong to the run
     long max_impacts = 100000;  ///< the same limit applies to phases of rest plus grazing contacts
-    std::function<bool()> stop = {};  ///< called every few events; true ends the run
-    double tau_start = 0;             ///< initial time; it sets the phase of the forcing
+    StopRequest stop = {};
+    double tau_start = 0;  ///< initial time; it sets the phase of the forcing
 };
 
 /// An interval of tau.

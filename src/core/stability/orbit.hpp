@@ -5,7 +5,6 @@
 // multipliers: the orbit is stable if all lie inside the unit circle.
 #pragma once
 
-#include <functional>
 #include <optional>
 
 #include "core/motion/elementary.hpp"
@@ -13,9 +12,6 @@
 #include "core/stability/lyapunov.hpp"
 
 namespace vines {
-
-/// Polled every few events, as Limits::stop; true ends the work. Empty: never.
-using StopRequest = std::function<bool()>;
 
 /// Scale of each component of a state: about the largest value that it takes.
 State scale_of(const Parameters& parameters, std::span<const State> states);

@@ -59,16 +59,7 @@ Experiment measured(const TrueMotion& motion, const Sensors& sensors, const Give
 
 std::vector<IdentifiedImpact> listed(const std::vector<Impact>& impacts) {
     std::vector<IdentifiedImpact> list;
-    for (const Impact& i : impacts)
-        list.push_back(
-            {.tau = i.tau,
-             .side = i.side,
-             .x = i.x,
-             .x_dot_before = i.x_dot_before,
-             .x_dot_after = i.x_dot_after,
-             .x_ddot_before = i.x_ddot_before,
-             .y_dot_before = i.y_dot_before,
-             .y_dot_after = i.y_dot_after});
+    for (const Impact& i : impacts) list.push_back(vines::listed(i));
     return list;
 }
 
