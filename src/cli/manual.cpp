@@ -140,7 +140,7 @@ std::string section_of_notes(const CLI::App& app) {
 }
 
 std::string manual_page(const CLI::App& app) {
-    const std::string name = app.get_name();
+    const std::string& name = app.get_name();
     std::string summary = app.get_description();
     if (summary.ends_with('.')) summary.pop_back();
     return fmt::format(

@@ -1,7 +1,6 @@
 #include "http/server.hpp"
 
 #include <fmt/format.h>
-#include <httplib.h>
 #include <sys/socket.h>
 
 #include <algorithm>
@@ -15,6 +14,8 @@
 #include "http/head.hpp"
 #include "http/log.hpp"
 #include "http/memory.hpp"
+
+#include <httplib.h>  // after Eigen's headers, which one of its macros breaks
 
 namespace vines::http {
 

@@ -16,7 +16,7 @@ Json value_schema(const Field& f) {
         one["minimum"] = f.range->minimum;
         one["maximum"] = f.range->maximum;
     }
-    const Json word = f.choices.empty() ? text() : one_of(f.choices);
+    Json word = f.choices.empty() ? text() : one_of(f.choices);
     switch (f.type) {
         case FieldType::number: return one;
         case FieldType::integer: one["type"] = "integer"; return one;

@@ -85,6 +85,29 @@ Json response_of(const Refusal& r) {
            {{"schema", reference("Problem")}, {"example", example_of(r)}}}}}};
 }
 
+Json problem() {
+    const Json string_or_number = {{"type", {"string", "number", "null"}}};
+    const Json error = object_of(
+        {{"pointer", text(), "JSON Pointer to the field"},
+         {"value", Json::object(), "value in the request"},
+         {"range", or_null(list_of(string_or_number)),
+          "[minimum, maximum], or the choices, or null"},
+         {"detail", text(), "a sentence"}});
+    Json errors = list_of(error);
+    errors["maxItems"] = most_errors;
+    return object_of(
+        {{"type", constant("about:blank"), "the status has the meaning that HTTP gives it"},
+         {"title", text(), "reason phrase of the HTTP status"},
+         {"status", {{"type", "integer"}, {"minimum", 400}, {"maximum", 599}}, "HTTP status"},
+         {"detail", text(), "a sentence"},
+         {"request_id", text(),
+          "name of the request in the server's log; also in the header X-Request-ID"},
+         {"lacking?", one_of({"computing", "memory", "stopping", "sweeps", "threads"}),
+          "with 503: the exhausted resource, computing (the queue is full), sweeps, threads or "
+          "memory; or stopping"},
+         {"errors?", std::move(errors), "with 422: each invalid field, up to 20"}});
+}
+
 }  // namespace
 
 void add_service(Json& schemas) {
@@ -130,26 +153,7 @@ void add_service(Json& schemas) {
         {"required", {"openapi", "paths"}},
         {"properties", {{"openapi", text()}, {"paths", {{"type", "object"}}}}}};
     schemas["Status"] = object_of({{"status", constant("ok"), "the service is healthy"}});
-    const Json string_or_number = {{"type", {"string", "number", "null"}}};
-    const Json error = object_of(
-        {{"pointer", text(), "JSON Pointer to the field"},
-         {"value", Json::object(), "value in the request"},
-         {"range", or_null(list_of(string_or_number)),
-          "[minimum, maximum], or the choices, or null"},
-         {"detail", text(), "a sentence"}});
-    Json errors = list_of(error);
-    errors["maxItems"] = most_errors;
-    schemas["Problem"] = object_of(
-        {{"type", constant("about:blank"), "the status has the meaning that HTTP gives it"},
-         {"title", text(), "reason phrase of the HTTP status"},
-         {"status", {{"type", "integer"}, {"minimum", 400}, {"maximum", 599}}, "HTTP status"},
-         {"detail", text(), "a sentence"},
-         {"request_id", text(),
-          "name of the request in the server's log; also in the header X-Request-ID"},
-         {"lacking?", one_of({"computing", "memory", "stopping", "sweeps", "threads"}),
-          "with 503: the exhausted resource, computing (the queue is full), sweeps, threads or "
-          "memory; or stopping"},
-         {"errors?", std::move(errors), "with 422: each invalid field, up to 20"}});
+    schemas["Problem"] = problem();
 }
 
 Json response_components() {

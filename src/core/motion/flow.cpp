@@ -19,20 +19,26 @@ constexpr int cell_terms = 26;
 
 // Extended precision makes the tables accurate to the last ulp of double.
 using Real = long double;
+
+/// x, x' and the phasor.
 struct RealState {
     Real x, x_dot, sin, cos;
 };
-/// A matrix by columns: the states that grow from the four unit states.
-using RealColumns = std::array<RealState, 4>;
 
-constexpr RealColumns unit_states = {{{1, 0, 0, 0}, {0, 1, 0, 0}, {0, 0, 1, 0}, {0, 0, 0, 1}}};
+/// The states that grow from the four unit states. The first two keep a phasor of zero, and the
+/// phasors of the others are one rotation: most entries of the 4x4 matrix are known.
+struct FundamentalMatrix {
+    std::array<std::array<Real, 2>, 4> motion = {{{1, 0}, {0, 1}, {0, 0}, {0, 0}}};  // x, x'
+    Real cos = 1, sin = 0;
+};
 
-/// The n-th Taylor coefficient of the state from the previous one.
+/// The next Taylor coefficient of the state, the n-th, from the previous one.
 RealState next_term(const Flow::Coefficients& c, const RealState& t, int n) {
     const Real stiffness = c[0], damping = c[1], forcing = c[2], Omega = c[3];
+    const bool is_forced = t.sin != 0 || t.cos != 0;
     return {
         t.x_dot / n, (-stiffness * t.x - damping * t.x_dot + forcing * t.sin) / n,
-        Omega * t.cos / n, -Omega * t.sin / n};
+        is_forced ? Omega * t.cos / n : 0, is_forced ? -Omega * t.sin / n : 0};
 }
 
 /// The state after one cell; sets the Taylor coefficients of its x.
@@ -52,14 +58,20 @@ RealState over_cell(
     return sum;
 }
 
-RealState times(const RealColumns& columns, const RealState& s) {
-    const Real part[4] = {s.x, s.x_dot, s.sin, s.cos};
-    RealState sum = {0, 0, 0, 0};
-    for (int j = 0; j < 4; ++j)
-        sum = {
-            sum.x + columns[j].x * part[j], sum.x_dot + columns[j].x_dot * part[j],
-            sum.sin + columns[j].sin * part[j], sum.cos + columns[j].cos * part[j]};
-    return sum;
+FundamentalMatrix advanced(const FundamentalMatrix& g, const FundamentalMatrix& cell) {
+    FundamentalMatrix next;
+    const auto unforced = [&](std::size_t j, std::size_t r) {
+        return cell.motion[0][r] * g.motion[j][0] + cell.motion[1][r] * g.motion[j][1];
+    };
+    for (std::size_t r = 0; r < 2; ++r) {
+        next.motion[0][r] = unforced(0, r);
+        next.motion[1][r] = unforced(1, r);
+        next.motion[2][r] = unforced(2, r) + cell.motion[2][r] * g.cos - cell.motion[3][r] * g.sin;
+        next.motion[3][r] = unforced(3, r) + cell.motion[2][r] * g.sin + cell.motion[3][r] * g.cos;
+    }
+    next.cos = cell.cos * g.cos - cell.sin * g.sin;
+    next.sin = cell.cos * g.sin + cell.sin * g.cos;
+    return next;
 }
 
 }  // namespace
@@ -74,28 +86,33 @@ Flow::Flow(double stiffness, double damping, double forcing, double Omega)
       fastest_decay_(
           0.5 * damping + std::sqrt(std::max(0.0, 0.25 * damping * damping - stiffness))) {
     Response* const parts[4] = {&of_x_, &of_x_dot_, &of_sin_, &of_cos_};
-    RealColumns cell, state = unit_states;
-    for (int j = 0; j < 4; ++j)
-        cell[j] = over_cell(coefficients(), unit_states[j], cell_, parts[j]->series);
+    FundamentalMatrix cell, growth;
+    for (std::size_t j = 0; j < 4; ++j) {
+        RealState unit = {0, 0, 0, 0};
+        (j == 0 ? unit.x : j == 1 ? unit.x_dot : j == 2 ? unit.sin : unit.cos) = 1;
+        const RealState s = over_cell(coefficients(), unit, cell_, parts[j]->series);
+        cell.motion[j] = {s.x, s.x_dot};
+        if (j == 3) cell.cos = s.cos, cell.sin = s.sin;
+    }
     for (Response* part : parts) {
         part->near.x = part->series.head<2 * short_pairs>();
         for (int n = 0; n < 2 * short_pairs; ++n)
             part->near.x_dot[n] = (n + 1) * part->series[n + 1];
     }
-    // The tables extend past the last cell, where a block of grid points or of block ends can
-    // begin.
-    for (int k = 0; k <= cells + block * block; ++k) {
-        for (int j = 0; j < 4; ++j) {
-            parts[j]->x.push_back((double)state[j].x);
-            if (k > 0 && k % block == 0) parts[j]->x_apart.push_back((double)state[j].x);
+    for (std::size_t k = 0; k < columns; ++k) {
+        for (std::size_t j = 0; j < 4; ++j) parts[j]->x[k] = (double)growth.motion[j][0];
+        time_[k] = static_cast<double>(k) * cell_;
+        if (k > 0 && k % block == 0) {
+            for (Response* part : parts) part->x_apart[k / block - 1] = part->x[k];
+            time_apart_[k / block - 1] = time_[k];
         }
-        time_.push_back(k * cell_);
-        if (k > 0 && k % block == 0) time_apart_.push_back(k * cell_);
-        Row row{{}, {}, (double)state[3].cos, (double)state[3].sin};
-        for (int j = 0; j < 4; ++j)
-            row.x[j] = (double)state[j].x, row.x_dot[j] = (double)state[j].x_dot;
-        rows_.push_back(row);
-        for (RealState& s : state) s = times(cell, s);
+        if (k <= cells) {
+            Row& row = rows_[k];
+            for (std::size_t j = 0; j < 4; ++j)
+                row.x[j] = parts[j]->x[k], row.x_dot[j] = (double)growth.motion[j][1];
+            row.cos = (double)growth.cos, row.sin = (double)growth.sin;
+        }
+        growth = advanced(growth, cell);
     }
 }
 

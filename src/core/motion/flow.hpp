@@ -14,7 +14,6 @@
 #include <cmath>
 #include <initializer_list>
 #include <memory>
-#include <vector>
 
 #include "core/motion/parameters.hpp"
 
@@ -150,7 +149,7 @@ public:
     /// x - y at the grid times k h, ..., (k + block - 1) h, for y = y0 + y_dot s: five
     /// multiply-adds each. k <= cells.
     Block relative_positions(const Oscillation& o, double y0, double y_dot, int k) const {
-        const auto from = [k](const std::vector<double>& column) {
+        const auto from = [k](const auto& column) {
             return Eigen::Map<const Block>(column.data() + k);
         };
         return from(of_x_.x) * o.x + from(of_x_dot_.x) * o.x_dot + from(of_sin_.x) * o.sin_theta +
@@ -168,7 +167,7 @@ public:
     /// The same at the ends of blocks j, j + 1, ... (from 0): at the grid times block (j + 1) h,
     /// block (j + 2) h, ... j <= cells/block.
     Block relative_positions_apart(const Oscillation& o, double y0, double y_dot, int j) const {
-        const auto from = [j](const std::vector<double>& column) {
+        const auto from = [j](const auto& column) {
             return Eigen::Map<const Block>(column.data() + j);
         };
         return from(of_x_.x_apart) * o.x + from(of_x_dot_.x_apart) * o.x_dot +
@@ -263,21 +262,28 @@ private:
     double stiffness_, damping_, forcing_, Omega_;
     double cell_;  // h
     double inverse_root_stiffness_, fastest_decay_;
+    // The tables extend past the last cell, where a block of grid points or of block ends can
+    // begin.
+    static constexpr std::size_t columns = cells + block * block + 1,
+                                 columns_apart = columns / block;
     // Response to one part of the state with size 1: x at the grid times k h, and the Taylor
     // coefficients of x within a cell. A motion is the sum of the responses to its four parts.
     struct Response {
-        std::vector<double> x, x_apart;
+        std::array<double, columns> x;
+        std::array<double, columns_apart> x_apart;
         TaylorSeries series;
         ShortSeries near;
     };
     Response of_x_, of_x_dot_, of_sin_, of_cos_;
-    std::vector<double> time_, time_apart_;  // grid times
+    // Grid times.
+    std::array<double, columns> time_;
+    std::array<double, columns_apart> time_apart_;
     // Responses of x and x' to the four parts by grid time, and the rotation of the phasor.
     struct Row {
         std::array<double, 4> x, x_dot;
         double cos, sin;
     };
-    std::vector<Row> rows_;
+    std::array<Row, cells + 1> rows_;
 };
 
 /// x, x' and x''/2 of a Taylor series at d.
