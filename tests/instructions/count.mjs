@@ -1,5 +1,5 @@
 // Compares the instruction counts of the parts in parts.cpp with the recorded ones. A part fails if
-// its count is more than 10 % above the record, or has none; more than 10 % below is reported. Counts
+// its count is more than 3 % above the record, or has none; more than 3 % below is reported. Counts
 // vary from run to run only by a few dozen instructions of the allocator. If no comparison is
 // possible, the exit code is 77, with which CTest marks a test as skipped.
 // Usage: node count.mjs [record]
@@ -8,7 +8,7 @@ import {mkdtempSync, readdirSync, readFileSync, rmSync, writeFileSync} from "nod
 import {tmpdir} from "node:os";
 import {join} from "node:path";
 
-const tolerance = 0.1;
+const tolerance = 0.03;
 const recorded = new URL("recorded.json", import.meta.url);
 const recordCommand = "scripts/instructions record";
 const program =
