@@ -8,6 +8,7 @@
 #include "api/json_text.hpp"
 #include "api/schema/tables.hpp"
 #include "api/version.hpp"
+#include "core/continuation/orbit_start.hpp"
 #include "core/motion/elementary.hpp"
 
 namespace vines::api {
@@ -18,7 +19,7 @@ namespace {
 constexpr double stated_reach = 0.5;
 constexpr int depth_of_true = 2;
 
-/// Numbers of the system, without those of the start and of friction.
+/// Numbers of the system, without those of the start.
 std::vector<std::string> continued_names() {
     std::vector<std::string> names;
     for (const Field& f : sweep_base_fields())
@@ -42,6 +43,7 @@ std::optional<double> value_in(const SystemFields& fields, const std::string& pa
         values.update(describe(properties::derived_si, *system.si));
         values["acceleration"] = system.si->F * omega * omega;
         if (system.parameters.gravity == 0) values["inclination"] = 0;
+        if (system.parameters.friction == 0) values["mu"] = 0;
     }
     if (!values.contains(parameter)) return std::nullopt;
     return values[parameter].get<double>();
@@ -55,7 +57,7 @@ std::function<std::optional<Parameters>(const std::vector<double>&)> systems_alo
         SystemFields changed = fields;
         for (std::size_t i = 0; i < numbers.size(); ++i) changed.*numbers[i] = values[i];
         const Parameters p = resolve(changed).parameters;
-        const bool valid = p.friction == 0 && validate(p, default_state(p)).empty();
+        const bool valid = validate(p, default_state(p)).empty();
         return valid ? std::optional(p) : std::nullopt;
     };
 }
@@ -68,7 +70,7 @@ constexpr EndText end_texts[] = {
     {"range", "the parameter reaches the end of its range"},
     {"grazing", "a grazing contact: no orbit with one impact more or less continues the branch"},
     {"last_impact", "the last impacts become grazing contacts"},
-    {"stick", "a chatter becomes complete: beyond it the ball sticks"},
+    {"stick", "a sticking phase begins or ends, and no orbit is found beyond it"},
     {"parent",
      "the branch meets the orbit from which it branches; beyond are its mirror images or shifted "
      "copies"},
@@ -146,7 +148,7 @@ struct PointsOfKind : BranchSink {
     explicit PointsOfKind(SpecialKind wanted) : kind(wanted) {}
     void point(int, const OrbitPoint&) override {}
     void special(int, const SpecialPoint& special) override {
-        if (special.kind == kind && !special.on.sequence.sides.empty()) found.push_back(special);
+        if (special.kind == kind && special.on.equations) found.push_back(special);
     }
     const SpecialKind kind;
     std::vector<SpecialPoint> found;
@@ -154,17 +156,17 @@ struct PointsOfKind : BranchSink {
 
 /// Curves through the special points of the branch. False if stopped.
 bool follow_curves(
-    const ContinueRequest& r, const BranchPlan& plan, const OrbitStart& start, double length,
+    const ContinueRequest& r, const BranchPlan& plan, const OrbitGuess& start,
     ContinuationLines& lines) {
     PointsOfKind points(*r.curve);
-    if (!follow_branches(plan, start, length, points)) return false;
+    if (!follow_branches(plan, start, points)) return false;
     if (points.found.empty())
         lines.no_orbit("no_such_point", "the branch has no special point of the kind of curve");
     BranchPlan curve = plan;
     curve.family = r.curve_family;
     int number = 0;
     for (const SpecialPoint& point : points.found) {
-        if (!follow_curve(curve, point, r.second_at, length, number, lines)) return false;
+        if (!follow_curve(curve, point, r.second_at, number, lines)) return false;
         number += 2;
     }
     return true;
@@ -191,9 +193,6 @@ std::optional<PeriodicOrbit> first_orbit(
                       : "Newton's method finds no orbit of period_cycles next to the start");
     else if (orbit->impacts == 0)
         lines.no_orbit("no_impacts", "the first orbit has no impacts: there is nothing to follow");
-    else if (orbit->sticks > 0)
-        lines.no_orbit(
-            "stick", "not decided: the first orbit has sticking phases, which are not followed");
     else return orbit;
     return std::nullopt;
 }
@@ -254,16 +253,17 @@ SystemFields read_family(ContinueRequest& r, const Json& given) {
             r.parameter == "inclination" && fields.gravity
                 ? "the base states its gravity: continue along gravity, or state the "
                   "inclination instead"
+            : r.parameter == "mu" && fields.friction
+                ? "the base states its friction: continue along friction, or state mu instead"
                 : r.parameter + " is a parameter of a system in SI: the base must be one, too");
     r.at = *at;
     Json whole = base;
     whole[r.parameter] = r.at;
     r.base = read_started_system(whole);
     add_errors("/base", r.base.errors, errors);
-    if (const Parameters& p = r.base.system.parameters; p.friction != 0 || p.load)
+    if (r.base.system.parameters.load)
         errors.push_back(
-            {"/base", nullptr, nullptr,
-             "orbits are continued for a harmonic forcing and a ball without friction"});
+            {"/base", nullptr, nullptr, "orbits are continued for a harmonic forcing"});
     check_range(r.parameter, r.at, given, "from", "to", errors);
     refuse_any(errors);
     return fields;
@@ -357,8 +357,7 @@ bool run_continuation(
         lines.no_orbit("not_decided", "not decided: the first orbit's impacts are not periodic");
         return true;
     }
-    return r.curve ? follow_curves(r, plan, *start, length, lines)
-                   : follow_branches(plan, *start, length, lines);
+    return r.curve ? follow_curves(r, plan, *start, lines) : follow_branches(plan, *start, lines);
 }
 
 }  // namespace vines::api

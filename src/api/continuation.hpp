@@ -63,6 +63,8 @@ inline constexpr Property<OrbitPoint> branch_point[] = {
      [](const OrbitPoint& o) { return Json(o.sequence.cycles()); }},
     {{"impacts", "impacts per period", whole},
      [](const OrbitPoint& o) { return Json(o.sequence.impacts()); }},
+    {{"sticks", "sticking phases per period; the chatter before one is one impact", whole},
+     [](const OrbitPoint& o) { return Json(o.sequence.sticks * (o.sequence.mirrored ? 2 : 1)); }},
     {{"symmetric", "true if a shift by half a period gives the mirror image", flag},
      [](const OrbitPoint& o) { return Json(o.sequence.mirrored); }},
     {{"x_max", "maximum of |x| over the period, m"},

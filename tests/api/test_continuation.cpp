@@ -91,6 +91,27 @@ TEST_CASE("an inclination can be the parameter, from zero or from another") {
     }
 }
 
+TEST_CASE("friction can be the parameter, in both forms, from zero or from another") {
+    const std::string machine =
+        R"("m1":12,"f0":14,"damping_ratio":0.006,"mass_ratio":0.01,"F":0.0004,"f":14,"R":0.4,"b":0.03)";
+    for (const char* rubbing : {"", R"(,"mu":0.0001)"}) {
+        const auto lines = lines_of(
+            R"({"base":{)" + machine + rubbing + R"(},"parameter":"mu","from":0,"to":0.0002})");
+        CHECK(special_of(lines, "end")["reason"] == "range");
+    }
+    const auto lines = lines_of(
+        R"({"base":{"damping":"closed_form","b":0.012},"parameter":"friction","from":0,"to":0.0001})");
+    CHECK(special_of(lines, "end")["reason"] == "range");
+}
+
+TEST_CASE("points of a branch have their sticking phases") {
+    const auto lines = lines_of(
+        R"({"base":{"damping":"closed_form","b":0.002,"R":0.2},"parameter":"b","from":0.0019,"to":0.0032})");
+    CHECK(lines[1]["sticks"] == 2);
+    CHECK(lines[1]["impacts"] == 2);
+    CHECK(is_near(special_of(lines, "stick")["b"], 2.986194915858e-3, 1e-10));
+}
+
 TEST_CASE("a branch that cannot begin has one line with the reason") {
     for (
         const auto& [text, reason] : std::map<std::string, std::string>{
@@ -149,9 +170,9 @@ TEST_CASE("invalid continuations are refused by field") {
         faults_of(R"({"base":{"q":1},"parameter":"b","from":0.01,"to":0.04})") == Names{"/base/q"});
     CHECK(faults_of(R"({"parameter":"b","from":0.01,"to":0.04,"switch":9})") == Names{"/switch"});
     CHECK(
-        faults_of(R"({"base":{"friction":1e-4},"parameter":"b","from":0.01,"to":0.04})") ==
+        faults_of(R"({"base":{"preset":"chirp"},"parameter":"b","from":0.0001,"to":0.5})") ==
         Names{"/base"});
-    CHECK(faults_of(R"({"parameter":"friction","from":0,"to":0.01})") == Names{"/parameter"});
+    CHECK(faults_of(R"({"parameter":"mu","from":0,"to":0.01})") == Names{"/base"});
     CHECK(
         faults_of(R"({"parameter":"b","from":0.01,"to":0.04,"curve":"fold"})") == Names{"/second"});
     CHECK(

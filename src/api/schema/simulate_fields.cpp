@@ -324,7 +324,8 @@ bool is_of_system(const Field& f) {
 
 bool is_continued(const Field& f) {
     return f.type == FieldType::number &&
-           (is_of_system(f) || f.name == "gravity" || f.name == "inclination");
+           (is_of_system(f) || f.name == "gravity" || f.name == "inclination" ||
+            f.name == "friction" || f.name == "mu");
 }
 
 FieldTable simulate_fields_where(bool (*keep)(const Field&)) {

@@ -69,8 +69,7 @@ Field section_phase_row();
 
 /// True for a field of /v1/simulate that defines the system: group system, reduced or SI.
 bool is_of_system(const Field& field);
-/// True for a number along which orbits are continued: those of the system without friction, and
-/// gravity.
+/// True for a number along which orbits are continued: those of the system, gravity and friction.
 bool is_continued(const Field& field);
 
 /// The fields of /v1/simulate for which keep(field) is true.

@@ -20,6 +20,11 @@ constexpr double multiplier_step = 0.1, multiplier_step_away = 0.3;
 // Cosine of the largest angle between neighbouring tangents, and that up to which steps grow.
 constexpr double most_bend = 0.97, little_bend = 0.997;
 constexpr double growth = 1.5;
+// A parameter is at an end of its range if it is within this, in units of the range.
+constexpr double at_end = 1e-12;
+// Steps back to the birth of a sticking phase are at most this multiple of the distance to where
+// the ball did not stick.
+constexpr double most_back = 1.5;
 // Special points are bracketed to this arclength; the parameter changes less in it.
 constexpr double special_arc = 1e-13;
 // A branch is closed if its unknowns return to within this.
@@ -32,7 +37,7 @@ struct BranchEvent {
 };
 
 OrbitCheck checked(const OrbitEquations& equations, const BranchNode& node) {
-    return check_orbit(equations, node.at.z, node.approach);
+    return equations.check(node.at.z, node.approach);
 }
 
 OrbitPoint orbit_point(const OrbitEquations& equations, const BranchNode& node) {
@@ -56,7 +61,7 @@ public:
 
     /// False if stopped.
     bool run() {
-        sink_.point(number_, orbit_point(on_->equations, on_->node));
+        sink_.point(number_, orbit_point(*on_->equations, on_->node));
         for (points_ = 1; points_ < plan_.most_points; ++points_) {
             if (plan_.stop && plan_.stop()) return false;
             if (const auto end = step()) return report_end(*end);
@@ -66,14 +71,15 @@ public:
 
 private:
     bool report_end(BranchEnd reason) {
-        sink_.special(number_, {SpecialKind::end, orbit_point(on_->equations, on_->node), reason});
+        sink_.special(number_, {SpecialKind::end, orbit_point(*on_->equations, on_->node), reason});
         return true;
     }
     std::optional<BranchNode> after(double h) const {
-        return node_after(on_->equations, on_->node.at, h);
+        return node_after(*on_->equations, on_->node.at, h);
     }
 
     std::optional<BranchEnd> step();
+    std::optional<BranchNode> node_at_end() const;
     std::optional<BranchNode> next_node();
     bool clip_to_range(std::optional<BranchNode>& b);
     OrbitCheck clip_to_existence(std::optional<BranchNode>& b);
@@ -82,7 +88,9 @@ private:
         const std::function<double(const BranchNode&)>& test) const;
     std::optional<std::vector<BranchEvent>> events_before(const BranchNode& b) const;
     void report(const BranchEvent& event);
-    std::optional<BranchEnd> pass_grazing(const SequenceFault& fault);
+    std::optional<BranchEnd> pass_event(const SequenceFault& fault);
+    bool pass_completion();
+    bool move_section();
     bool is_closed() const;
 
     const BranchPlan& plan_;
@@ -122,7 +130,7 @@ std::optional<std::vector<BranchEvent>> BranchFollower::events_before(const Bran
             events.push_back(std::move(*event));
         return true;
     };
-    const bool mirrored = on_->equations.sequence().mirrored;
+    const bool mirrored = on_->equations->sequence().mirrored;
     if (!locate(&BranchNode::fold, SpecialKind::fold) ||
         !locate(
             &BranchNode::doubling, mirrored ? SpecialKind::symmetry_breaking : SpecialKind::flip) ||
@@ -144,12 +152,24 @@ bool is_small_step(const BranchNode& a, const BranchNode& b) {
     });
 }
 
+/// The node at the end of the parameter's range if the step leads beyond, where there may be no
+/// system.
+std::optional<BranchNode> BranchFollower::node_at_end() const {
+    const BranchNode& a = on_->node;
+    const auto end = plan_.family.end_before(0, a.parameter() + h_ * a.fold);
+    if (!end) return std::nullopt;
+    return node_at_parameter(
+        *on_->equations, a.at.z + (*end - a.parameter()) / a.fold * a.at.tangent, *end,
+        a.fold > 0 ? 1 : -1);
+}
+
 /// Empty if Newton's method does not converge, however short the step.
 std::optional<BranchNode> BranchFollower::next_node() {
     const BranchNode& a = on_->node;
     h_ = std::min({h_, longest_arc, plan_.resolution / std::abs(a.fold)});
     for (; h_ > shortest_arc; h_ *= 0.5) {
         auto b = after(h_);
+        if (!b) b = node_at_end();
         if (!b || !(b->at.tangent.dot(a.at.tangent) > most_bend)) continue;
         if (h_ > watched_arc && !is_small_step(a, *b)) continue;
         return b;
@@ -167,7 +187,7 @@ bool BranchFollower::clip_to_range(std::optional<BranchNode>& b) {
     b.reset();
     if (!there) return true;
     h_ = there->h;
-    b = node_at_parameter(on_->equations, there->node.at.z, *limit, direction);
+    b = node_at_parameter(*on_->equations, there->node.at.z, *limit, direction);
     if (!b) b = std::move(there->node);
     return true;
 }
@@ -175,18 +195,24 @@ bool BranchFollower::clip_to_range(std::optional<BranchNode>& b) {
 /// Ends the step where the orbit ceases to exist, if it does: the check then has the fault. Without
 /// a node if that cannot be located.
 OrbitCheck BranchFollower::clip_to_existence(std::optional<BranchNode>& b) {
-    OrbitCheck found = checked(on_->equations, *b);
+    OrbitCheck found = checked(*on_->equations, *b);
     if (!found.fault) return found;
     double valid = 0, invalid = h_;
     b = on_->node;
     while (invalid - valid > special_arc) {
         const double middle = 0.5 * (valid + invalid);
         auto node = after(middle);
+        // Beyond the loss of a sticking phase grazing contacts accumulate, where the return has no
+        // derivative.
+        if (!node && on_->node.approach.empty()) {
+            invalid = middle;
+            continue;
+        }
         if (!node) {
             b.reset();
             return found;
         }
-        const OrbitCheck here = checked(on_->equations, *node);
+        const OrbitCheck here = checked(*on_->equations, *node);
         if (here.fault) invalid = middle, found = here;
         else valid = middle, b = std::move(node);
     }
@@ -195,41 +221,80 @@ OrbitCheck BranchFollower::clip_to_existence(std::optional<BranchNode>& b) {
 }
 
 void BranchFollower::report(const BranchEvent& e) {
-    SpecialPoint special{e.kind, orbit_point(on_->equations, e.node)};
-    special.on = {on_->equations.sequence(), e.node.at.z};
+    SpecialPoint special{e.kind, orbit_point(*on_->equations, e.node)};
+    special.on = {on_->equations, e.node.at.z};
     if (e.kind == SpecialKind::torus) {
         auto m = *e.node.unit_pair();
-        if (on_->equations.sequence().mirrored) m *= m;
+        if (on_->equations->sequence().mirrored) m *= m;
         special.angle = std::abs(elementary::atan2(m.imag(), m.real()));
     }
     sink_.special(number_, special);
     if (e.kind != SpecialKind::flip && e.kind != SpecialKind::symmetry_breaking) return;
-    if (auto other = doubled_branch(on_->equations, e.node)) branches_off_(e.kind, *other);
+    if (auto other = doubled_branch(*on_->equations, e.node)) branches_off_(e.kind, *other);
 }
 
-std::optional<BranchEnd> BranchFollower::pass_grazing(const SequenceFault& fault) {
+/// Moves the section of a return away from events, which it reaches in the course of a branch.
+/// False if the equations have none.
+bool BranchFollower::move_section() {
+    if (!on_->node.approach.empty()) return false;
+    const auto moved = on_->equations->by_return(on_->node.at.z);
+    if (!moved) return false;
+    const int direction = on_->node.fold > 0 ? 1 : -1;
+    auto node = node_at_parameter(*moved->equations, moved->z, on_->node.parameter(), direction);
+    if (!node) return false;
+    on_.emplace(moved->equations, std::move(*node));
+    h_ = first_arc;
+    return true;
+}
+
+/// Where a chatter becomes complete, grazing contacts accumulate, each of which adds an impact.
+/// Goes on beyond, where the ball sticks; false if there is no such orbit.
+bool BranchFollower::pass_completion() {
+    if (on_->node.approach.empty()) return false;
+    auto beyond = beyond_by_return(*on_->equations, on_->node, true);
+    if (!beyond) return false;
+    // Back to where the sticking phase begins, which is before the present node.
+    const double back = std::abs(beyond->node.parameter() - on_->node.parameter());
+    Relative before = *std::exchange(on_, beyond);
+    on_->node.at.tangent *= -1;
+    h_ = most_back * back / std::abs(beyond->node.fold);
+    auto birth = after(h_);
+    const bool found = birth && clip_to_existence(birth).fault && birth;
+    if (!found) {
+        on_ = std::move(before);
+        return false;
+    }
+    sink_.special(number_, {SpecialKind::stick, orbit_point(*on_->equations, *birth)});
+    on_ = std::move(beyond);
+    sink_.point(number_, orbit_point(*on_->equations, on_->node));
+    h_ = first_arc;
+    return true;
+}
+
+std::optional<BranchEnd> BranchFollower::pass_event(const SequenceFault& fault) {
     const bool last =
-        on_->equations.sequence().size() < 2 && fault.kind == SequenceFault::Kind::missing;
-    SpecialPoint grazing{SpecialKind::grazing, orbit_point(on_->equations, on_->node)};
-    grazing.on = {on_->equations.sequence(), on_->node.at.z};
+        on_->equations->sequence().size() < 2 && fault.kind == SequenceFault::Kind::missing;
+    SpecialPoint grazing{SpecialKind::grazing, orbit_point(*on_->equations, on_->node)};
+    grazing.on = {on_->equations, on_->node.at.z};
     grazing.impact = fault.flight;
     if (fault.kind == SequenceFault::Kind::contact)
-        if (auto changed = changed_sequence(on_->equations, on_->node.at.z, fault))
+        if (auto changed = on_->equations->changed(on_->node.at.z, fault))
             grazing.on = std::move(*changed);
-    if (fault.kind == SequenceFault::Kind::stick) {
-        grazing.kind = SpecialKind::stick;
-        sink_.special(number_, grazing);
-        return BranchEnd::stick;
-    }
-    auto beyond = beyond_grazing(on_->equations, on_->node, fault);
-    if (beyond) grazing.impacts_after = beyond->equations.sequence().impacts();
+    if (on_->node.approach.empty()) grazing.on = {};  // no equations hold at it
+    const bool sticks = fault.kind == SequenceFault::Kind::stick;
+    if (sticks) grazing.kind = SpecialKind::stick;
+    auto beyond = beyond_event(*on_->equations, on_->node, fault);
+    if (beyond) grazing.impacts_after = beyond->equations->sequence().impacts();
     sink_.special(number_, grazing);
-    if (!beyond) return last ? BranchEnd::last_impact : BranchEnd::grazing;
-    if (beyond->equations.sequence().size() > plan_.most_impacts) return BranchEnd::most_impacts;
+    const bool too_many = beyond && beyond->equations->sequence().size() > plan_.most_impacts;
+    if ((too_many || (!beyond && !last && !sticks)) && pass_completion()) return std::nullopt;
+    if (too_many) return BranchEnd::most_impacts;
+    if (!beyond)
+        return sticks ? BranchEnd::stick : last ? BranchEnd::last_impact : BranchEnd::grazing;
     on_.emplace(std::move(*beyond));
-    sink_.point(number_, orbit_point(on_->equations, on_->node));
+    sink_.point(number_, orbit_point(*on_->equations, on_->node));
     h_ = first_arc;
-    if (repeats_itself(on_->equations, on_->node.at.z)) return BranchEnd::parent;
+    if (repeats_itself(*on_->equations, on_->node.at.z)) return BranchEnd::parent;
     return std::nullopt;
 }
 
@@ -239,22 +304,29 @@ bool BranchFollower::is_closed() const {
     if (z.size() != origin_.z.size() || !((z - origin_.z).norm() < 2 * longest_arc)) return false;
     if (!(origin_.tangent.dot(z - origin_.z) > 0) || points_ < 5) return false;
     const auto there = point_in_plane(
-        as_curve(on_->equations), z, origin_.tangent, origin_.tangent.dot(origin_.z));
+        as_curve(*on_->equations), z, origin_.tangent, origin_.tangent.dot(origin_.z));
     return there && (there->z - origin_.z).norm() < same_unknowns && (z - origin_.z).norm() < h_;
 }
 
 std::optional<BranchEnd> BranchFollower::step() {
+    const BranchNode& a = on_->node;
+    if (plan_.family.end_before(0, a.parameter() + std::copysign(at_end, a.fold)))
+        return BranchEnd::range;
     auto b = next_node();
-    if (!b) return BranchEnd::not_decided;
+    if (!b && move_section()) b = next_node();
+    if (!b) {
+        if (pass_completion()) return std::nullopt;
+        return BranchEnd::not_decided;
+    }
     const bool turns = std::signbit(b->fold) != std::signbit(on_->node.fold);
-    const double bend = b->at.tangent.dot(on_->node.at.tangent);
+    const double bend = b->at.tangent.dot(a.at.tangent);
     if (turns)
-        if (auto parent = parent_orbit(on_->equations, on_->node, 2 * h_)) {
-            const bool mirrored = parent->equations.sequence().mirrored;
+        if (auto parent = parent_orbit(*on_->equations, on_->node, 2 * h_)) {
+            const bool mirrored = parent->equations->sequence().mirrored;
             on_.emplace(std::move(*parent));
             sink_.special(
                 number_, {mirrored ? SpecialKind::symmetry_breaking : SpecialKind::flip,
-                          orbit_point(on_->equations, on_->node)});
+                          orbit_point(*on_->equations, on_->node)});
             return BranchEnd::parent;
         }
     const bool leaves = clip_to_range(b);
@@ -265,10 +337,10 @@ std::optional<BranchEnd> BranchFollower::step() {
     if (!events) return BranchEnd::not_decided;
     for (const BranchEvent& e : *events) report(e);
     on_->node = std::move(*b);
-    if (found.fault) return pass_grazing(*found.fault);
+    if (found.fault) return pass_event(*found.fault);
     sink_.point(
         number_,
-        orbit_point(on_->equations, on_->node.at.z, on_->node.multipliers, found.measures));
+        orbit_point(*on_->equations, on_->node.at.z, on_->node.multipliers, found.measures));
     if (leaves) return BranchEnd::range;
     if (is_closed()) {
         is_loop = true;
@@ -295,21 +367,21 @@ const char* name_of(SpecialKind kind) {
     return names[static_cast<std::size_t>(kind)];
 }
 
-bool follow_branches(
-    const BranchPlan& plan, const OrbitStart& start, double length, BranchSink& sink) {
+bool follow_branches(const BranchPlan& plan, const OrbitGuess& start, BranchSink& sink) {
     struct Open {
         BranchStart start;
         Relative at;
         int depth;
     };
-    const OrbitEquations equations(start.sequence, plan.family, length);
     const double p = start.z(start.z.size() - 1);
     std::deque<Open> queue;
     int numbers = 0;
     for (const int direction : {1, -1})
-        if (auto node = node_at_parameter(equations, start.z, p, direction))
+        if (auto node = node_at_parameter(*start.equations, start.z, p, direction))
             queue.push_back(
-                {{numbers++, -1, SpecialKind::end, direction}, {equations, std::move(*node)}, 0});
+                {{numbers++, -1, SpecialKind::end, direction},
+                 {start.equations, std::move(*node)},
+                 0});
     bool is_loop = false;  // then the other direction, number 1, is the same
     for (; !queue.empty(); queue.pop_front()) {
         if (is_loop && queue.front().start.number == 1) continue;

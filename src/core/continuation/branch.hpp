@@ -7,11 +7,12 @@
 //   flip, symmetry breaking: the product of (multiplier + 1), of the half map if it is mirrored;
 //   torus: the product of (multiplier_i multiplier_j - 1), i < j, if a complex pair has modulus 1.
 // At a grazing contact the sequence gains or loses an impact, and the branch is followed with the
-// new sequence if that exists on one side.
+// new sequence if that exists on one side. Where a chatter becomes complete, grazing contacts
+// accumulate; beyond, the ball sticks, and the branch is followed by its return (return_map.hpp).
 #pragma once
 
 #include "core/continuation/arclength.hpp"
-#include "core/continuation/orbit_check.hpp"
+#include "core/continuation/orbit_equations.hpp"
 
 namespace vines {
 
@@ -25,7 +26,7 @@ enum class BranchEnd {
     range,         ///< the parameter's range
     grazing,       ///< no orbit with one impact more or less continues it
     last_impact,   ///< its last impact becomes a grazing contact
-    stick,         ///< the ball begins to stick: a chatter becomes complete
+    stick,         ///< a sticking phase begins or ends, and no orbit is found beyond
     parent,        ///< it meets the orbit from which it branches; beyond is the same branch again
     closed,        ///< it returns to its start
     most_points,   ///< limit of BranchPlan
@@ -50,9 +51,9 @@ struct SpecialPoint {
     std::optional<BranchEnd> end = {};  ///< of kind end
     long impacts_after = 0;             ///< of kind grazing: per period beyond it; 0: none
     std::optional<double> angle = {};   ///< of kind torus: of the multiplier of a period, rad
-    /// Sequence and unknowns of the equations that hold there; of kind grazing with the contact as
-    /// the impact at the end of flight `impact`.
-    OrbitStart on = {};
+    /// Equations that hold there; of kind grazing with the contact as the impact at the end of
+    /// flight `impact`.
+    OrbitGuess on = {};
     std::size_t impact = 0;
 };
 
@@ -89,7 +90,6 @@ struct BranchPlan {
 };
 
 /// Follows the branch of an orbit in both directions, and branches from it. False if stopped.
-bool follow_branches(
-    const BranchPlan& plan, const OrbitStart& start, double length, BranchSink& sink);
+bool follow_branches(const BranchPlan& plan, const OrbitGuess& start, BranchSink& sink);
 
 }  // namespace vines

@@ -3,7 +3,7 @@
 #pragma once
 
 #include "core/continuation/arclength.hpp"
-#include "core/continuation/orbit_check.hpp"
+#include "core/continuation/orbit_equations.hpp"
 
 namespace vines {
 
@@ -38,7 +38,7 @@ std::optional<BranchNode> node_at_parameter(
 
 /// An orbit with its equations.
 struct Relative {
-    OrbitEquations equations;
+    std::shared_ptr<const OrbitEquations> equations;
     BranchNode node;
 };
 
@@ -56,11 +56,13 @@ std::optional<Relative> parent_orbit(
     const OrbitEquations& equations, const BranchNode& near, double within);
 
 /// The node beyond a grazing contact: with that contact as an impact of zero speed, or without the
-/// impact that has become one. Empty if neither direction has an orbit.
-std::optional<Relative> beyond_grazing(
+/// impact that has become one; or beyond the birth or loss of a sticking phase. Empty if there is
+/// no orbit.
+std::optional<Relative> beyond_event(
     const OrbitEquations& equations, const BranchNode& last, const SequenceFault& fault);
-/// The sequence and the unknowns there, not yet solved.
-std::optional<OrbitStart> changed_sequence(
-    const OrbitEquations& equations, const Unknowns& z, const SequenceFault& fault);
+/// A node next to `last`, found by its return, with another sequence than `equations` have; with a
+/// sticking phase if `sticking`.
+std::optional<Relative> beyond_by_return(
+    const OrbitEquations& equations, const BranchNode& last, bool sticking);
 
 }  // namespace vines

@@ -64,7 +64,7 @@ CurveEquations with_test(const OrbitEquations& equations, const SpecialTest& tes
 OrbitCheck check_special(const SpecialTest& test, const Unknowns& z) {
     auto approach = test.equations.values(z)->approach;
     if (test.kind == SpecialKind::grazing) approach[test.impact] = 1e-300;
-    return check_orbit(test.equations, z, approach);
+    return test.equations.check(z, approach);
 }
 
 /// The point where a step first leaves the range of a parameter; empty if it does not. Without
@@ -91,9 +91,10 @@ std::optional<CurvePoint> at_limit(
 }  // namespace
 
 bool follow_curve(
-    const BranchPlan& plan, const SpecialPoint& point, double second, double length, int number,
+    const BranchPlan& plan, const SpecialPoint& point, double second, int number,
     BranchSink& sink) {
-    const OrbitEquations equations(point.on.sequence, plan.family, length);
+    const auto over_both = point.on.equations->over(plan.family);
+    const OrbitEquations& equations = *over_both;
     const SpecialTest test{equations, point.kind, point.impact};
     const CurveEquations curve = with_test(equations, test);
     Unknowns z(point.on.z.size() + 1);

@@ -10,7 +10,6 @@ namespace vines {
 /// second one at `second`, in both directions, as branches from `number` on. Kinds: fold, flip,
 /// symmetry_breaking, torus, grazing. False if stopped.
 bool follow_curve(
-    const BranchPlan& plan, const SpecialPoint& point, double second, double length, int number,
-    BranchSink& sink);
+    const BranchPlan& plan, const SpecialPoint& point, double second, int number, BranchSink& sink);
 
 }  // namespace vines

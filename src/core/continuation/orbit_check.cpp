@@ -1,4 +1,7 @@
-#include "core/continuation/orbit_check.hpp"
+// Whether the motion really follows an orbit with given impacts: the equations also have solutions
+// that pass through a wall. Each flight is searched for contacts from its own start, so that the
+// orbit's instability does not matter.
+#include "core/continuation/periodic_impacts.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -10,7 +13,7 @@ namespace vines {
 
 namespace {
 
-using OrbitFlight = OrbitEquations::BetweenImpacts;
+using OrbitFlight = ImpactEquations::BetweenImpacts;
 
 // Largest difference of a contact's tau between the equations and the search, in cycles: far above
 // rounding, also at grazing, far below a flight.
@@ -18,9 +21,6 @@ constexpr double same_contact = 1e-6;
 // Approach speeds whose square is below this, in units of b, lead less than 1e-13 b beyond a wall
 // that accelerates by 0.01 b or more.
 constexpr double shallow = 1e-15;
-// Distance of values at which a family is compared with a symmetric one, in units of the parameter.
-constexpr double near_value = 1e-3;
-
 /// The ball's motion at the time s of a flight.
 struct Ball {
     double y, y_dot;
@@ -56,7 +56,7 @@ std::optional<Contact> first_contact(
 }
 
 std::optional<SequenceFault> sequence_fault(
-    const OrbitEquations& equations, const Parameters& p, const std::vector<OrbitFlight>& flights,
+    const ImpactEquations& equations, const Parameters& p, const std::vector<OrbitFlight>& flights,
     const std::vector<double>& approach) {
     using Kind = SequenceFault::Kind;
     for (std::size_t k = 0; k < approach.size(); ++k)
@@ -81,7 +81,7 @@ Oscillation opposite(const Oscillation& o) { return {-o.x, -o.x_dot, -o.sin_thet
 
 /// Passes the flights and impacts of a period, which begins at tau, to the observer.
 void replay(
-    const OrbitEquations& equations, const Parameters& p, const std::vector<OrbitFlight>& flights,
+    const ImpactEquations& equations, const Parameters& p, const std::vector<OrbitFlight>& flights,
     double tau, Observer& observer) {
     const auto flow = Flow::shared_free(p);
     const ImpactSequence& sequence = equations.sequence();
@@ -108,7 +108,7 @@ void replay(
 
 /// The state at the time s <= the period after the first impact.
 State state_after(
-    const OrbitEquations& equations, const Parameters& p, const std::vector<OrbitFlight>& flights,
+    const ImpactEquations& equations, const Parameters& p, const std::vector<OrbitFlight>& flights,
     double s) {
     const auto flow = Flow::shared_free(p);
     const double duration = equations.sequence().half_cycles * 0.5 * p.cycle();
@@ -122,61 +122,23 @@ State state_after(
     return {sign * o.x_dot, sign * o.x, sign * ball.y_dot, sign * ball.y};
 }
 
-/// True if the systems of the family next to these values are symmetric.
-bool is_symmetric(const ParameterFamily& family, const std::vector<double>& values) {
-    for (std::size_t i = 0; i < values.size(); ++i)
-        for (const double side : {1.0, -1.0}) {
-            std::vector<double> beside = values;
-            beside[i] += side * near_value * family.unit(i);
-            const auto p = family.system_at(beside);
-            if (p && !p->is_symmetric()) return false;
-        }
-    return true;
-}
-
 }  // namespace
 
-OrbitCheck check_orbit(
-    const OrbitEquations& equations, const Unknowns& z, const std::vector<double>& approach) {
-    const Parameters p = *equations.system(z);
-    const std::vector<OrbitFlight> flights = equations.flights(z, p);
-    OrbitCheck check{sequence_fault(equations, p, flights, approach)};
-    const double period = equations.sequence().cycles() * p.cycle();
+OrbitCheck ImpactEquations::check(const Unknowns& z, const std::vector<double>& approach) const {
+    const Parameters p = *system(z);
+    const std::vector<OrbitFlight> all = flights(z, p);
+    OrbitCheck check{sequence_fault(*this, p, all, approach)};
+    const double period = sequence().cycles() * p.cycle();
     double tau = std::fmod((z(0) - p.phi()) / p.Omega, p.cycle());
     if (tau < 0) tau += p.cycle();
     // The last impact belongs to the period, however tau is rounded.
     Energy energy(p, tau, tau + period + same_contact);
-    replay(equations, p, flights, tau, energy);
+    replay(*this, p, all, tau, energy);
     const EnergyBalance balance = energy.balance({tau, tau + period});
     check.measures = {
-        state_after(equations, p, flights, p.cycle() - tau), balance.peak, balance.rms,
+        state_after(*this, p, all, p.cycle() - tau), balance.peak, balance.rms,
         balance.share_impacts};
     return check;
-}
-
-std::optional<OrbitStart> orbit_start(
-    const Parameters& p, const PeriodicOrbit& orbit, double length, const ParameterFamily& family,
-    const std::vector<double>& values) {
-    if (orbit.sticks > 0 || orbit.impacts == 0) return std::nullopt;
-    ImpactRecord record;
-    follow(p, orbit.state, orbit.tau, (orbit.cycles + 0.5) * p.cycle(), {}, {&record});
-    std::vector<Impact> impacts = record.entries;
-    const auto all = static_cast<std::size_t>(orbit.impacts);
-    if (impacts.size() <= all) return std::nullopt;
-    OrbitStart start;
-    start.sequence.mirrored = orbit.symmetric && all % 2 == 0 && is_symmetric(family, values);
-    start.sequence.half_cycles = (start.sequence.mirrored ? 1 : 2) * orbit.cycles;
-    const std::size_t n = start.sequence.mirrored ? all / 2 : all;
-    start.z.resize(static_cast<Eigen::Index>(n + 4 + values.size()));
-    start.z.head<4>() << impacts[0].phase(), impacts[0].x / length, impacts[0].x_dot_after / length,
-        impacts[0].relative_speed_after / length;
-    for (std::size_t k = 0; k < n; ++k) {
-        start.sequence.sides.push_back(impacts[k].side);
-        start.z(static_cast<Eigen::Index>(4 + k)) = impacts[k + 1].tau - impacts[k].tau;
-    }
-    for (std::size_t i = 0; i < values.size(); ++i)
-        start.z(static_cast<Eigen::Index>(4 + n + i)) = values[i] / family.unit(i);
-    return start;
 }
 
 }  // namespace vines

@@ -10,9 +10,8 @@ namespace vines {
 
 namespace {
 
-// Step of the central differences, in units of the parameter: errors of 1e-11 each from truncation
-// and rounding.
-constexpr double parameter_step = 1e-5;
+// Two halves of an orbit can be those of its parent if their flights differ by less than this.
+constexpr double similar_half = 0.3;
 
 // Terms of the series over a step whose length times the fastest rate is at most 1: the first
 // omitted one is below 1e-19.
@@ -46,7 +45,7 @@ Excess advance(ArcColumn& c, const Flow::Coefficients& law, double h) {
     return excess;
 }
 
-using BetweenImpacts = OrbitEquations::BetweenImpacts;
+using BetweenImpacts = ImpactEquations::BetweenImpacts;
 
 /// Increase of x - y over a flight divided by its duration, without cancellation.
 double mean_relative_speed(const Parameters& p, const BetweenImpacts& f, const Arc& arc) {
@@ -112,6 +111,18 @@ void carry_transfer(
     transfer = saltation(p, impact).times(transfer);
 }
 
+/// The sequence whose double this is; empty if there is none.
+std::optional<ImpactSequence> halved(const ImpactSequence& s) {
+    const std::size_t half = s.size() / 2;
+    if (s.mirrored || s.size() != 2 * half || s.half_cycles % 2 != 0) return std::nullopt;
+    ImpactSequence one{{s.sides.begin(), s.sides.begin() + static_cast<long>(half)}};
+    one.mirrored = s.sides[half] != s.sides[0];
+    one.half_cycles = s.half_cycles / 2;
+    if (one.mirrored != (one.half_cycles % 2 != 0) || one.doubled().sides != s.sides)
+        return std::nullopt;
+    return one;
+}
+
 }  // namespace
 
 Arc arc_over(const Flow::Coefficients& law, const Oscillation& start, double s) {
@@ -140,95 +151,43 @@ Arc arc_over(const Flow::Coefficients& law, const Oscillation& start, double s) 
     return arc;
 }
 
-ImpactSequence ImpactSequence::rotated() const {
-    ImpactSequence next = *this;
-    for (std::size_t k = 0; k < size(); ++k) next.sides[k] = side_after(k);
-    return next;
-}
-
-ImpactSequence ImpactSequence::doubled() const {
-    ImpactSequence twice{sides, false, 2 * half_cycles};
-    for (const int side : sides) twice.sides.push_back(mirrored ? -side : side);
-    return twice;
-}
-
-OrbitEquations::OrbitEquations(
-    ImpactSequence sequence, const ParameterFamily& family, double length)
-    : sequence_(std::move(sequence)),
-      family_(family),
-      length_(length) {}
-
-std::vector<double> OrbitEquations::parameters(const Unknowns& z) const {
-    std::vector<double> values;
-    for (std::size_t i = 0; i < family_.ranges.size(); ++i)
-        values.push_back(z(equations() + static_cast<Eigen::Index>(i)) * family_.unit(i));
-    return values;
-}
-
-std::optional<Parameters> OrbitEquations::system(const Unknowns& z) const {
-    return family_.system_at(parameters(z));
-}
-
-std::optional<OrbitValues> OrbitEquations::values(
-    const Unknowns& z, Eigen::MatrixXd* jacobian) const {
-    const auto p = system(z);
-    if (!p) return std::nullopt;
-    if (jacobian) jacobian->setZero(equations(), unknowns());
-    auto at = evaluated(z, *p, jacobian);
-    if (!at || !jacobian) return at;
-    for (Eigen::Index c = equations(); c < unknowns(); ++c) {
-        // One-sided at the end of a parameter's range.
-        Unknowns beside = z;
-        Eigen::VectorXd difference = Eigen::VectorXd::Zero(equations());
-        double width = 0;
-        for (const double side : {1.0, -1.0}) {
-            beside(c) = z(c) + side * parameter_step;
-            const auto other = values(beside);
-            difference += side * (other ? other->residual : at->residual);
-            if (other) width += parameter_step;
-        }
-        if (width == 0) return std::nullopt;
-        jacobian->col(c) = difference / width;
-    }
-    return at;
-}
-
-std::optional<OrbitValues> OrbitEquations::evaluated(
+std::optional<OrbitValues> ImpactEquations::evaluated(
     const Unknowns& z, const Parameters& p, Eigen::MatrixXd* jacobian) const {
-    const auto n = static_cast<Eigen::Index>(sequence_.size());
+    if (p.friction != 0) return std::nullopt;
+    const auto n = static_cast<Eigen::Index>(sequence().size());
     const Flow::Coefficients law = Flow::free_coefficients(p);
     BetweenImpacts f = first_flight(z);
     Derivatives d = Derivatives::Zero(4, equations());
-    d(0, 0) = 1, d(1, 1) = d(2, 2) = d(3, 3) = length_;
+    d(0, 0) = 1, d(1, 1) = d(2, 2) = d(3, 3) = length();
     OrbitValues out{Eigen::VectorXd(equations()), {}, Frame::Identity()};
     for (Eigen::Index k = 0; k < n; ++k) {
         f.s = z(4 + k);
         if (!(f.s > 0)) return std::nullopt;
-        const int side = sequence_.side_after(static_cast<std::size_t>(k));
+        const int side = sequence().side_after(static_cast<std::size_t>(k));
         const Arc arc = arc_over(law, f.oscillation(), f.s);
         const double approach = relative_speed_at_end(p, f, arc),
                      R = p.restitution(side, std::abs(approach));
         // For a return to the same wall, the mean speed stands for x - y: it is not zero at s = 0.
         const double mean = mean_relative_speed(p, f, arc), of = f.side == side ? f.s : 1,
                      miss = f.side == side ? mean : (f.side - side) * p.b + mean * f.s;
-        out.residual(k) = miss / length_;
+        out.residual(k) = miss / length();
         out.approach.push_back(side * approach);
         carry_transfer(p, law, f, arc, approach, side, out.transfer);
         if (jacobian) {
             jacobian->row(k).head(equations()) =
-                carry_derivatives(p, law, f, arc, approach, side, 4 + k, d) / (of * length_);
-            if (f.side == side) (*jacobian)(k, 4 + k) -= mean / (f.s * length_);
+                carry_derivatives(p, law, f, arc, approach, side, 4 + k, d) / (of * length());
+            if (f.side == side) (*jacobian)(k, 4 + k) -= mean / (f.s * length());
         }
         f = after_impact(p, f, arc, side, approach, R);
     }
-    const double sign = sequence_.sign();
+    const double sign = sequence().sign();
     out.transfer *= sign;
     out.residual.segment<3>(n) =
-        Eigen::Vector3d(sign * f.x, sign * f.x_dot, sign * f.relative_speed) / length_ -
+        Eigen::Vector3d(sign * f.x, sign * f.x_dot, sign * f.relative_speed) / length() -
         z.segment<3>(1);
-    out.residual(n + 3) = f.theta - z(0) - sequence_.half_cycles * std::numbers::pi;
+    out.residual(n + 3) = f.theta - z(0) - sequence().half_cycles * std::numbers::pi;
     if (jacobian) {
-        jacobian->block(n, 0, 3, equations()) = sign * d.bottomRows<3>() / length_;
+        jacobian->block(n, 0, 3, equations()) = sign * d.bottomRows<3>() / length();
         jacobian->row(n + 3).head(equations()) = d.row(0);
         for (int i = 0; i < 3; ++i) (*jacobian)(n + i, 1 + i) -= 1;
         (*jacobian)(n + 3, 0) -= 1;
@@ -237,14 +196,14 @@ std::optional<OrbitValues> OrbitEquations::evaluated(
     return out;
 }
 
-std::vector<OrbitEquations::BetweenImpacts> OrbitEquations::flights(
+std::vector<ImpactEquations::BetweenImpacts> ImpactEquations::flights(
     const Unknowns& z, const Parameters& p) const {
     const Flow::Coefficients law = Flow::free_coefficients(p);
     std::vector<BetweenImpacts> all = {first_flight(z)};
-    for (std::size_t i = 0; i < sequence_.size(); ++i) {
+    for (std::size_t i = 0; i < sequence().size(); ++i) {
         BetweenImpacts& f = all.back();
         f.s = z(4 + static_cast<Eigen::Index>(i));
-        const int side = sequence_.side_after(i);
+        const int side = sequence().side_after(i);
         const Arc arc = arc_over(law, f.oscillation(), f.s);
         const double approach = relative_speed_at_end(p, f, arc);
         all.push_back(
@@ -253,22 +212,74 @@ std::vector<OrbitEquations::BetweenImpacts> OrbitEquations::flights(
     return all;
 }
 
-Oscillation OrbitEquations::BetweenImpacts::oscillation() const {
+Oscillation ImpactEquations::BetweenImpacts::oscillation() const {
     return {x, x_dot, elementary::sin(theta), elementary::cos(theta)};
 }
 
-OrbitEquations::BetweenImpacts OrbitEquations::first_flight(const Unknowns& z) const {
-    return {z(0), z(1) * length_, z(2) * length_, z(3) * length_, sequence_.sides[0], 0};
+ImpactEquations::BetweenImpacts ImpactEquations::first_flight(const Unknowns& z) const {
+    return {z(0), z(1) * length(), z(2) * length(), z(3) * length(), sequence().sides[0], 0};
 }
 
-Unknowns OrbitEquations::rotated(const Unknowns& z) const {
-    const auto n = static_cast<Eigen::Index>(sequence_.size());
+Unknowns ImpactEquations::rotated(const Unknowns& z) const {
+    const auto n = static_cast<Eigen::Index>(sequence().size());
     const Parameters p = *system(z);
     const BetweenImpacts f = flights(z, p)[1];
     Unknowns next = z;
-    next.head<4>() << f.theta, f.x / length_, f.x_dot / length_, f.relative_speed / length_;
+    next.head<4>() << f.theta, f.x / length(), f.x_dot / length(), f.relative_speed / length();
     for (Eigen::Index k = 0; k < n; ++k) next(4 + k) = z(4 + (k + 1) % n);
     return next;
+}
+
+std::shared_ptr<const OrbitEquations> ImpactEquations::doubled() const {
+    return std::make_shared<ImpactEquations>(sequence().doubled(), family(), length());
+}
+
+Eigen::VectorXd ImpactEquations::twice(const Eigen::VectorXd& z) const {
+    const auto n = static_cast<Eigen::Index>(sequence().size());
+    Eigen::VectorXd w(z.size() + n);
+    w << z.head(4 + n), z.segment(4, n), z.tail(z.size() - 4 - n);
+    return w;
+}
+
+std::optional<OrbitGuess> ImpactEquations::half(const Unknowns& z) const {
+    const auto one = halved(sequence());
+    if (!one) return std::nullopt;
+    const auto n = static_cast<Eigen::Index>(one->size());
+    if (!((z.segment(4, n) - z.segment(4 + n, n)).cwiseAbs().maxCoeff() < similar_half))
+        return std::nullopt;
+    Unknowns half(z.size() - n);
+    half << z.head(4), 0.5 * (z.segment(4, n) + z.segment(4 + n, n)), z.tail(1);
+    return OrbitGuess{std::make_shared<ImpactEquations>(*one, family(), length()), half};
+}
+
+std::optional<OrbitGuess> ImpactEquations::changed(
+    const Unknowns& at, const SequenceFault& fault) const {
+    ImpactSequence one = sequence();
+    Unknowns z = at;
+    const auto guess = [&](const Unknowns& of) {
+        return OrbitGuess{std::make_shared<ImpactEquations>(one, family(), length()), of};
+    };
+    auto k = static_cast<Eigen::Index>(fault.flight);
+    const auto n = static_cast<Eigen::Index>(one.size());
+    Unknowns next;
+    if (fault.kind == SequenceFault::Kind::contact) {
+        if (!(fault.s > 0 && fault.s < z(4 + k))) return std::nullopt;
+        one.sides.insert(one.sides.begin() + k + 1, fault.side);
+        next.resize(z.size() + 1);
+        next << z.head(4 + k), fault.s, z(4 + k) - fault.s, z.tail(z.size() - 5 - k);
+        return guess(next);
+    }
+    if (fault.kind != SequenceFault::Kind::missing || n < 2) return std::nullopt;
+    if (k + 1 == n) {
+        // The impact at which the sequence begins.
+        z = ImpactEquations(one, family(), length()).rotated(z);
+        one = one.rotated();
+        k = n - 2;
+    }
+    one.sides.erase(one.sides.begin() + k + 1);
+    next.resize(z.size() - 1);
+    next << z.head(4 + k), z(4 + k) + z(5 + k), z.tail(z.size() - 6 - k);
+    return guess(next);
 }
 
 }  // namespace vines

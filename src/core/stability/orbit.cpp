@@ -39,23 +39,6 @@ constexpr double contact_rounding = 1e-9;
 // distance, in units of the scale: far above its closure, far below any relevant asymmetry.
 constexpr double symmetric_within = 1e-6;
 
-/// Product of all transfer matrices of a run.
-class Monodromy : public Observer {
-public:
-    explicit Monodromy(const Parameters& p) : p_(p) {}
-    void on_stretch(const Stretch& stretch) override {
-        const Leg leg = leg_of(stretch);
-        for (long part = 0; part < leg.parts; ++part) carry(matrix, leg, p_.epsilon);
-    }
-    void on_impact(const Impact& impact) override { matrix = saltation(p_, impact).times(matrix); }
-    void on_slip(const Slip& slip) override { matrix = saltation(p_.epsilon, slip).times(matrix); }
-
-    Frame matrix = Frame::Identity();
-
-private:
-    const Parameters p_;
-};
-
 /// Exterior powers of that product.
 class Powers : public Observer {
 public:
@@ -83,26 +66,6 @@ Eigenvalues multipliers_of(const Matrix4& monodromy, const PowerProduct& powers)
             values[k] *= elementary::exp(logs[k]) / modulus;
     }
     return values;
-}
-
-/// The middle of the longest flight in the cycle after a state at a whole cycle: far from events.
-double time_far_from_events(const Parameters& p, const State& start, const StopRequest& stop) {
-    ImpactRecord impacts;
-    StickRecord sticks;
-    const double cycle = p.cycle();
-    follow(p, start, 0, cycle, stop, {&impacts, &sticks});
-    double from = 0, length = 0, middle = 0.5 * cycle;
-    std::size_t stick = 0;
-    auto flight_to = [&](double tau) {
-        // The rest of a chatter and the sticking phase after it are not a flight.
-        for (; stick < sticks.entries.size() && sticks.entries[stick].start.tau <= tau; ++stick)
-            from = std::max(from, sticks.entries[stick].tau_end);
-        if (tau - from > length) length = tau - from, middle = 0.5 * (from + tau);
-        from = std::max(from, tau);
-    };
-    for (const Impact& i : impacts.entries) flight_to(i.tau);
-    flight_to(cycle);
-    return middle;
 }
 
 std::optional<State> after_period(
@@ -149,6 +112,25 @@ std::optional<State> solve_return(
 }
 
 }  // namespace
+
+double time_far_from_events(const Parameters& p, const State& start, const StopRequest& stop) {
+    ImpactRecord impacts;
+    StickRecord sticks;
+    const double cycle = p.cycle();
+    follow(p, start, 0, cycle, stop, {&impacts, &sticks});
+    double from = 0, length = 0, middle = 0.5 * cycle;
+    std::size_t stick = 0;
+    auto flight_to = [&](double tau) {
+        // The rest of a chatter and the sticking phase after it are not a flight.
+        for (; stick < sticks.entries.size() && sticks.entries[stick].start.tau <= tau; ++stick)
+            from = std::max(from, sticks.entries[stick].tau_end);
+        if (tau - from > length) length = tau - from, middle = 0.5 * (from + tau);
+        from = std::max(from, tau);
+    };
+    for (const Impact& i : impacts.entries) flight_to(i.tau);
+    flight_to(cycle);
+    return middle;
+}
 
 State scale_of(const Parameters& p, std::span<const State> states) {
     State scale{least_scale * p.b, least_scale * p.b, least_ball_speed * p.b, p.b};

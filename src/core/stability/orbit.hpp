@@ -37,6 +37,26 @@ struct PeriodicOrbit {
     Exponents exponents(const Parameters& parameters) const;
 };
 
+/// Product of all transfer matrices of a run.
+class Monodromy : public Observer {
+public:
+    explicit Monodromy(const Parameters& p) : p_(p) {}
+    void on_stretch(const Stretch& stretch) override {
+        const Leg leg = leg_of(stretch);
+        for (long part = 0; part < leg.parts; ++part) carry(matrix, leg, p_.epsilon);
+    }
+    void on_impact(const Impact& impact) override { matrix = saltation(p_, impact).times(matrix); }
+    void on_slip(const Slip& slip) override { matrix = saltation(p_.epsilon, slip).times(matrix); }
+
+    Frame matrix = Frame::Identity();
+
+private:
+    const Parameters p_;
+};
+
+/// The middle of the longest flight in the cycle after a state at a whole cycle: far from events.
+double time_far_from_events(const Parameters& p, const State& start, const StopRequest& stop);
+
 /// The state at tau + duration of a motion from tau; nullopt after too many impacts or a stop.
 std::optional<State> follow(
     const Parameters& parameters, const State& start, double tau, double duration,

@@ -6,6 +6,8 @@
 
 #include "../support.hpp"
 #include "core/continuation/branch.hpp"
+#include "core/continuation/orbit_start.hpp"
+#include "core/continuation/periodic_impacts.hpp"
 #include "core/measures/energy.hpp"
 #include "core/stability/orbit.hpp"
 
@@ -76,7 +78,7 @@ Recorded continued(
     const auto start = orbit_start(p, *orbit, length, plan.family, {at});
     REQUIRE(start);
     Recorded recorded;
-    CHECK(follow_branches(plan, *start, length, recorded));
+    CHECK(follow_branches(plan, *start, recorded));
     return recorded;
 }
 
@@ -84,19 +86,22 @@ Recorded table1_by_b(int switches = 0) {
     return continued(table1(0.015, Damping::closed_form), change_b, 0.015, 0.004, 0.03, switches);
 }
 
-/// Each point's state lies on an orbit of the simulated motion with its multipliers and measures.
-void check_points(const Recorded& r, const std::function<Parameters(double)>& system_at) {
+/// Each point's state lies on an orbit of the simulated motion with its multipliers and measures,
+/// up to multipliers of size `most`: next to grazing the simulation has few digits of larger ones.
+void check_points(
+    const Recorded& r, const std::function<Parameters(double)>& system_at, double most = 1e4) {
     CHECK(r.points.size() > 20);
     for (const auto& [branch, orbit] : r.points) {
         const double value = orbit.parameters[0];
         CAPTURE(value);
         const Parameters p = system_at(value);
-        if (elementary::modulus(orbit.multipliers[0]) > 1e4) continue;
+        if (elementary::modulus(orbit.multipliers[0]) > most) continue;
         const State& s = orbit.measures.at_whole_cycle;
         const auto found =
             find_orbit(p, s, orbit.sequence.cycles(), scale_of(p, {&s, 1}), 1e-6, {});
         REQUIRE(found);
-        CHECK(found->impacts == orbit.sequence.impacts());
+        CHECK(found->contacts == orbit.sequence.impacts());
+        CHECK(found->sticks == orbit.sequence.sticks * (orbit.sequence.mirrored ? 2 : 1));
         if (orbit.sequence.mirrored) CHECK(found->symmetric);
         for (int k = 0; k < 2; ++k)
             CHECK(
@@ -165,7 +170,7 @@ TEST_CASE("the Jacobian matrix of an orbit's equations is their difference quoti
         {{0, 0.2}}};
     for (const bool mirrored : {false, true}) {
         // Not an orbit: the equations hold for any unknowns.
-        const OrbitEquations equations({{1, -1, -1}, mirrored, mirrored ? 3 : 2}, family, 0.003);
+        const ImpactEquations equations({{1, -1, -1}, mirrored, mirrored ? 3 : 2}, family, 0.003);
         Unknowns z(8);
         z << 0.4, 0.7, -0.9, -1.1, 2.1, 1.7, 2.4, 1 / 0.2;
         Eigen::MatrixXd J;
@@ -274,6 +279,64 @@ TEST_CASE("where a contact becomes grazing the branch continues with one impact 
         for (const auto& [branch, orbit] : recorded.points) CHECK(orbit.sequence.impacts() <= 3);
 }
 
+TEST_CASE("a chatter becomes complete at the same place from both sides, as in direct runs") {
+    const double R = 0.2;
+    const auto system = [&](double b) {
+        Parameters p = table1(b, Damping::closed_form);
+        p.R_plus = p.R_minus = R;
+        return p;
+    };
+    Recorded sticking = continued(system(0.002), change_b, 0.002, 0.0015, 0.03),
+             free = continued(system(0.006), change_b, 0.006, 0.0015, 0.03, 1);
+    const double birth = sticking.at(SpecialKind::stick);
+    CHECK(std::abs(free.at(SpecialKind::stick) - birth) < 1e-12);
+    CHECK(sticking.ends() == std::vector{BranchEnd::last_impact, BranchEnd::range});
+    std::erase_if(sticking.points, [&](const auto& p) {
+        return std::abs(p.orbit.parameters[0] - birth) < 1e-7;
+    });
+    check_points(sticking, system, 100);
+    const auto sticks = [&](double b) {
+        const auto orbit = settled_orbit(system(b), 1);
+        REQUIRE(orbit);
+        return orbit->sticks;
+    };
+    CHECK(sticks(birth - 1e-9) == 2);
+    CHECK(sticks(birth + 1e-9) == 0);
+}
+
+TEST_CASE("a plastic impact sticks at once, and its branch goes on where the ball sticks no more") {
+    const auto system = [](double b) {
+        Parameters p = table1(b, Damping::closed_form);
+        p.R_plus = p.R_minus = 0;
+        return p;
+    };
+    const Recorded r = continued(system(0.004), change_b, 0.004, 0.002, 0.03);
+    check_points(r, system);
+    const Recorded other = continued(system(0.009), change_b, 0.009, 0.002, 0.03);
+    CHECK(std::abs(r.at(SpecialKind::stick) - other.at(SpecialKind::stick)) < 1e-13);
+    CHECK(std::abs(r.at(SpecialKind::torus) - other.at(SpecialKind::torus)) < 1e-12);
+}
+
+TEST_CASE("branches under friction are orbits of the simulated motion, also along the friction") {
+    Parameters base = table1(0.012, Damping::closed_form);
+    base.friction = 1e-4;
+    const auto by_b = [&](double b) {
+        Parameters p = base;
+        p.b = b;
+        return p;
+    };
+    check_points(continued(base, change_b, 0.012, 0.0085, 0.02), by_b);
+    const Change change = [](Parameters& p, double friction) { p.friction = friction; };
+    base.friction = 0;
+    const Recorded r = continued(base, change, 0, 0, 3e-4);
+    check_points(r, [&](double friction) {
+        Parameters p = base;
+        p.friction = friction;
+        return p;
+    });
+    CHECK(r.ends() == std::vector{BranchEnd::range, BranchEnd::range});
+}
+
 TEST_CASE("a branch that returns to its start is reported once, as closed") {
     Parameters p = table1(0.015, Damping::closed_form);
     const Recorded r =
@@ -314,12 +377,12 @@ TEST_CASE("limits of points and a stop request end a computation") {
     const auto start = orbit_start(p, *orbit, 0.003, plan.family, {p.b});
     REQUIRE(start);
     Recorded few;
-    CHECK(follow_branches(plan, *start, 0.003, few));
+    CHECK(follow_branches(plan, *start, few));
     CHECK(few.ends() == std::vector{BranchEnd::most_points, BranchEnd::most_points});
     CHECK(few.points.size() <= 10);
     int calls = 0;
     plan.stop = [&] { return ++calls > 3; };
     Recorded stopped;
-    CHECK(!follow_branches(plan, *start, 0.003, stopped));
+    CHECK(!follow_branches(plan, *start, stopped));
     CHECK(stopped.ends().empty());
 }

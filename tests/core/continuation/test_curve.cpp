@@ -4,6 +4,7 @@
 
 #include "../support.hpp"
 #include "core/continuation/curve.hpp"
+#include "core/continuation/orbit_start.hpp"
 #include "core/stability/orbit.hpp"
 
 using namespace vines;
@@ -42,7 +43,7 @@ Collected branch_along_b(double b, double R, double from, double to) {
     const auto start = orbit_start(p, *orbit, 0.003, plan.family, {b});
     REQUIRE(start);
     Collected branch;
-    CHECK(follow_branches(plan, *start, 0.003, branch));
+    CHECK(follow_branches(plan, *start, branch));
     return branch;
 }
 
@@ -69,7 +70,7 @@ TEST_CASE("a curve of special points passes through those of other branches") {
                 [](const std::vector<double>& v) { return by_b_and_R(v[0], v[1]); },
                 {{from, to}, {0.59, 0.61}}}};
         Collected curve;
-        CHECK(follow_curve(plan, *begin, 0.6, 0.003, 0, curve));
+        CHECK(follow_curve(plan, *begin, 0.6, 0, curve));
         CHECK(curve.specials.size() == 2);
         for (const SpecialPoint& end : curve.specials) {
             CHECK(end.end == BranchEnd::range);
