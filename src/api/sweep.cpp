@@ -293,8 +293,7 @@ std::string run_sweep(
     try {
         r.basins->explore(threads, r.plan.options, control);
         vines::run_sweep(r.plan, threads, control, lines);
-        if (r.plan.lines.size() == r.plan.grid.lines())
-            r.basins->run_pairs(threads, r.plan.options, control);
+        if (r.basins->is_complete()) r.basins->run_pairs(threads, r.plan.options, control);
     } catch (const Stopped&) {}
     return "";
 }

@@ -24,6 +24,7 @@
 #include "api/sweep.hpp"
 #include "cli/exit.hpp"
 #include "cli/files.hpp"
+#include "cli/json_values.hpp"
 #include "cli/plots.hpp"
 #include "cli/request_fields.hpp"
 #include "cli/sweep_file.hpp"
@@ -253,11 +254,19 @@ SweepFile begun_file(
 }
 
 /// Ends a file whose points are sorted; replaces any other by a sorted copy.
-void complete_file(AppendFile& out, const SweepFile& contents) {
-    const std::string sorted = contents.text(), present = out.read();
+void complete_file(AppendFile& out, const SweepFile& contents, const api::SweepRequest& request) {
+    const std::string sorted = contents.text(request), present = out.read();
     if (!sorted.starts_with(present)) return out.replace(sorted);
     out.append(sorted.substr(present.size()));
     out.sync();
+}
+
+/// True for the line of an earlier run, unless it is to be computed again.
+bool is_restored(const api::SweepRequest& request, const SweepFile& file, std::size_t index) {
+    const auto point = file.points.find(index);
+    if (point == file.points.end() || !request.basins) return point != file.points.end();
+    return request.basins->restore(
+        index, word_of(part(parse_answer(point->second.text), "/attractor")));
 }
 
 /// Adds to a write error how many points are kept.
@@ -284,17 +293,21 @@ int sweep_to_file(SweepRun run, const Destination& to, bool resume) {
     AppendFile out(to);
     SweepFile file =
         begun_file(out, to.name, resume, api::json_text(api::sweep_start(run.request)), left);
-    std::erase_if(left, [&](std::size_t i) { return file.points.contains(i); });
+    std::erase_if(left, [&](std::size_t i) { return is_restored(run.request, file, i); });
     std::atomic<std::size_t> done = file.points.size();
     const Stoppable stoppable([&] { print_stopped(done, run.total, resume_hint); });
     try {
         const std::string warning = compute(run, [&](std::size_t index, const std::string& line) {
+            const auto [point, is_new] = file.points.try_emplace(index, SweepFile::Line{line});
+            if (!is_new && point->second.text != line)
+                fail_in_line(
+                    to.name, point->second.number, "this is not what this program computes");
+            if (!is_new) return;
             out.append(line + "\n");
-            file.points[index] = {line};
             ++done;
         });
         if (!warning.empty()) print_message(warning);
-        if (done == run.total) complete_file(out, file);
+        if (done == run.total) complete_file(out, file, run.request);
     } catch (const std::runtime_error& reason) {
         fail(reason, done, run.total);
     }
@@ -371,12 +384,14 @@ int sweep(const SweepOptions& o) {
     if (o.plot) return sweep_drawn(run, path);
     if (format != api::Format::json) return sweep_to_table(std::move(run), format, path);
     Destination to = destination_of(path);
-    return to.is_stream() || o.basins ? sweep_to_stream(std::move(run), std::move(to))
-                                      : sweep_to_file(std::move(run), to, o.resume);
+    return to.is_stream() ? sweep_to_stream(std::move(run), std::move(to))
+                          : sweep_to_file(std::move(run), to, o.resume);
 }
 
 /// Options about the part that is computed, and its threads.
 void add_part(CLI::App& command, SweepOptions& options) {
+    command.add_flag(
+        "--resume", options.resume, "complete the output file of a run that was stopped or killed");
     command.add_option(
         "--shard", options.shard,
         "compute only a part: i/N with i from 0, or auto: from SLURM_ARRAY_TASK_ID and _COUNT, or "
@@ -402,9 +417,6 @@ Command add_sweep(CLI::App& app) {
         *command, options->request, api::sweep_fields(),
         ", one JSON line per point as it is computed; others: a table of all points");
     add_plot_flag(*command, options->plot);
-    command->add_flag(
-        "--resume", options->resume,
-        "complete the output file of a run that was stopped or killed");
     add_part(*command, *options);
     return with_exit_codes(
         command, [options] { return sweep(*options); },
@@ -430,7 +442,7 @@ Command add_basins(CLI::App& app) {
         command, [options] { return sweep(*options); },
         "vines basins -p b=0.0065 -p damping=closed_form -p box.x0=-0.003,0.003 -p "
         "box.y_dot0=-0.02,0.02 -p y0=0\n"
-        "vines basins request.json -a b=0.0055:0.0056:11 -o basins.ndjson\n"
+        "vines basins request.json -a b=0.0055:0.0056:11 -o basins.ndjson --resume\n"
         "jq -c 'select(.type == \"done\").attractors[]' basins.ndjson");
 }
 

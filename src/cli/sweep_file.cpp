@@ -44,10 +44,10 @@ void fail_in_line(const std::string& name, long number, const std::string& fault
     throw std::runtime_error(fmt::format("{}, line {}: {}", name, number, fault));
 }
 
-std::string SweepFile::text() const {
+std::string SweepFile::text(const api::SweepRequest& request) const {
     std::string all = start + "\n";
     for (const auto& [index, line] : points) all += line.text + "\n";
-    return all + api::done_line(points.size());
+    return all + api::done_line(points.size(), &request);
 }
 
 SweepFile parse_sweep_file(const std::string& text, const std::string& name, LineChecks checks) {
@@ -82,7 +82,8 @@ api::SweepRequest request_of(const SweepFile& file, const std::string& name) {
     const api::Json& request = part(start, "/request");
     if (!request.is_object()) fail_in_line(name, 1, "the request is missing");
     try {
-        return api::read_sweep_request(request, max_points);
+        return request.contains("box") ? api::read_basins_request(request, max_points)
+                                       : api::read_sweep_request(request, max_points);
     } catch (const api::Problem& problem) {
         fail_in_line(name, 1, std::string("its request is invalid: ") + problem.what());
     }
@@ -119,7 +120,12 @@ std::size_t first_missing(const SweepFile& file) {
 int merge(const MergeOptions& o) {
     SweepFile all;
     for (const std::string& path : o.inputs) add(all, path, o.inputs[0]);
-    const std::size_t points = request_of(all, o.inputs[0]).plan.grid.lines();
+    const api::SweepRequest request = request_of(all, o.inputs[0]);
+    if (request.basins)
+        throw std::runtime_error(
+            "basins of shards are not merged, since their last line needs all starts: put the "
+            "lines of points into one file and complete it with vines basins --resume");
+    const std::size_t points = request.plan.grid.lines();
     if (all.points.size() < points) {
         print_message(fmt::format(
             "{} of {} points are missing, the first is {}: a shard is not complete or was not "
@@ -127,7 +133,7 @@ int merge(const MergeOptions& o) {
             points - all.points.size(), points, first_missing(all)));
         return incomplete;
     }
-    write_all(o.output, all.text());
+    write_all(o.output, all.text(request));
     return complete;
 }
 

@@ -21,8 +21,9 @@ struct SweepFile {
     std::map<std::size_t, Line> points;  ///< by index
     std::size_t complete_bytes = 0;      ///< bytes of the complete lines
 
-    /// Content of a complete file: start, points sorted by index, done.
-    std::string text() const;
+    /// Content of a complete file: start, points sorted by index, done. The request holds the
+    /// results of basins.
+    std::string text(const api::SweepRequest& request) const;
 };
 
 /// Depth of the checks of point lines.

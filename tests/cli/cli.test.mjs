@@ -556,6 +556,45 @@ test("an existing file is not overwritten; --resume completes one that was cut a
   assert.equal((await resume("whole.ndjson", sweep.replace("60", "61"))).code, 1);
 });
 
+test("basins are completed from lines of any runs: one that was cut, or all shards in one file", async () => {
+  const input = JSON.stringify({
+    base: {damping: "closed_form", b: 0.0065, y0: 0},
+    box: {x0: [-0.003, 0.003], y_dot0: [-0.02, 0.02]},
+    axis: {parameter: "R", values: [0.55, 0.6]},
+    count: 200,
+    pairs: 50,
+  });
+  const basins = (name, ...more) => run(["basins", "-o", at(name), ...more], {input});
+  const whole = (await run(["basins"], {input})).out;
+  const lines = whole.trim().split("\n");
+  assert.equal((await basins("basins.ndjson")).code, 0);
+  assert.equal(await readFile(at("basins.ndjson"), "utf8"), whole);
+  assert.match((await basins("basins.ndjson")).errors, /--resume completes it/);
+  for (const cut of [[0], [0, 150], [0, 40, 300, 401]]) {
+    const kept = cut.length === 1 ? [lines[0]] : lines.slice(...cut.slice(0, 2));
+    const more = cut.length > 2 ? lines.slice(...cut.slice(2)) : [];
+    await writeFile(at("cut.ndjson"), `${[...kept, ...more].join("\n")}\n`);
+    assert.equal((await basins("cut.ndjson", "--resume")).code, 0);
+    assert.equal(await readFile(at("cut.ndjson"), "utf8"), whole);
+  }
+  const shards = await Promise.all(
+    [0, 1].map(async (k) => {
+      await basins(`shard${k}`, "--shard", `${k}/2`);
+      return (await readFile(at(`shard${k}`), "utf8")).split("\n");
+    }),
+  );
+  assert.match((await run(["merge", at("shard0"), at("shard1")])).errors, /vines basins --resume/);
+  const points = shards.flat().filter((line) => line.includes('"point"'));
+  await writeFile(at("shards"), `${[lines[0], ...points].join("\n")}\n`);
+  assert.equal((await basins("shards", "--resume")).code, 0);
+  assert.equal(await readFile(at("shards"), "utf8"), whole);
+  const forged = lines
+    .slice(0, 20)
+    .map((line) => line.replace(/"p1-[0-9a-f]{8}"/, '"p1-00000000"'));
+  await writeFile(at("forged"), `${forged.join("\n")}\n`);
+  assert.match((await basins("forged", "--resume")).errors, /line 2: this is not what/);
+});
+
 test("a killed sweep loses only unfinished points, and an interrupted one ends with exit code 130", async () => {
   const killed = await run(["sweep", "-o", at("killed")], {
     input: longSweep,

@@ -195,6 +195,19 @@ void Basins::add(std::size_t line, const PointResult& result) {
     else if (line < motions_[at->second - 1].line) motions_[at->second - 1] = {line, result};
 }
 
+bool Basins::restore(std::size_t line, const std::string& name) {
+    const std::lock_guard lock(mutex_);
+    const auto [at, is_new] = index_of_.try_emplace({line % values(), name}, motions_.size() + 1);
+    if (is_new) motions_.push_back({labels_.size(), {}});
+    else labels_[line] = at->second;
+    return !is_new;
+}
+
+bool Basins::is_complete() const {
+    const std::lock_guard lock(mutex_);
+    return std::ranges::find(labels_, std::size_t{0}) == labels_.end();
+}
+
 void Basins::run_pairs(int threads, const PointOptions& options, RunControl& control) {
     RandomSequence random(plan_.seed + 1);
     struct Neighbour {

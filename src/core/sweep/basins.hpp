@@ -102,6 +102,10 @@ public:
     /// The system of a start, with the known motions; empty without a start.
     std::optional<PointSystem> system_of(const Place& place) const;
     void add(std::size_t line, const PointResult& result);  ///< from any thread
+    /// Counts a start that led to the motion `name` in an earlier computation. False for the first
+    /// one of each motion, which is to be computed again, since that gives the motion's measures.
+    bool restore(std::size_t line, const std::string& name);
+    bool is_complete() const;  ///< all starts are added or restored
     /// Runs neighbours of the first starts for the exponents. Throws Stopped.
     void run_pairs(int threads, const PointOptions& options, RunControl& control);
     /// The result for each value, from the starts so far.
@@ -130,7 +134,7 @@ private:
     std::vector<Found> motions_;              ///< of all values
     std::map<std::pair<std::size_t, std::string>, std::size_t> index_of_;  ///< value and name
     std::vector<Pair> pairs_;
-    std::mutex mutex_;
+    mutable std::mutex mutex_;
 };
 
 }  // namespace vines
