@@ -141,6 +141,7 @@ Chapter transfer_matrices;    ///< Figs. 6 to 9: the eigenvalues of its J, M and
 Chapter table_2;              ///< Table 2: its exponents over other windows
 Chapter other_regimes;        ///< Figs. 10 to 14: Types I and III to VI
 Chapter table_3;              ///< Table 3: the exponents at ten values of b
+Chapter motions_over_b;       ///< the branches of orbits over the range of b
 Chapter experiment;           ///< Table 4, Figs. 15 to 24: exponents from measurements
 Chapter open_questions;       ///< the borders of the regimes; misprints
 

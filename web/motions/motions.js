@@ -33,7 +33,7 @@ const kinds = {
   symmetry_breaking: "symmetry breaking",
   torus: "torus: quasi-periodic motion begins",
   grazing: "grazing",
-  stick: "sticking begins",
+  stick: "sticking begins or ends",
   end: "end",
 };
 

@@ -1,0 +1,119 @@
+// The motions over the paper's range of b: what runs from its start come to, and the branches of
+// periodic orbits, stable and unstable, on which the regular ones lie.
+#include <fmt/format.h>
+
+#include <cmath>
+#include <map>
+
+#include "core/continuation/branch.hpp"
+#include "core/continuation/orbit_start.hpp"
+#include "core/sweep/point.hpp"
+#include "report/plots.hpp"
+#include "report/report.hpp"
+#include "report/runs.hpp"
+
+namespace vines::report {
+
+namespace {
+
+constexpr double from = 0.004, to = 0.042, of_start = 0.015, step = 0.00025;  // m
+
+Parameters system(double b) { return table1(b, Damping::closed_form); }
+
+/// Branches as curves of the amplitude, mm over mm.
+class BranchCurves : public BranchSink {
+public:
+    void branch(const BranchStart&) override {
+        for (Curve* curve : {&stable, &unstable}) curve->add(nan, nan);
+        last_ = nullptr;
+    }
+    void point(int, const OrbitPoint& orbit) override {
+        Curve* const curve = orbit.stable() ? &stable : &unstable;
+        add(*curve, orbit);
+        if (last_ && last_ != curve) {  // to the point where the stability changes
+            add(*last_, orbit);
+            last_->add(nan, nan);
+        }
+        last_ = curve;
+    }
+    void special(int, const SpecialPoint& s) override {
+        if (s.kind != SpecialKind::end) add(specials[s.kind], s.orbit);
+    }
+
+    Curve stable{.colour = colours[0], .label = "stable orbit"},
+        unstable{.colour = colours[0], .label = "unstable orbit", .dash = "4 3"};
+    std::map<SpecialKind, Curve> specials;
+
+private:
+    static void add(Curve& curve, const OrbitPoint& orbit) {
+        curve.add(1000 * orbit.parameters[0], 1000 * orbit.measures.x_max);
+    }
+
+    Curve* last_ = nullptr;  // of the branch
+};
+
+/// The branches from the symmetric motion (Fig. 11), with those that begin where its symmetry
+/// breaks.
+BranchCurves branches() {
+    const Parameters p = system(of_start);
+    const State settled = simulate(p, default_state(p), {1000 * p.cycle(), 100000, {}}, {}).state;
+    const State scale = scale_of(p, {&settled, 1});
+    const auto orbit = find_orbit(p, settled, 1, scale, 0.5, {});
+    const BranchPlan plan{
+        .family =
+            {[](const std::vector<double>& b) { return std::optional(system(b[0])); },
+             {{from, to}}},
+        .switches = 1};
+    BranchCurves curves;
+    follow_branches(plan, *orbit_start(p, *orbit, scale.x, plan.family, {of_start}), curves);
+    return curves;
+}
+
+/// The amplitudes of runs from the paper's start.
+Curve runs_over_b() {
+    const auto count = static_cast<std::size_t>(std::lround((to - from) / step)) + 1;
+    const auto b_of = [](std::size_t i) { return from + static_cast<double>(i) * step; };
+    PointOptions options;
+    options.transient_cycles = 500;
+    options.cycles = 300;
+    options.amplitudes_alone = true;
+    const std::vector<double> x_max = in_parallel(count, [&](std::size_t i) {
+        const Parameters p = system(b_of(i));
+        return measure(p, default_state(p), options, {}).x_max;
+    });
+    Curve curve{.colour = grey, .label = "runs", .dots = true};
+    for (std::size_t i = 0; i < count; ++i) curve.add(1000 * b_of(i), 1000 * x_max[i]);
+    return curve;
+}
+
+}  // namespace
+
+void motions_over_b(Report& report, RunCache&) {
+    report.heading("The motions over b");
+    const BranchCurves found = branches();
+    std::vector<Curve> curves = {runs_over_b(), found.unstable, found.stable};
+    std::vector<std::string> places;
+    std::size_t colour = 1;
+    for (const auto& [kind, points] : found.specials) {
+        std::string name = name_of(kind);
+        std::ranges::replace(name, '_', ' ');
+        for (const double b : points.x) places.push_back(fmt::format("{} at {:.6f}", name, b));
+        curves.push_back(points);
+        curves.back().dots = true;
+        curves.back().label = name;
+        curves.back().colour = kind == SpecialKind::fold ? red : colours[colour++ % 4];
+    }
+    report.paragraph(fmt::format(
+        "Branches of periodic orbits that contain the symmetric motion of Fig. 11, with the damping "
+        "of the closed form, and the amplitudes of runs from the paper's start, {:g} to {:g} mm. "
+        "Special points, mm: {}. Where the runs leave the branches their motions are chaotic or "
+        "quasi-periodic.",
+        1000 * from, 1000 * to, fmt::join(places, ", ")));
+    report.picture(
+        "motions",
+        "Largest |x| over b: runs from the paper's start (dots) and the orbits that exist (solid: "
+        "stable, broken: unstable)",
+        {{.x_label = "b (mm)", .y_label = "largest |x| (mm)", .curves = curves}}, 330);
+}
+
+}  // namespace vines::report
