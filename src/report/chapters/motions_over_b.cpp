@@ -104,10 +104,10 @@ void motions_over_b(Report& report, RunCache&) {
         curves.back().colour = kind == SpecialKind::fold ? red : colours[colour++ % 4];
     }
     report.paragraph(fmt::format(
-        "Branches of periodic orbits that contain the symmetric motion of Fig. 11, with the damping "
-        "of the closed form, and the amplitudes of runs from the paper's start, {:g} to {:g} mm. "
-        "Special points, mm: {}. Where the runs leave the branches their motions are chaotic or "
-        "quasi-periodic.",
+        "Branches of periodic orbits that contain the symmetric motion of Fig. 11, with the "
+        "damping of the closed form, and the amplitudes of runs from the paper's start, {:g} to "
+        "{:g} mm. Special points, mm: {}. Where the runs leave the branches their motions are "
+        "chaotic or quasi-periodic.",
         1000 * from, 1000 * to, fmt::join(places, ", ")));
     report.picture(
         "motions",

@@ -9,6 +9,7 @@
 #include "core/continuation/orbit_start.hpp"
 #include "core/continuation/periodic_impacts.hpp"
 #include "core/measures/energy.hpp"
+#include "core/measures/manifold.hpp"
 #include "core/stability/orbit.hpp"
 
 using namespace vines;
@@ -257,6 +258,46 @@ TEST_CASE("below a flip the motion settles on twice the period, above it on the 
     };
     CHECK(period(b + 4e-7) == 1);
     CHECK(period(b - 4e-7) == 2);
+}
+
+TEST_CASE("flips lie where a multiplier of the simulated motion passes -1, within 1e-8 m") {
+    int flips = 0;
+    for (const double R : {0.45, 0.5, 0.55, 0.6, 0.65, 0.7}) {
+        Parameters p = table1(0.0065, Damping::closed_form);
+        p.R_plus = p.R_minus = R;
+        for (const auto& [branch, point] :
+             continued(p, change_b, 0.0065, 0.004, 0.02, 1).specials) {
+            const double b = point.orbit.parameters[0];
+            if (point.kind != SpecialKind::flip || point.orbit.sequence.impacts() > 3) continue;
+            const auto beyond = [&](double at) {
+                p.b = at;
+                const State& s = point.orbit.measures.at_whole_cycle;
+                const auto orbit =
+                    find_orbit(p, s, point.orbit.sequence.cycles(), scale_of(p, {&s, 1}), 0.1, {});
+                REQUIRE(orbit);
+                const auto most = std::ranges::min(
+                    orbit->multipliers, {}, [](const auto& m) { return m.real(); });
+                return most.real() < -1;
+            };
+            CHECK(beyond(b - 1e-8) != beyond(b + 1e-8));
+            ++flips;
+        }
+    }
+    CHECK(flips >= 10);
+}
+
+TEST_CASE("for a light ball the symmetric motion has the limits of the slow invariant manifold") {
+    Parameters p = table1(0.01, Damping::closed_form);
+    p.epsilon = 1e-8;
+    p.lambda = 2 * 0.01 / p.epsilon;
+    p.G *= 0.007 / *free_amplitude(p);
+    const double fold = manifold_b(p.R_plus, 0.007), b = 0.4 * fold;
+    p.b = b;
+    const Recorded r = continued(p, change_b, b, 0.1 * fold, 2 * fold);
+    CHECK(r.at(SpecialKind::fold) == doctest::Approx(fold).epsilon(1e-5));
+    const double broken = r.at(SpecialKind::symmetry_breaking);
+    CHECK(
+        manifold_symmetry_breaking(p.R_plus, 1, broken).C == doctest::Approx(0.007).epsilon(1e-5));
 }
 
 TEST_CASE("where a contact becomes grazing the branch continues with one impact more") {
