@@ -620,7 +620,7 @@ class ContinueFields(TypedDict, total=False):
     resolution: float
     points: int
     switch: int | bool
-    curve: Literal["fold", "flip", "symmetry_breaking", "torus", "grazing"]
+    curve: Literal["fold", "flip", "symmetry_breaking", "torus", "grazing", "stick"]
     second: str
     second_from: float
     second_to: float

@@ -264,7 +264,9 @@ bool BranchFollower::pass_completion() {
         on_ = std::move(before);
         return false;
     }
-    sink_.special(number_, {SpecialKind::stick, orbit_point(*on_->equations, *birth)});
+    SpecialPoint stick{SpecialKind::stick, orbit_point(*on_->equations, *birth)};
+    stick.on = {on_->equations, birth->at.z};
+    sink_.special(number_, stick);
     on_ = std::move(beyond);
     sink_.point(number_, orbit_point(*on_->equations, on_->node));
     h_ = first_arc;
@@ -280,10 +282,12 @@ std::optional<BranchEnd> BranchFollower::pass_event(const SequenceFault& fault) 
     if (fault.kind == SequenceFault::Kind::contact)
         if (auto changed = on_->equations->changed(on_->node.at.z, fault))
             grazing.on = std::move(*changed);
-    if (on_->node.approach.empty()) grazing.on = {};  // no equations hold at it
     const bool sticks = fault.kind == SequenceFault::Kind::stick;
     if (sticks) grazing.kind = SpecialKind::stick;
+    else if (on_->node.approach.empty()) grazing.on = {};  // no equations hold at it
     auto beyond = beyond_event(*on_->equations, on_->node, fault);
+    if (sticks && !on_->node.approach.empty() && beyond)
+        grazing.on = {beyond->equations, beyond->node.at.z};
     if (beyond) grazing.impacts_after = beyond->equations->sequence().impacts();
     sink_.special(number_, grazing);
     const bool too_many = beyond && beyond->equations->sequence().size() > plan_.most_impacts;

@@ -52,7 +52,7 @@ struct SpecialPoint {
     long impacts_after = 0;             ///< of kind grazing: per period beyond it; 0: none
     std::optional<double> angle = {};   ///< of kind torus: of the multiplier of a period, rad
     /// Equations that hold there; of kind grazing with the contact as the impact at the end of
-    /// flight `impact`.
+    /// flight `impact`, of kind stick at or next to it with the sticking phase.
     OrbitGuess on = {};
     std::size_t impact = 0;
 };

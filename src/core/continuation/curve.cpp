@@ -88,11 +88,122 @@ std::optional<CurvePoint> at_limit(
     return exact ? exact : a;
 }
 
+/// Births of a sticking phase in two parameters. It has no equation that holds on both sides, since
+/// impacts accumulate on one: at each value of the second parameter the first one is bisected
+/// between an orbit with the phase and none.
+class StickCurve {
+public:
+    StickCurve(const BranchPlan& plan, const SpecialPoint& point)
+        : plan_(plan),
+          over_both_(point.on.equations->over(plan.family)) {}
+
+    /// The unknowns of the orbit with the phase, at its birth, from those next to one.
+    std::optional<Unknowns> birth_near(const Unknowns& guess, double second) const {
+        const ParameterFamily along{
+            [&](const std::vector<double>& first) {
+                return plan_.family.system_at({first[0], second * plan_.family.unit(1)});
+            },
+            {plan_.family.ranges[0]}};
+        const auto equations = over_both_->over(along);
+        const auto sticking_at = [&](const Unknowns& near, double parameter) {
+            auto node = node_at_parameter(*equations, near, parameter, 1);
+            if (node && equations->check(node->at.z, {}).fault) node.reset();
+            return node ? std::optional(node->at.z) : std::nullopt;
+        };
+        const Unknowns near = guess.head(guess.size() - 1);
+        const double at = near(near.size() - 1);
+        for (double away = first_away; away < last_away; away *= 2)
+            for (const double side : {1.0, -1.0}) {
+                auto with = sticking_at(near, at + side * away);
+                if (!with || sticking_at(*with, at - side * away)) continue;
+                double valid = at + side * away, invalid = at - side * away;
+                while (std::abs(valid - invalid) > birth_within) {
+                    const double middle = 0.5 * (valid + invalid);
+                    if (auto there = sticking_at(*with, middle)) with = there, valid = middle;
+                    else invalid = middle;
+                }
+                Unknowns z(guess.size());
+                z << *with, second;
+                return z;
+            }
+        return std::nullopt;
+    }
+
+    OrbitPoint point(const Unknowns& z) const {
+        const auto values = over_both_->values(z);
+        return orbit_point(
+            *over_both_, z, eigenvalues_of(values->transfer), over_both_->check(z, {}).measures);
+    }
+
+    /// From a birth in one direction of the second parameter.
+    bool follow(Unknowns z, int direction, int number, BranchSink& sink) const {
+        const Eigen::Index second = z.size() - 1;
+        const double limit =
+            direction *
+            std::max(
+                direction * plan_.family.ranges[1].from, direction * plan_.family.ranges[1].to) /
+            plan_.family.unit(1);
+        Unknowns before = z;
+        std::optional<BranchEnd> end;
+        double h = plan_.resolution;
+        for (long points = 1;; ++points) {
+            if (plan_.stop && plan_.stop()) return false;
+            const OrbitPoint here = point(z);
+            sink.point(number, here);
+            if (z(second) == limit || plan_.family.end_before(0, z(second - 1)))
+                end = BranchEnd::range;
+            else if (points >= plan_.most_points) end = BranchEnd::most_points;
+            std::optional<Unknowns> next;
+            for (; !end && !next && h > shortest_curve_arc; h *= next ? curve_growth : 0.5) {
+                double to = z(second) + direction * h;
+                if (direction * (to - limit) > 0) to = limit;
+                const double moved = z(second) - before(second);
+                const double part = moved == 0 ? 0 : (to - z(second)) / moved;
+                next = birth_near(z + part * (z - before), to);
+            }
+            if (!next) end = end.value_or(BranchEnd::not_decided);
+            if (end) {
+                sink.special(number, {SpecialKind::end, here, *end});
+                return true;
+            }
+            h = std::min(h, plan_.resolution);
+            before = std::exchange(z, *next);
+        }
+    }
+
+private:
+    // Distances, in units of the first parameter, in which the birth is searched for, and to which
+    // it is bisected.
+    static constexpr double first_away = 1e-8, last_away = 0.05, birth_within = 1e-13;
+
+    const BranchPlan& plan_;
+    const std::shared_ptr<const OrbitEquations> over_both_;
+};
+
+/// follow_curve() of kind stick.
+bool follow_sticks(
+    const BranchPlan& plan, const SpecialPoint& point, double second, int number,
+    BranchSink& sink) {
+    const StickCurve curve(plan, point);
+    Unknowns guess(point.on.z.size() + 1);
+    guess << point.on.z, second / plan.family.unit(1);
+    guess(guess.size() - 2) = point.orbit.parameters[0] / plan.family.unit(0);
+    const auto begin = curve.birth_near(guess, second / plan.family.unit(1));
+    for (const int direction : {1, -1}) {
+        sink.branch({number, -1, point.kind, direction});
+        if (!begin) sink.special(number, {SpecialKind::end, point.orbit, BranchEnd::not_decided});
+        else if (!curve.follow(*begin, direction, number, sink)) return false;
+        ++number;
+    }
+    return true;
+}
+
 }  // namespace
 
 bool follow_curve(
     const BranchPlan& plan, const SpecialPoint& point, double second, int number,
     BranchSink& sink) {
+    if (point.kind == SpecialKind::stick) return follow_sticks(plan, point, second, number, sink);
     const auto over_both = point.on.equations->over(plan.family);
     const OrbitEquations& equations = *over_both;
     const SpecialTest test{equations, point.kind, point.impact};

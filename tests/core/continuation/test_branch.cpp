@@ -225,6 +225,12 @@ TEST_CASE("so are those where gravity or another wall breaks the symmetry") {
     CHECK(falling.points.back().orbit.parameters[0] != 0);
     for (const auto& [branch, orbit] : falling.points) CHECK(!orbit.sequence.mirrored);
     check_points(continued(base, R_plus, base.R_plus, 0.5, 0.7), with(R_plus));
+    // R of the speed.
+    std::mt19937_64 engine(11);
+    Parameters tabled = base;
+    tabled.table_plus = tabled.table_minus = random_table(engine, 0.02);
+    const Change other_b = [&](Parameters& p, double b) { (p = tabled).b = b; };
+    check_points(continued(tabled, other_b, 0.012, 0.008, 0.02), with(other_b));
 }
 
 TEST_CASE("a branch that begins at a broken symmetry returns to it, and is found from elsewhere") {

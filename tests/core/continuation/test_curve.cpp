@@ -88,3 +88,28 @@ TEST_CASE("a curve of special points passes through those of other branches") {
         CHECK(nearest < 1e-10);
     }
 }
+
+TEST_CASE("a curve of births of a sticking phase passes through those of other branches") {
+    const double from = 0.0015, to = 0.006;
+    const Collected branch = branch_along_b(0.002, 0.2, from, to);
+    const SpecialPoint* const begin = branch.first(SpecialKind::stick);
+    REQUIRE(begin);
+    const BranchPlan plan{
+        .family =
+            {[](const std::vector<double>& v) { return by_b_and_R(v[0], v[1]); },
+             {{from, to}, {0.1, 0.3}}},
+        .resolution = 0.05};
+    Collected curve;
+    CHECK(follow_curve(plan, *begin, 0.2, 0, curve));
+    REQUIRE(curve.specials.size() == 2);
+    for (const SpecialPoint& end : curve.specials) {
+        const OrbitPoint& last = end.orbit;
+        CHECK(end.end == BranchEnd::range);
+        CHECK(std::abs(std::abs(last.parameters[1] - 0.2) - 0.1) < 1e-15);
+        CHECK(last.sequence.sticks == 1);
+        const Collected other = branch_along_b(0.002, last.parameters[1], from, to);
+        CHECK(
+            std::abs(other.first(SpecialKind::stick)->orbit.parameters[0] - last.parameters[0]) <
+            1e-12);
+    }
+}
