@@ -79,12 +79,36 @@ void bench_case(const Case& c) {
             [&] { return per_impact(impacts, [&] { kept = states_at(p, *flow, known.entries); }); },
             [&] { return per_impact(c.plain_impacts, [&] { plain(p, c.plain_impacts, 0.05); }); }});
     const std::string name = c.name;
-    row(name + ": trajectory and its list of impacts", times[0], "ns per impact");
-    row(name + ": trajectory and all four exponents", times[1], "ns per impact");
+    const auto of_limit = [&](const std::vector<double>& of) {
+        return ", " + digits(median(ratios(of, times[2]))) + " times the states alone";
+    };
+    row(name + ": trajectory and its list of impacts", times[0], "ns per impact",
+        of_limit(times[0]));
+    row(name + ": trajectory and all four exponents", times[1], "ns per impact",
+        of_limit(times[1]));
     row(name + ": the states at its contacts alone, if these are known", times[2], "ns per impact");
     row(name + ": the plain program, with all four exponents", times[3], "ns per impact");
     row(name + ": time of the plain program, relative to trajectory and all four exponents",
         ratios(times[3], times[1]), "times");
+}
+
+/// What a system costs that was never seen: the table of its flow.
+void bench_first_run() {
+    Parameters p;
+    p.b = 0.015, p.damping = Damping::closed_form;
+    const auto run = [&p] {
+        ImpactRecord record;
+        Observer* const observers[] = {&record};
+        return 1e6 * seconds_of([&] { simulate(p, default_state(p), {1e9, 20, {}}, observers); });
+    };
+    const auto times = in_turn(
+        99, {[&] {
+                 p.Omega += 1e-9;
+                 return run();
+             },
+             run});
+    row("b = 15 mm: the first 20 impacts, of a system never seen", times[0], "us");
+    row("b = 15 mm: the first 20 impacts, of a known system", times[1], "us");
 }
 
 /// Counts flights, which an impact or the end of a sliding ends.
@@ -150,6 +174,7 @@ void bench_kernel() {
           Case{"b = 22 mm, irregular", 0.022, Damping::closed_form, 100},
           Case{"b = 34 mm, sparse", 0.034, Damping::closed_form, 300}})
         bench_case(c);
+    bench_first_run();
     bench_friction();
     bench_record();
 }

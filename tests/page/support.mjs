@@ -53,7 +53,8 @@ export const cellsByName = async (page, rows) =>
 /** The file that a click saves. */
 export async function downloaded(page, link) {
   const [download] = await Promise.all([page.waitForEvent("download"), page.click(link)]);
-  return {name: download.suggestedFilename(), text: await readFile(await download.path(), "utf8")};
+  const bytes = await readFile(await download.path());
+  return {name: download.suggestedFilename(), bytes, text: bytes.toString()};
 }
 
 /**

@@ -372,7 +372,14 @@ TEST_CASE("branches under friction are orbits of the simulated motion, also alon
         p.b = b;
         return p;
     };
-    check_points(continued(base, change_b, 0.012, 0.0085, 0.02), by_b);
+    const Recorded whole = continued(base, change_b, 0.012, 0.0055, 0.016, 1);
+    check_points(whole, by_b);
+    const auto broken =
+        std::ranges::find(whole.branches, SpecialKind::symmetry_breaking, &BranchStart::at);
+    REQUIRE(broken != whole.branches.end());
+    CHECK(std::ranges::any_of(whole.points, [&](const auto& p) {
+        return p.branch == broken->number && p.orbit.stable() && !p.orbit.sequence.mirrored;
+    }));
     const Change change = [](Parameters& p, double friction) { p.friction = friction; };
     base.friction = 0;
     const Recorded r = continued(base, change, 0, 0, 3e-4);
