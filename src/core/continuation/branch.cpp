@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <deque>
+#include <utility>
 
 #include "core/continuation/branch_node.hpp"
 #include "core/motion/elementary.hpp"
@@ -242,7 +243,7 @@ bool BranchFollower::move_section() {
     const int direction = on_->node.fold > 0 ? 1 : -1;
     auto node = node_at_parameter(*moved->equations, moved->z, on_->node.parameter(), direction);
     if (!node) return false;
-    on_.emplace(moved->equations, std::move(*node));
+    on_ = Relative{moved->equations, std::move(*node)};
     h_ = first_arc;
     return true;
 }

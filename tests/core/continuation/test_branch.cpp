@@ -271,8 +271,8 @@ TEST_CASE("flips lie where a multiplier of the simulated motion passes -1, withi
     for (const double R : {0.45, 0.5, 0.55, 0.6, 0.65, 0.7}) {
         Parameters p = table1(0.0065, Damping::closed_form);
         p.R_plus = p.R_minus = R;
-        for (const auto& [branch, point] :
-             continued(p, change_b, 0.0065, 0.004, 0.02, 1).specials) {
+        for (const auto& special : continued(p, change_b, 0.0065, 0.004, 0.02, 1).specials) {
+            const SpecialPoint& point = special.point;
             const double b = point.orbit.parameters[0];
             if (point.kind != SpecialKind::flip || point.orbit.sequence.impacts() > 3) continue;
             const auto beyond = [&](double at) {
