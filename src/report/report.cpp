@@ -229,7 +229,7 @@ int reproduce(const std::string& folder) {
     RunCache runs;
     for (Chapter* chapter :
          {model, strongly_modulated, transient_exponents, transfer_matrices, table_2, other_regimes,
-          table_3, motions_over_b, experiment, open_questions})
+          table_3, experiment, motions_over_b, open_questions})
         chapter(report, runs);
     if (!folder.empty()) write_markdown(report, folder);
     print(bottom_line(report) + "\n" + summary(report.findings) + markdown_table(report.findings));

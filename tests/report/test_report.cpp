@@ -13,7 +13,7 @@
 #include "plot/plot.hpp"
 #include "report/report.hpp"
 #include "report/statistics.hpp"
-#include "report/symmetric_motion.hpp"
+#include "symmetric_motion.hpp"
 
 using namespace vines::report;
 

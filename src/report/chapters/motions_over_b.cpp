@@ -16,9 +16,8 @@ namespace vines::report {
 
 namespace {
 
-constexpr double from = 0.004, to = 0.042, of_start = 0.015, step = 0.00025;  // m
-
-Parameters system(double b) { return table1(b, Damping::closed_form); }
+// m; of_start: two symmetric impacts per cycle attract with either damping (Fig. 11).
+constexpr double from = 0.004, to = 0.042, of_start = 0.015, step = 0.00025;
 
 /// Branches as curves of the amplitude, mm over mm.
 class BranchCurves : public BranchSink {
@@ -36,13 +35,17 @@ public:
         }
         last_ = curve;
     }
-    void special(int, const SpecialPoint& s) override {
+    void special(int branch, const SpecialPoint& s) override {
         if (s.kind != SpecialKind::end) add(specials[s.kind], s.orbit);
+        // The two directions of the first branch.
+        if (branch < 2) of_symmetric.try_emplace(s.kind, s);
     }
+    double mm(SpecialKind kind) const { return 1000 * of_symmetric.at(kind).orbit.parameters[0]; }
 
     Curve stable{.colour = colours[0], .label = "stable orbit"},
         unstable{.colour = colours[0], .label = "unstable orbit", .dash = "4 3"};
     std::map<SpecialKind, Curve> specials;
+    std::map<SpecialKind, SpecialPoint> of_symmetric;  ///< the first of each kind
 
 private:
     static void add(Curve& curve, const OrbitPoint& orbit) {
@@ -54,14 +57,16 @@ private:
 
 /// The branches from the symmetric motion (Fig. 11), with those that begin where its symmetry
 /// breaks.
-BranchCurves branches() {
-    const Parameters p = system(of_start);
+BranchCurves branches(Damping damping) {
+    const Parameters p = table1(of_start, damping);
     const State settled = simulate(p, default_state(p), {1000 * p.cycle(), 100000, {}}, {}).state;
     const State scale = scale_of(p, {&settled, 1});
     const auto orbit = find_orbit(p, settled, 1, scale, 0.5, {});
     const BranchPlan plan{
         .family =
-            {[](const std::vector<double>& b) { return std::optional(system(b[0])); },
+            {[damping](const std::vector<double>& b) {
+                 return std::optional(table1(b[0], damping));
+             },
              {{from, to}}},
         .switches = 1};
     BranchCurves curves;
@@ -78,7 +83,7 @@ Curve runs_over_b() {
     options.cycles = 300;
     options.amplitudes_alone = true;
     const std::vector<double> x_max = in_parallel(count, [&](std::size_t i) {
-        const Parameters p = system(b_of(i));
+        const Parameters p = table1(b_of(i), Damping::closed_form);
         return measure(p, default_state(p), options, {}).x_max;
     });
     Curve curve{.colour = grey, .label = "runs", .dots = true};
@@ -86,11 +91,44 @@ Curve runs_over_b() {
     return curve;
 }
 
+std::string compared_with_runs(double b) {
+    constexpr double offset = 0.0001;  // m
+    const std::vector<Regime> runs = long_regimes({b - offset, b + offset}, Damping::closed_form);
+    return fmt::format(
+        "from the paper's start Type {} .1 mm below it, {} .1 mm above", name_of(runs[0].type),
+        name_of(runs[1].type));
+}
+
+void symmetric_impacts(Report& report, const BranchCurves& here) {
+    const BranchCurves other = branches(Damping::equation_of_motion);
+    const double end = here.mm(SpecialKind::torus), other_end = other.mm(SpecialKind::torus),
+                 half_angle = 0.5 * *here.of_symmetric.at(SpecialKind::torus).angle;
+    report.add(
+        {"Fig. 11, Table 3",
+         "b at which two symmetric impacts per cycle cease to attract (end of Type III), mm",
+         "III at 15, II at 16.5"},
+        {end, other_end,
+         fmt::format(
+             "{:.6f}: a pair {:.4f} +- {:.4f}i leaves the unit circle, as at a torus bifurcation; "
+             "{}; by eq. (1) {:.6f}",
+             end, std::cos(half_angle), std::sin(half_angle), compared_with_runs(end / 1000),
+             other_end)},
+        {{15, 16.5}, "between the two"}, ClaimVerdict::by_closed_form);
+    report.paragraph(fmt::format(
+        "Where two symmetric impacts per cycle (Fig. 11) become asymmetric (Fig. 12), a multiplier "
+        "of half a cycle is -1 and the symmetry breaks: at b = {:.6f} mm, by eq. (1) at {:.6f} mm. "
+        "By the closed form the motion exists up to b = {:.6f} mm, where it meets a slower one in "
+        "a fold.",
+        here.mm(SpecialKind::symmetry_breaking), other.mm(SpecialKind::symmetry_breaking),
+        here.mm(SpecialKind::fold)));
+}
+
 }  // namespace
 
 void motions_over_b(Report& report, RunCache&) {
     report.heading("The motions over b");
-    const BranchCurves found = branches();
+    const BranchCurves found = branches(Damping::closed_form);
+    symmetric_impacts(report, found);
     std::vector<Curve> curves = {runs_over_b(), found.unstable, found.stable};
     std::vector<std::string> places;
     std::size_t colour = 1;

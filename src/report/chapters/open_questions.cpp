@@ -5,76 +5,10 @@
 
 #include "report/report.hpp"
 #include "report/runs.hpp"
-#include "report/symmetric_motion.hpp"
 
 namespace vines::report {
 
 namespace {
-
-/// Bisects the b (m) at which `holds` changes.
-double border(double where_it_holds, double where_not, const auto& holds) {
-    for (int i = 0; i < 60; ++i) {
-        const double middle = (where_it_holds + where_not) / 2;
-        (holds(middle) ? where_it_holds : where_not) = middle;
-    }
-    return where_it_holds;
-}
-
-/// The multiplier of the half cycle with the largest modulus.
-std::complex<double> largest_multiplier(double b, Damping damping) {
-    return fast_symmetric_motion(table1(b, damping))->multipliers[0];
-}
-
-/// b (m) at which two symmetric impacts per cycle attract with either damping (Fig. 11).
-constexpr double symmetric = 0.015;
-
-/// Ends of the range of b around it in which they attract.
-struct Borders {
-    double breaking, end;  ///< m
-};
-Borders borders(Damping damping) {
-    const auto stable = [damping](double b) {
-        const auto motion = fast_symmetric_motion(table1(b, damping));
-        return motion && motion->stable();
-    };
-    return {border(symmetric, 0.004, stable), border(symmetric, 0.030, stable)};
-}
-
-std::string compared_with_runs(double b) {
-    constexpr double offset = 0.0001;  // m
-    const std::vector<Regime> runs = long_regimes({b - offset, b + offset}, Damping::closed_form);
-    return fmt::format(
-        "from the paper's start Type {} .1 mm below it, {} .1 mm above", name_of(runs[0].type),
-        name_of(runs[1].type));
-}
-
-void symmetric_impacts(Report& report) {
-    const Borders here = borders(Damping::closed_form),
-                  other = borders(Damping::equation_of_motion);
-    const std::complex<double> m = largest_multiplier(here.end, Damping::closed_form);
-    report.add(
-        {"Fig. 11, Table 3",
-         "b at which two symmetric impacts per cycle cease to attract (end of Type III), mm",
-         "III at 15, II at 16.5"},
-        {1000 * here.end, 1000 * other.end,
-         fmt::format(
-             "{:.6f}: a pair {:.4f} +- {:.4f}i leaves the unit circle, as at a torus bifurcation; "
-             "{}; by eq. (1) {:.6f}",
-             1000 * here.end, m.real(), std::abs(m.imag()), compared_with_runs(here.end),
-             1000 * other.end)},
-        {{15, 16.5}, "between the two"}, ClaimVerdict::by_closed_form);
-    const double fold = border(symmetric, 0.030, [](double b) {
-        return fast_symmetric_motion(table1(b, Damping::closed_form)).has_value();
-    });
-    report.paragraph(fmt::format(
-        "Where two symmetric impacts per cycle (Fig. 11) become asymmetric (Fig. 12): at b = "
-        "{:.6f} mm a multiplier of the half cycle is {:+.4f}, the symmetry breaks; by eq. (1) at "
-        "{:.6f} mm a multiplier of the half cycle is {:+.4f}, the symmetry breaks. By the closed "
-        "form the motion exists up to b = {:.6f} mm, where it meets a slower one in a fold.",
-        1000 * here.breaking, largest_multiplier(here.breaking, Damping::closed_form).real(),
-        1000 * other.breaking,
-        largest_multiplier(other.breaking, Damping::equation_of_motion).real(), 1000 * fold));
-}
 
 /// The equidistant b, mm, at which the regime of a long run is so.
 std::vector<double> mm_where(double from, double to, int steps, Damping damping, auto&& is_so) {
@@ -138,7 +72,6 @@ void captures(Report& report, RunCache& runs) {
 void open_questions(Report& report, RunCache& runs) {
     report.heading("What the paper leaves open");
     captures(report, runs);
-    symmetric_impacts(report);
     sparse_and_modulated(report);
     three_impacts(report);
     report.paragraph(

@@ -1,4 +1,4 @@
-#include "report/symmetric_motion.hpp"
+#include "symmetric_motion.hpp"
 
 #include <Eigen/LU>
 #include <cmath>
