@@ -142,13 +142,15 @@ Json describe_fitted(const JointFit& fit, const Parameters& parameters, double o
 ChannelForcing channel_forcing(const MeasuredForcing& m, const System& system) {
     const Parameters& p = system.parameters;
     const double amplitude = elementary::hypot(m.sin, m.cos);
-    if (m.is_force) return {amplitude / system.si->k1, elementary::atan2(m.cos, m.sin)};
+    if (m.kind == ForcingKind::force)
+        return {amplitude / system.si->k1, elementary::atan2(m.cos, m.sin)};
     // A base moving as F sin(omega t) has the acceleration -omega^2 F sin(omega t); the forcing
     // leads the displacement of the base by phi, eq. (3).
-    const double omega = 2 * std::numbers::pi * m.f;
+    const double omega = 2 * std::numbers::pi * m.f,
+                 by_F = m.kind == ForcingKind::base_acceleration ? -omega * omega : 1;
     return {
-        amplitude / (omega * omega) * elementary::hypot(1.0, p.lambda * p.epsilon * p.Omega),
-        elementary::atan2(-m.cos, -m.sin) + p.phi()};
+        amplitude / std::abs(by_F) * elementary::hypot(1.0, p.lambda * p.epsilon * p.Omega),
+        elementary::atan2(m.cos * by_F, m.sin * by_F) + p.phi()};
 }
 
 Json describe_measured_forcing(
@@ -168,12 +170,13 @@ Json describe_measured_forcing(
         warnings.push_back(fmt::format(
             "the channel of the {} gives F = {:.4g} m, the oscillator's motion {:.4g} m: is a "
             "sensitivity wrong?",
-            m.is_force ? "force" : "base", F, used.si->F));
+            m.kind == ForcingKind::force ? "force" : "base", F, used.si->F));
     if (std::abs(phase) > phase_off)
         warnings.push_back(fmt::format(
             "the forcing in the oscillator's motion {} the channel of the {} by {:.3g} rad: is the "
             "channel inverted or delayed?",
-            phase > 0 ? "lags" : "leads", m.is_force ? "force" : "base", std::abs(phase)));
+            phase > 0 ? "lags" : "leads", m.kind == ForcingKind::force ? "force" : "base",
+            std::abs(phase)));
     return {
         {"f", m.f}, {"F", F}, {"phase", phase}, {"load", fit.forcing.load ? "measured" : "sine"}};
 }

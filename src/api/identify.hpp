@@ -10,11 +10,11 @@
 
 namespace vines::api {
 
-/// The forcing measured by a channel of the record: the acceleration of the base, or a force on m1.
+/// The forcing measured by a channel of the record: the motion of the base, or a force on m1.
 struct MeasuredForcing {
-    bool is_force;
+    ForcingKind kind;
     double f;  ///< Hz
-    /// Coefficients of sin(2 pi f t) and cos(2 pi f t), in m/s^2 or N.
+    /// Coefficients of sin(2 pi f t) and cos(2 pi f t), in m/s^2, m or N.
     double sin, cos;
 };
 

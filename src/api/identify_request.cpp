@@ -235,25 +235,33 @@ std::vector<CsvColumn> read_record_columns(Json record, CancelCheck& cancel) {
 
 /// Samples of the forcing's channel, with empty cells left out.
 struct ForcingSamples {
-    bool is_force;
+    ForcingKind kind;
     std::string name;
-    std::vector<double> seconds, values;  ///< values in m/s^2 or N
+    std::vector<double> seconds, values;  ///< values in m/s^2, m or N
 };
 
 /// nullopt without a channel.
 std::optional<ForcingSamples> forcing_samples(
     const std::vector<CsvColumn>& columns, const Json& fields) {
-    const RecordColumn time = find_column(columns, fields, time_channel),
-                       base = find_column(columns, fields, base_channel),
-                       force = find_column(columns, fields, force_channel);
-    const RecordColumn& channel = base.column ? base : force;
+    const RecordColumn time = find_column(columns, fields, time_channel);
+    RecordColumn channel{};
+    ForcingSamples samples{};
+    for (const auto& [kind, each] :
+         {std::pair{ForcingKind::base_acceleration, &base_acceleration_channel},
+          std::pair{ForcingKind::base_displacement, &base_displacement_channel},
+          std::pair{ForcingKind::force, &force_channel}}) {
+        const RecordColumn found = find_column(columns, fields, *each);
+        if (!found.column) continue;
+        if (channel.column)
+            refuse(
+                "/record/" + shortened(found.column->name),
+                "the record has two channels of the forcing, " + shortened(channel.column->name) +
+                    " and this one: the model has one forcing");
+        channel = found;
+        samples.kind = kind;
+        samples.name = found.column->name;
+    }
     if (!time.column || !channel.column) return std::nullopt;
-    if (base.column && force.column)
-        refuse(
-            "/record/" + shortened(force.column->name),
-            "the record has a channel of the base, " + shortened(base.column->name) +
-                ", and one of a force: the model has one forcing");
-    ForcingSamples samples{force.column != nullptr, channel.column->name, {}, {}};
     // A slower channel has empty cells.
     for (std::size_t k = 0; k < time.column->values.size(); ++k) {
         if (std::isnan(channel.column->values[k] + time.column->values[k])) continue;
@@ -275,7 +283,7 @@ MeasuredForcing measured_forcing(const ForcingSamples& s, CancelCheck& cancel) {
             "column " + shortened(s.name) +
                 " is not harmonic: one sine must explain three quarters of it, over five cycles "
                 "or more");
-    return {s.is_force, h->omega / (2 * std::numbers::pi), h->sin, h->cos};
+    return {s.kind, h->omega / (2 * std::numbers::pi), h->sin, h->cos};
 }
 
 /// Takes what the channel shows beyond a sine as the load of the record; then the harmonic is its
@@ -283,7 +291,9 @@ MeasuredForcing measured_forcing(const ForcingSamples& s, CancelCheck& cancel) {
 void take_load(IdentifyRequest& r, ForcingSamples s, CancelCheck& cancel) {
     const double omega0 = r.system.si->omega0();
     // In the units of the model, m (per unit of tau squared).
-    const double unit = s.is_force ? r.system.si->k1 : omega0 * omega0;
+    const double unit = s.kind == ForcingKind::force               ? r.system.si->k1
+                        : s.kind == ForcingKind::base_acceleration ? omega0 * omega0
+                                                                   : 1;
     MeasuredForcing& m = *r.forcing;
     for (double& t : s.seconds) t *= omega0;
     for (double& v : s.values) v /= unit;
@@ -291,8 +301,8 @@ void take_load(IdentifyRequest& r, ForcingSamples s, CancelCheck& cancel) {
     const Parameters& p = r.system.parameters;
     const std::size_t samples = s.seconds.size();
     r.measurement.forcing.load = MeasuredLoad::of(
-        {s.is_force, std::move(s.seconds), std::move(s.values), record.tau.front(),
-         record.tau.back(), p.lambda * p.epsilon},
+        {s.kind, std::move(s.seconds), std::move(s.values), record.tau.front(), record.tau.back(),
+         p.lambda * p.epsilon},
         {2 * std::numbers::pi * m.f / omega0, m.sin / unit, m.cos / unit},
         [&] { cancel.step(samples); });
     if (!r.measurement.forcing.load) return;

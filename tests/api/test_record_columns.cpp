@@ -176,7 +176,10 @@ TEST_CASE(
         std::string name;
         std::function<double(double)> of_time;
     };
-    for (const Channel& c : {Channel{"base_acceleration_g", base}, Channel{"force_N", force}}) {
+    const auto moved = [&](double t) { return 1000 * F * std::sin(omega * t); };
+    for (const Channel& c :
+         {Channel{"base_acceleration_g", base}, Channel{"base_displacement_mm", moved},
+          Channel{"force_N", force}}) {
         CAPTURE(c.name);
         // f is omitted.
         const Json a =
@@ -214,13 +217,16 @@ TEST_CASE(
         [&](double t) {
             return base(t) - 4 * second * F * omega * omega * std::sin(2 * omega * t) / 9.80665;
         }},
+        displacement_with_harmonic{
+            "base_displacement_mm",
+            [&](double t) { return moved(t) + second * 1000 * F * std::sin(2 * omega * t); }},
         force_with_harmonic{"force_N", [&](double t) {
                                 return force(t) + second * F *
                                                       (k1 * std::sin(2 * omega * t) +
                                                        2 * c1 * omega * std::cos(2 * omega * t));
                             }};
     std::vector<std::complex<double>> excess;
-    for (const Channel& c : {base_with_harmonic, force_with_harmonic}) {
+    for (const Channel& c : {base_with_harmonic, displacement_with_harmonic, force_with_harmonic}) {
         const IdentifyRequest r =
             read_identify_request(system, with_column(csv, c.name, c.of_time));
         const MeasuredLoad* load = r.measurement.forcing.load.get();
@@ -236,6 +242,7 @@ TEST_CASE(
     }
     CHECK(elementary::modulus(excess[0]) == doctest::Approx(second).epsilon(0.02));
     CHECK(elementary::modulus(excess[0] - excess[1]) < 0.02 * second);
+    CHECK(elementary::modulus(excess[1] - excess[2]) < 0.02 * second);
     const std::string inverted =
         with_column(csv, "base_acceleration_g", [&](double t) { return -1.2 * base(t); });
     const std::string said = identified(read_identify_request(system, inverted))["warnings"].dump();

@@ -40,7 +40,7 @@ Experiment unmodelled_experiment(double b, const UnmodelledEffects& effects);
 /// What a channel of the forcing shows of it, with noise: the force, or the acceleration of the
 /// base. `noise`: relative to the amplitude.
 ForcingChannel unmodelled_channel(
-    const Experiment& experiment, const UnmodelledEffects& effects, bool is_force, double noise);
+    const Experiment& experiment, const UnmodelledEffects& effects, ForcingKind kind, double noise);
 
 /// Mean R of the true impacts at a wall.
 double mean_R(const Experiment& experiment, int side);

@@ -141,6 +141,7 @@ const quantities = {
   displacement: ["displacement_m", "displacement", "x"],
   acceleration: ["acceleration_m_s2", "acceleration", "a"],
   base_acceleration: ["base_acceleration_m_s2", "base_acceleration"],
+  base_displacement: ["base_displacement_m", "base_displacement"],
   force: ["force_n", "force"],
 };
 
@@ -242,8 +243,9 @@ export function recordOf(parsed, fields) {
 
 /** A recorded load in SI, as the field `forcing`. Throws without a time or a load. */
 export function loadOf(parsed) {
-  const {time, displacement, force, ...parts} = partsOf(parsed, {});
+  const {time, force, ...parts} = partsOf(parsed, {});
   const acceleration = parts.base_acceleration ?? parts.acceleration;
+  const displacement = parts.base_displacement ?? parts.displacement;
   if (!time || !(acceleration ?? displacement ?? force))
     throw new Error("it needs a column time and one of acceleration, displacement, force");
   const inSi = ({values, unit}, usual, factor = 1) =>

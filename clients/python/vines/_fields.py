@@ -759,6 +759,9 @@ class IdentifyFields(TypedDict, total=False):
     base_acceleration_column: name of the column of the base's acceleration, which gives the
         forcing; default: base_acceleration_m_s2, or the first name that begins with
         base_acceleration; optional
+    base_displacement_column: name of the column of the base's displacement, which gives the
+        forcing; default: base_displacement_m, or the first name that begins with
+        base_displacement; optional
     force_column: name of the column of a force on m1 that drives it instead of the base;
         default: force_N, or the first name that begins with force; optional
     time_unit: unit of time, unless the column's name or a row of units gives one; default: "s"
@@ -768,6 +771,8 @@ class IdentifyFields(TypedDict, total=False):
         one; default: "m/s2"
     base_acceleration_unit: unit of the base's acceleration, unless the column's name or a row
         of units gives one; default: "m/s2"
+    base_displacement_unit: unit of the base's displacement, unless the column's name or a row
+        of units gives one; default: "m"
     force_unit: unit of the force, unless the column's name or a row of units gives one;
         default: "N"
     threshold: smallest height at which a spike of the acceleration can be an impact (standard
@@ -821,11 +826,13 @@ class IdentifyFields(TypedDict, total=False):
     displacement_column: str
     acceleration_column: str
     base_acceleration_column: str
+    base_displacement_column: str
     force_column: str
     time_unit: Literal["s", "ms"]
     displacement_unit: Literal["m", "mm", "um"]
     acceleration_unit: Literal["m/s2", "mm/s2", "g"]
     base_acceleration_unit: Literal["m/s2", "mm/s2", "g"]
+    base_displacement_unit: Literal["m", "mm", "um"]
     force_unit: Literal["N", "kN"]
     threshold: float
     impact_times_s: Iterable[float]

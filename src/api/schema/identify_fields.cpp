@@ -18,6 +18,9 @@ const std::vector<Unit> acceleration_units = {
     {"mm/s2", 1e-3, {"mm/s2", "mm_s2", "mms-2", "mm/s/s"}},
     {"g", 9.80665, {"g"}}};
 
+const std::vector<Unit> displacement_units = {
+    {"m", 1, {"m"}}, {"mm", 1e-3, {"mm"}}, {"um", 1e-6, {"um"}}};
+
 /// Adapts a field of /v1/simulate to a record: some of the system is measured, not given.
 void adapt_to_record(Field& f) {
     if (f.name == "F" || f.name == "G") f.description += "; fitted if there is a record";
@@ -67,7 +70,12 @@ FieldTable record_rows() {
          number, Range{-7, 7}, nullptr, "fitted; if fixed, the phase of the forcing channel",
          "rad"}};
     const std::vector<const Channel*> channels = {
-        &time_channel, &displacement_channel, &acceleration_channel, &base_channel, &force_channel};
+        &time_channel,
+        &displacement_channel,
+        &acceleration_channel,
+        &base_acceleration_channel,
+        &base_displacement_channel,
+        &force_channel};
     for (const Channel* channel : channels) rows.push_back(column_row(*channel));
     for (const Channel* channel : channels) rows.push_back(unit_row(*channel));
     rows.push_back(
@@ -114,7 +122,7 @@ const Channel displacement_channel{
     .name = "displacement",
     .column = "displacement_m",
     .beginnings = {"displacement", "x"},
-    .units = {{"m", 1, {"m"}}, {"mm", 1e-3, {"mm"}}, {"um", 1e-6, {"um"}}},
+    .units = displacement_units,
     .quantity = "displacement"};
 const Channel acceleration_channel{
     .name = "acceleration",
@@ -122,13 +130,20 @@ const Channel acceleration_channel{
     .beginnings = {"acceleration", "a"},
     .units = acceleration_units,
     .quantity = "acceleration"};
-const Channel base_channel{
+const Channel base_acceleration_channel{
     .name = "base_acceleration",
     .column = "base_acceleration_m_s2",
     .beginnings = {"base_acceleration"},
     .units = acceleration_units,
     .quantity = "the base's acceleration",
     .forcing = "the base's acceleration, which gives the forcing"};
+const Channel base_displacement_channel{
+    .name = "base_displacement",
+    .column = "base_displacement_m",
+    .beginnings = {"base_displacement"},
+    .units = displacement_units,
+    .quantity = "the base's displacement",
+    .forcing = "the base's displacement, which gives the forcing"};
 const Channel force_channel{
     .name = "force",
     .column = "force_N",

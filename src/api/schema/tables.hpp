@@ -61,8 +61,8 @@ struct Channel {
 /// The names of its units.
 std::vector<std::string> unit_names(const Channel& channel);
 
-extern const Channel time_channel, displacement_channel, acceleration_channel, base_channel,
-    force_channel;
+extern const Channel time_channel, displacement_channel, acceleration_channel,
+    base_acceleration_channel, base_displacement_channel, force_channel;
 
 /// The row `section_phase` of /v1/simulate and /v1/sweep.
 Field section_phase_row();

@@ -177,7 +177,7 @@ private:
         const Complex phasor = elementary::phasor(omega * sigma);
         for (std::size_t j = 0; j < s.count; ++j)
             row.by[j] =
-                phasor * (k == 0 || channel_.is_force
+                phasor * (k == 0 || channel_.kind != ForcingKind::base_acceleration
                               ? s.value[j]
                               : Complex(
                                     s.second[j] * by_tau * by_tau - omega * omega * s.value[j],
@@ -254,13 +254,15 @@ std::shared_ptr<const MeasuredLoad> MeasuredLoad::of(
             fit.add(k, all[k], -1);
         }
     MeasuredLoad load;
-    load.Omega = sine.omega, load.length_ = length, load.is_force_ = channel.is_force;
+    load.Omega = sine.omega, load.length_ = length, load.kind_ = channel.kind;
     const double samples = static_cast<double>(channel.tau.size());
     load.noise_ = fit.noise() * std::sqrt(2 / samples) / elementary::hypot(sine.sin, sine.cos);
     for (std::size_t k = 1; k < all.size(); ++k) {
         // The base acts through spring and damper.
         const Complex by_base(
-            1, channel.is_force ? 0 : static_cast<double>(k) * sine.omega * channel.damping);
+            1, channel.kind == ForcingKind::force
+                   ? 0
+                   : static_cast<double>(k) * sine.omega * channel.damping);
         for (Complex& c : all[k].coefficients) c *= by_base;
         if (k == 1) load.fundamental = mean_envelope(all[1]);
         for (Complex& c : all[k].coefficients) c /= load.fundamental;
@@ -290,7 +292,7 @@ double MeasuredLoad::error_of(std::size_t k) const {
     if (k > harmonics_.size() || harmonics_[k - 1].coefficients.empty() ||
         (k == 1 && !harmonics_[0].varies()))
         return 0;
-    return noise_ / (is_force_ ? 1 : static_cast<double>(k * k));
+    return noise_ / (kind_ == ForcingKind::base_acceleration ? static_cast<double>(k * k) : 1);
 }
 
 LoadResponse::Excess::Excess(const MeasuredLoad& load, const UnknownValues& values) {

@@ -1,4 +1,4 @@
-// The forcing as a channel of the record shows it, the acceleration of the base or a force: its
+// The forcing as a channel of the record shows it, the motion of the base or a force: its
 // sine (harmonic.cpp), and harmonics of one frequency, each with a constant or slowly varying
 // amplitude and phase: modulation and sweeps of a shaker, and its harmonics.
 //
@@ -42,10 +42,13 @@ std::optional<Harmonic> harmonic_of(
     const std::vector<double>& time, const std::vector<double>& values,
     const std::function<void()>& look = [] {});
 
+/// What a channel of the forcing measures; the force is divided by k1.
+enum class ForcingKind { base_acceleration, base_displacement, force };
+
 /// A channel of the forcing, with its samples in tau. `damping`: 2 zeta, for a base.
 struct ForcingChannel {
-    bool is_force;  ///< a force divided by k1, m; else the acceleration of the base
-    std::vector<double> tau, values;  ///< in m (per unit of tau squared); ascending
+    ForcingKind kind;
+    std::vector<double> tau, values;  ///< in m, accelerations per unit of tau squared; ascending
     double begin, end;                ///< of the record, tau
     double damping;
 };
@@ -85,7 +88,7 @@ private:
     double lead(const UnknownValues& values) const;
 
     double length_ = 0, noise_ = 0;
-    bool is_force_ = false;
+    ForcingKind kind_ = ForcingKind::base_acceleration;
     std::vector<Envelope> harmonics_;  ///< C_k divided by the fundamental, from k = 1 on
 };
 

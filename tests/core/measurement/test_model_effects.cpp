@@ -140,6 +140,9 @@ double mean_amplitude(const UnmodelledEffects& o) {
     return 1 + o.amplitude_modulation * 2 / (3 * std::numbers::pi);
 }
 
+constexpr ForcingKind forcing_kinds[] = {
+    ForcingKind::base_acceleration, ForcingKind::base_displacement, ForcingKind::force};
+
 std::shared_ptr<const MeasuredLoad> load_of(const ForcingChannel& channel) {
     return MeasuredLoad::of(channel, *harmonic_of(channel.tau, channel.values));
 }
@@ -150,13 +153,13 @@ TEST_CASE("a measured forcing is the load: its modulation, harmonics and sweeps 
     for (const UnmodelledEffects& effects :
          {UnmodelledEffects{.amplitude_modulation = 0.03}, UnmodelledEffects{.second = 0.05},
           UnmodelledEffects{.sweep = 0.005}})
-        for (const bool is_force : {false, true}) {
+        for (const ForcingKind kind : forcing_kinds) {
             CAPTURE(effects.amplitude_modulation);
             CAPTURE(effects.second);
-            CAPTURE(is_force);
+            CAPTURE(static_cast<int>(kind));
             const Experiment e = unmodelled_experiment(0.015, effects);
             Measurement m = measurement_of(e);
-            m.forcing.load = load_of(unmodelled_channel(e, effects, is_force, 0.02));
+            m.forcing.load = load_of(unmodelled_channel(e, effects, kind, 0.02));
             REQUIRE(m.forcing.load);
             const MeasurementResult r = evaluate_measurement(m);
             check_values(e, r, mean_amplitude(effects));
@@ -178,7 +181,7 @@ TEST_CASE("with a measured forcing zeta is fitted under modulation") {
     Experiment e = unmodelled_experiment(0.015, effects);
     e.parameters.lambda *= 1.3;
     Measurement m = measurement_of(e);
-    m.forcing.load = load_of(unmodelled_channel(e, effects, false, 0.02));
+    m.forcing.load = load_of(unmodelled_channel(e, effects, ForcingKind::base_acceleration, 0.02));
     const MeasurementResult r = evaluate_measurement(m);
     const JointFit& fit = r.refined->fit;
     CHECK(!fit.fixed[Unknown::damping]);
@@ -191,9 +194,9 @@ TEST_CASE("with a measured forcing zeta is fitted under modulation") {
 
 TEST_CASE("a channel of a clean sine is no load") {
     const Experiment e = unmodelled_experiment(0.009, {});
-    for (const bool is_force : {false, true})
+    for (const ForcingKind kind : forcing_kinds)
         for (const double noise : {0.0, 0.01, 0.1})
-            CHECK(!load_of(unmodelled_channel(e, {}, is_force, noise)));
+            CHECK(!load_of(unmodelled_channel(e, {}, kind, noise)));
 }
 
 TEST_CASE("hum of the mains is removed before impacts are searched") {
