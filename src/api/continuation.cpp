@@ -70,7 +70,7 @@ constexpr EndText end_texts[] = {
     {"range", "the parameter reaches the end of its range"},
     {"grazing", "a grazing contact: no orbit with one impact more or less continues the branch"},
     {"last_impact", "the last impacts become grazing contacts"},
-    {"stick", "a sticking phase begins or ends, and no orbit is found beyond it"},
+    {"stick", "a phase of sticking or sliding begins or ends, and no orbit is found beyond it"},
     {"parent",
      "the branch meets the orbit from which it branches; beyond are its mirror images or shifted "
      "copies"},

@@ -23,6 +23,8 @@ constexpr double most_bend = 0.97, little_bend = 0.997;
 constexpr double growth = 1.5;
 // A parameter is at an end of its range if it is within this, in units of the range.
 constexpr double at_end = 1e-12;
+// Steps after which the section of a return is moved to the middle of a flight again.
+constexpr int steps_of_section = 10;
 // Steps back to the birth of a sticking phase are at most this multiple of the distance to where
 // the ball did not stick.
 constexpr double most_back = 1.5;
@@ -102,6 +104,7 @@ private:
     const std::function<void(SpecialKind, Relative)> branches_off_;
     double h_ = first_arc;
     long points_ = 0;
+    int since_moved_ = 0;  // steps since move_section()
 };
 
 /// The sign change of a test between the current node and b, at the arclength h_; empty if it
@@ -237,6 +240,7 @@ void BranchFollower::report(const BranchEvent& e) {
 /// Moves the section of a return away from events, which it reaches in the course of a branch.
 /// False if the equations have none.
 bool BranchFollower::move_section() {
+    since_moved_ = 0;
     if (!on_->node.approach.empty()) return false;
     const auto moved = on_->equations->by_return(on_->node.at.z);
     if (!moved) return false;
@@ -244,7 +248,7 @@ bool BranchFollower::move_section() {
     auto node = node_at_parameter(*moved->equations, moved->z, on_->node.parameter(), direction);
     if (!node) return false;
     on_ = Relative{moved->equations, std::move(*node)};
-    h_ = first_arc;
+    h_ = std::max(h_, first_arc);
     return true;
 }
 
@@ -317,6 +321,7 @@ std::optional<BranchEnd> BranchFollower::step() {
     const BranchNode& a = on_->node;
     if (plan_.family.end_before(0, a.parameter() + std::copysign(at_end, a.fold)))
         return BranchEnd::range;
+    if (++since_moved_ > steps_of_section) move_section();
     auto b = next_node();
     if (!b && move_section()) b = next_node();
     if (!b) {

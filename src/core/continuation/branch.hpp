@@ -26,7 +26,7 @@ enum class BranchEnd {
     range,         ///< the parameter's range
     grazing,       ///< no orbit with one impact more or less continues it
     last_impact,   ///< its last impact becomes a grazing contact
-    stick,         ///< a sticking phase begins or ends, and no orbit is found beyond
+    stick,         ///< a phase of sticking or sliding begins or ends, no orbit beyond is found
     parent,        ///< it meets the orbit from which it branches; beyond is the same branch again
     closed,        ///< it returns to its start
     most_points,   ///< limit of BranchPlan

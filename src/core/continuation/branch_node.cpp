@@ -18,6 +18,8 @@ constexpr double least_imaginary = 1e-7, on_circle = 1e-6;
 constexpr double first_arcs[] = {1e-3, 1e-4, 1e-2, 1e-5, 1e-6};
 // The same past the birth of a sticking phase, next to which grazing contacts accumulate.
 constexpr double shortest_first[] = {1e-7, 1e-6, 1e-5, 1e-4, 1e-3};
+// Largest residual of an orbit's equations.
+constexpr double largest_residual = 1e-9;
 // Two halves of an orbit are equal up to this.
 constexpr double equal_halves = 1e-6;
 // Secant steps towards a doubling, and the step after which only rounding remains.
@@ -58,7 +60,9 @@ CurveEquations as_curve(const OrbitEquations& equations) {
 std::optional<BranchNode> node_of(const OrbitEquations& equations, std::optional<CurvePoint> at) {
     if (!at) return std::nullopt;
     const auto values = equations.values(at->z);
-    if (!values) return std::nullopt;
+    // Next to an event without speed a return has no derivative, and Newton's method stops early.
+    if (!values || !(values->residual.cwiseAbs().maxCoeff() < largest_residual))
+        return std::nullopt;
     const Eigenvalues m = eigenvalues_of(values->transfer);
     const double fold = at->tangent(at->tangent.size() - 1);
     return BranchNode{std::move(*at), values->approach, m, fold, doubling_test(m), torus_test(m)};
@@ -157,7 +161,7 @@ std::optional<Relative> beyond_by_return(
         auto beyond = from->equations->by_return(node.at.z);
         if (!beyond) return std::nullopt;
         const ImpactSequence& after = beyond->equations->sequence();
-        if (after.size() == before.size() && after.sticks == before.sticks) return std::nullopt;
+        if (after.is_like(before)) return std::nullopt;
         if (sticking && after.sticks == 0) return std::nullopt;
         if (after.sticks == 0) {
             auto by_impacts = impacts_of(*beyond);

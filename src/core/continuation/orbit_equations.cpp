@@ -19,7 +19,7 @@ ImpactSequence ImpactSequence::rotated() const {
 }
 
 ImpactSequence ImpactSequence::doubled() const {
-    ImpactSequence twice{sides, false, 2 * half_cycles, 2 * sticks};
+    ImpactSequence twice{sides, false, 2 * half_cycles, 2 * sticks, 2 * slips};
     for (const int side : sides) twice.sides.push_back(mirrored ? -side : side);
     return twice;
 }

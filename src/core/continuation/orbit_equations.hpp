@@ -24,9 +24,14 @@ struct ImpactSequence {
     bool mirrored = false;   ///< the motion after them is the same with opposite signs
     int half_cycles = 2;     ///< their duration in half forcing cycles; odd if mirrored
     long sticks = 0;         ///< sticking phases; a chatter that ends in one is one impact
+    long slips = 0;          ///< under friction: changes of the sliding's direction, phases of rest
 
     std::size_t size() const { return sides.size(); }
     double sign() const { return mirrored ? -1 : 1; }
+    /// True if the events are as many.
+    bool is_like(const ImpactSequence& other) const {
+        return size() == other.size() && sticks == other.sticks && slips == other.slips;
+    }
     /// The wall at the end of flight k.
     int side_after(std::size_t k) const {
         return k + 1 < size() ? sides[k + 1] : (mirrored ? -1 : 1) * sides[0];
@@ -80,7 +85,7 @@ struct SequenceFault {
     enum class Kind {
         contact,  ///< a contact at the time `s` of flight k, with the wall `side`
         missing,  ///< the impact at the end of flight k does not take place
-        stick     ///< the ball sticks to the wall instead of flight k
+        stick     ///< the ball sticks to the wall instead of flight k, or its rest phases differ
     };
     Kind kind;
     std::size_t flight = 0;

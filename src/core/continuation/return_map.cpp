@@ -13,15 +13,25 @@ namespace {
 // of the length.
 constexpr double similar_return = 0.3;
 
-/// The impacts of a period of a motion, of its first half if `like` is mirrored.
-ImpactSequence sequence_of(const ContactRecord& contacts, const ImpactSequence& like) {
-    const std::size_t parts = like.mirrored ? 2 : 1;
-    ImpactSequence found{{}, like.mirrored, like.half_cycles};
-    for (std::size_t k = 0; k < contacts.contacts.size() / parts; ++k)
-        found.sides.push_back(contacts.contacts[k].side);
-    found.sticks = static_cast<long>(contacts.sticks.size() / parts);
-    return found;
-}
+/// The events of a period.
+class Events : public ContactRecord {
+public:
+    void on_slip(const Slip&) override { ++slips; }
+
+    /// Of the first half if `like` is mirrored.
+    ImpactSequence sequence(const ImpactSequence& like) const {
+        const std::size_t parts = like.mirrored ? 2 : 1;
+        ImpactSequence found{{}, like.mirrored, like.half_cycles};
+        for (std::size_t k = 0; k < contacts.size() / parts; ++k)
+            found.sides.push_back(contacts[k].side);
+        found.sticks = static_cast<long>(sticks.size() / parts);
+        found.slips = slips / static_cast<long>(parts);
+        return found;
+    }
+
+private:
+    long slips = 0;
+};
 
 }  // namespace
 
@@ -43,13 +53,14 @@ OrbitCheck ReturnEquations::check(const Unknowns& z, const std::vector<double>&)
     const Parameters p = *system(z);
     const State start = state(z);
     const double tau = section_ * p.cycle(), period = sequence().cycles() * p.cycle();
-    ContactRecord contacts;
+    Events events;
     Energy energy(p, tau, tau + period);
-    follow(p, start, tau, period, {}, {&contacts, &energy});
-    const ImpactSequence found = sequence_of(contacts, sequence());
+    follow(p, start, tau, period, {}, {&events, &energy});
+    const ImpactSequence found = events.sequence(sequence());
     OrbitCheck check;
     using Kind = SequenceFault::Kind;
-    if (found.sticks != sequence().sticks) check.fault = SequenceFault{Kind::stick};
+    if (found.sticks != sequence().sticks || found.slips != sequence().slips)
+        check.fault = SequenceFault{Kind::stick};
     else if (found.size() != sequence().size())
         check.fault =
             SequenceFault{found.size() > sequence().size() ? Kind::contact : Kind::missing};
@@ -68,7 +79,8 @@ std::optional<OrbitGuess> ReturnEquations::half(const Unknowns& z) const {
     const ImpactSequence& all = sequence();
     const auto p = system(z);
     if (all.mirrored || all.half_cycles % 2 != 0 || !p) return std::nullopt;
-    ImpactSequence one{{}, all.half_cycles % 4 != 0, all.half_cycles / 2, all.sticks / 2};
+    ImpactSequence one{
+        {}, all.half_cycles % 4 != 0, all.half_cycles / 2, all.sticks / 2, all.slips / 2};
     if (one.mirrored && !p->is_symmetric()) return std::nullopt;
     one.sides.assign(all.sides.begin(), all.sides.begin() + static_cast<long>(all.size() / 2));
     auto equations = std::make_shared<ReturnEquations>(one, family(), length(), section_);
@@ -88,14 +100,13 @@ std::optional<OrbitGuess> return_of(
     if (!whole) return std::nullopt;
     const double tau = time_far_from_events(p, *whole, {});
     const auto state = follow(p, *whole, 0, tau, {});
-    ContactRecord contacts;
-    if (!state || !follow(p, *state, tau, like.cycles() * p.cycle(), {}, {&contacts}))
+    Events events;
+    if (!state || !follow(p, *state, tau, like.cycles() * p.cycle(), {}, {&events}))
         return std::nullopt;
     Unknowns z(4 + parameters.size());
     z << vector_of(*state) / length, parameters;
     return OrbitGuess{
-        std::make_shared<ReturnEquations>(
-            sequence_of(contacts, like), family, length, tau / p.cycle()),
+        std::make_shared<ReturnEquations>(events.sequence(like), family, length, tau / p.cycle()),
         z};
 }
 

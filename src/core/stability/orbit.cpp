@@ -68,6 +68,29 @@ Eigenvalues multipliers_of(const Matrix4& monodromy, const PowerProduct& powers)
     return values;
 }
 
+/// The longest part of a run without an event.
+class LongestFlight : public Observer {
+public:
+    explicit LongestFlight(double otherwise) : middle(otherwise) {}
+
+    void on_impact(const Impact& impact) override { flight_to(impact.tau); }
+    void on_slip(const Slip& slip) override { flight_to(slip.tau); }
+    // The rest of a chatter and the sticking phase after it are not a flight.
+    void on_release(double tau) override { from_ = std::max(from_, tau); }
+    void on_stretch(const Stretch& s) override {
+        if (s.rests_inside()) from_ = std::max(from_, s.tau + s.duration);
+    }
+    void flight_to(double tau) {
+        if (tau - from_ > length_) length_ = tau - from_, middle = 0.5 * (from_ + tau);
+        from_ = std::max(from_, tau);
+    }
+
+    double middle;  ///< its middle
+
+private:
+    double from_ = 0, length_ = 0;
+};
+
 std::optional<State> after_period(
     const Parameters& p, const State& s, double tau, int cycles, const StopRequest& stop,
     std::initializer_list<Observer*> observers) {
@@ -114,22 +137,11 @@ std::optional<State> solve_return(
 }  // namespace
 
 double time_far_from_events(const Parameters& p, const State& start, const StopRequest& stop) {
-    ImpactRecord impacts;
-    StickRecord sticks;
     const double cycle = p.cycle();
-    follow(p, start, 0, cycle, stop, {&impacts, &sticks});
-    double from = 0, length = 0, middle = 0.5 * cycle;
-    std::size_t stick = 0;
-    auto flight_to = [&](double tau) {
-        // The rest of a chatter and the sticking phase after it are not a flight.
-        for (; stick < sticks.entries.size() && sticks.entries[stick].start.tau <= tau; ++stick)
-            from = std::max(from, sticks.entries[stick].tau_end);
-        if (tau - from > length) length = tau - from, middle = 0.5 * (from + tau);
-        from = std::max(from, tau);
-    };
-    for (const Impact& i : impacts.entries) flight_to(i.tau);
-    flight_to(cycle);
-    return middle;
+    LongestFlight longest(0.5 * cycle);
+    follow(p, start, 0, cycle, stop, {&longest});
+    longest.flight_to(cycle);
+    return longest.middle;
 }
 
 State scale_of(const Parameters& p, std::span<const State> states) {
