@@ -173,7 +173,7 @@ std::optional<BranchNode> BranchFollower::next_node() {
     h_ = std::min({h_, longest_arc, plan_.resolution / std::abs(a.fold)});
     for (; h_ > shortest_arc; h_ *= 0.5) {
         auto b = after(h_);
-        if (!b) b = node_at_end();
+        if (!b && (b = node_at_end())) h_ = a.at.tangent.dot(b->at.z - a.at.z);
         if (!b || !(b->at.tangent.dot(a.at.tangent) > most_bend)) continue;
         if (h_ > watched_arc && !is_small_step(a, *b)) continue;
         return b;

@@ -19,7 +19,7 @@ constexpr double first_arcs[] = {1e-3, 1e-4, 1e-2, 1e-5, 1e-6};
 // The same past the birth of a sticking phase, next to which grazing contacts accumulate.
 constexpr double shortest_first[] = {1e-7, 1e-6, 1e-5, 1e-4, 1e-3};
 // Largest residual of an orbit's equations.
-constexpr double largest_residual = 1e-9;
+constexpr double largest_residual = 1e-10;
 // Two halves of an orbit are equal up to this.
 constexpr double equal_halves = 1e-6;
 // Secant steps towards a doubling, and the step after which only rounding remains.

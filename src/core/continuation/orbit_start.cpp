@@ -32,7 +32,7 @@ std::optional<OrbitGuess> by_impacts(
     const Parameters& p, const PeriodicOrbit& orbit, bool mirrored, double length,
     const ParameterFamily& family, const Eigen::VectorXd& values) {
     ImpactRecord record;
-    follow(p, orbit.state, orbit.tau, (orbit.cycles + 0.5) * p.cycle(), {}, {&record});
+    follow(p, orbit.state, orbit.tau, 2 * orbit.cycles * p.cycle(), {}, {&record});
     std::vector<Impact> impacts = record.entries;
     const auto all = static_cast<std::size_t>(orbit.impacts);
     if (impacts.size() <= all) return std::nullopt;

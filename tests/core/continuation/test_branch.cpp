@@ -415,6 +415,23 @@ TEST_CASE("folds and tori are the same along b and along R") {
     }
 }
 
+TEST_CASE("a special point just before the end of the systems is found, and the end reached") {
+    Parameters p = table1(0.012, Damping::closed_form);
+    p.R_plus = p.R_minus = 0.8;
+    const Recorded r = continued(p, change_R, 0.8, 0, 1);
+    CHECK(r.ends() == std::vector{BranchEnd::range, BranchEnd::range});
+    CHECK(r.points.back().orbit.parameters[0] == 1);
+}
+
+TEST_CASE("an orbit begins a branch also if its flights are longer than its first cycle") {
+    Parameters p = table1(0.029981, Damping::closed_form);
+    p.R_plus = p.R_minus = 0.05;
+    const Recorded r =
+        continued(p, [](Parameters& q, double Omega) { q.Omega = Omega; }, 1, 0.999, 1.001, 0, 3);
+    CHECK(r.points[0].orbit.sequence.cycles() == 3);
+    CHECK(r.points[0].orbit.sequence.impacts() == 2);
+}
+
 TEST_CASE("limits of points and a stop request end a computation") {
     const Parameters p = table1(0.015, Damping::closed_form);
     BranchPlan plan{
