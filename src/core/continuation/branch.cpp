@@ -208,7 +208,7 @@ OrbitCheck BranchFollower::clip_to_existence(std::optional<BranchNode>& b) {
         auto node = after(middle);
         // Beyond the loss of a sticking phase grazing contacts accumulate, where the return has no
         // derivative.
-        if (!node && on_->node.approach.empty()) {
+        if (!node && on_->node.is_return()) {
             invalid = middle;
             continue;
         }
@@ -241,8 +241,8 @@ void BranchFollower::report(const BranchEvent& e) {
 /// False if the equations have none.
 bool BranchFollower::move_section() {
     since_moved_ = 0;
-    if (!on_->node.approach.empty()) return false;
-    const auto moved = on_->equations->by_return(on_->node.at.z);
+    if (!on_->node.is_return()) return false;
+    const auto moved = on_->equations->by_return(on_->node.at.z, on_->node.approach);
     if (!moved) return false;
     const int direction = on_->node.fold > 0 ? 1 : -1;
     auto node = node_at_parameter(*moved->equations, moved->z, on_->node.parameter(), direction);
@@ -255,7 +255,7 @@ bool BranchFollower::move_section() {
 /// Where a chatter becomes complete, grazing contacts accumulate, each of which adds an impact.
 /// Goes on beyond, where the ball sticks; false if there is no such orbit.
 bool BranchFollower::pass_completion() {
-    if (on_->node.approach.empty()) return false;
+    if (on_->node.is_return()) return false;
     auto beyond = beyond_by_return(*on_->equations, on_->node, true);
     if (!beyond) return false;
     // Back to where the sticking phase begins, which is before the present node.
@@ -289,9 +289,9 @@ std::optional<BranchEnd> BranchFollower::pass_event(const SequenceFault& fault) 
             grazing.on = std::move(*changed);
     const bool sticks = fault.kind == SequenceFault::Kind::stick;
     if (sticks) grazing.kind = SpecialKind::stick;
-    else if (on_->node.approach.empty()) grazing.on = {};  // no equations hold at it
+    else if (on_->node.is_return()) grazing.on = {};  // no equations hold at it
     auto beyond = beyond_event(*on_->equations, on_->node, fault);
-    if (sticks && !on_->node.approach.empty() && beyond)
+    if (sticks && !on_->node.is_return() && beyond)
         grazing.on = {beyond->equations, beyond->node.at.z};
     if (beyond) grazing.impacts_after = beyond->equations->sequence().impacts();
     sink_.special(number_, grazing);

@@ -154,11 +154,11 @@ std::optional<Relative> next_to(
 
 std::optional<Relative> beyond_by_return(
     const OrbitEquations& equations, const BranchNode& last, bool sticking) {
-    const auto from = equations.by_return(last.at.z);
+    const auto from = equations.by_return(last.at.z, last.approach);
     if (!from) return std::nullopt;
     const ImpactSequence& before = equations.sequence();
     return next_to(*from, shortest_first, [&](const BranchNode& node) -> std::optional<Relative> {
-        auto beyond = from->equations->by_return(node.at.z);
+        auto beyond = from->equations->by_return(node.at.z, node.approach);
         if (!beyond) return std::nullopt;
         const ImpactSequence& after = beyond->equations->sequence();
         if (after.is_like(before)) return std::nullopt;
@@ -183,7 +183,7 @@ std::optional<Relative> beyond_event(
             if (changed->equations->check(node.at.z, node.approach).fault) return std::nullopt;
             return Relative{changed->equations, std::move(node)};
         });
-    const bool by_return = last.approach.empty() || fault.kind == SequenceFault::Kind::stick;
+    const bool by_return = last.is_return() || fault.kind == SequenceFault::Kind::stick;
     return by_return ? beyond_by_return(equations, last, false) : std::nullopt;
 }
 

@@ -10,6 +10,7 @@ namespace vines {
 struct BranchNode {
     CurvePoint at;
     std::vector<double> approach;  ///< OrbitValues::approach
+    bool is_return() const { return approach.empty(); }
     /// Eigenvalues of the transfer matrix over a period, or half of it if the orbit is mirrored.
     Eigenvalues multipliers;
     // Test functions, which change sign at special points.

@@ -89,6 +89,14 @@ std::optional<CurvePoint> at_limit(
     return exact ? exact : a;
 }
 
+/// The unknowns of a special point with both parameters.
+Unknowns unknowns_at(const BranchPlan& plan, const SpecialPoint& point, double second) {
+    Unknowns z(point.on.z.size() + 1);
+    z << point.on.z, second / plan.family.unit(1);
+    z(z.size() - 2) = point.orbit.parameters[0] / plan.family.unit(0);
+    return z;
+}
+
 /// Births of a sticking phase in two parameters. It has no equation that holds on both sides, since
 /// impacts accumulate on one: at each value of the second parameter the first one is bisected
 /// between an orbit with the phase and none.
@@ -186,9 +194,7 @@ bool follow_sticks(
     const BranchPlan& plan, const SpecialPoint& point, double second, int number,
     BranchSink& sink) {
     const StickCurve curve(plan, point);
-    Unknowns guess(point.on.z.size() + 1);
-    guess << point.on.z, second / plan.family.unit(1);
-    guess(guess.size() - 2) = point.orbit.parameters[0] / plan.family.unit(0);
+    const Unknowns guess = unknowns_at(plan, point, second);
     const auto begin = curve.birth_near(guess, second / plan.family.unit(1));
     for (const int direction : {1, -1}) {
         sink.branch({number, -1, point.kind, direction});
@@ -209,9 +215,7 @@ bool follow_curve(
     const OrbitEquations& equations = *over_both;
     const SpecialTest test{equations, point.kind, point.impact};
     const CurveEquations curve = with_test(equations, test);
-    Unknowns z(point.on.z.size() + 1);
-    z << point.on.z, second / plan.family.unit(1);
-    z(z.size() - 2) = point.orbit.parameters[0] / plan.family.unit(0);
+    const Unknowns z = unknowns_at(plan, point, second);
     const Eigen::VectorXd along = Eigen::VectorXd::Unit(z.size(), z.size() - 1);
     const auto begin = point_in_plane(curve, z, along, along.dot(z));
     for (const int direction : {1, -1}) {

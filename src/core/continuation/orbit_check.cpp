@@ -21,6 +21,7 @@ constexpr double same_contact = 1e-6;
 // Approach speeds whose square is below this, in units of b, lead less than 1e-13 b beyond a wall
 // that accelerates by 0.01 b or more.
 constexpr double shallow = 1e-15;
+
 /// The ball's motion at the time s of a flight.
 struct Ball {
     double y, y_dot;

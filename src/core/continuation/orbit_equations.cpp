@@ -65,12 +65,11 @@ std::optional<OrbitValues> OrbitEquations::values(
     return at;
 }
 
-std::optional<OrbitGuess> OrbitEquations::by_return(const Unknowns& z) const {
-    const auto at = values(z);
-    if (!at) return std::nullopt;
+std::optional<OrbitGuess> OrbitEquations::by_return(
+    const Unknowns& z, const std::vector<double>& approach) const {
     return return_of(
-        *system(z), {0, check(z, at->approach).measures.at_whole_cycle}, sequence(), family(),
-        length(), z.tail(std::ssize(family().ranges)));
+        *system(z), {0, check(z, approach).measures.at_whole_cycle}, sequence(), family(), length(),
+        z.tail(std::ssize(family().ranges)));
 }
 
 }  // namespace vines

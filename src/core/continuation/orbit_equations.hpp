@@ -67,7 +67,8 @@ using Unknowns = Eigen::VectorXd;
 /// The orbit's equations, evaluated.
 struct OrbitValues {
     Eigen::VectorXd residual;
-    /// By the times of impacts: side (x' - y') before impact k + 1, m; > 0 if it is possible.
+    /// side (x' - y') before impact k + 1, m; > 0 where that impact is possible. Empty for a
+    /// return.
     std::vector<double> approach;
     /// Derivative of the map to the return, with its sign, eq. (30).
     Frame transfer;
@@ -143,8 +144,9 @@ public:
     virtual std::optional<OrbitGuess> changed(
         const Unknowns& z, const SequenceFault& fault) const = 0;
     /// The same orbit by its return, with a section far from events, and with the sequence of the
-    /// motion from there.
-    std::optional<OrbitGuess> by_return(const Unknowns& z) const;
+    /// motion from there. `approach`: OrbitValues::approach.
+    std::optional<OrbitGuess> by_return(
+        const Unknowns& z, const std::vector<double>& approach) const;
 
 protected:
     /// values() for a valid system, without the Jacobian's columns of the parameters.

@@ -27,7 +27,7 @@ bool all_near(
 
 bool slides_freely(const Parameters& p) { return p.friction == 0; }
 
-/// By the times of impacts.
+/// The equations of an orbit by the times of its impacts.
 std::optional<OrbitGuess> by_impacts(
     const Parameters& p, const PeriodicOrbit& orbit, bool mirrored, double length,
     const ParameterFamily& family, const Eigen::VectorXd& values) {

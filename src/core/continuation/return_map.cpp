@@ -18,7 +18,7 @@ class Events : public ContactRecord {
 public:
     void on_slip(const Slip&) override { ++slips; }
 
-    /// Of the first half if `like` is mirrored.
+    /// Their sequence; that of the first half if `like` is mirrored.
     ImpactSequence sequence(const ImpactSequence& like) const {
         const std::size_t parts = like.mirrored ? 2 : 1;
         ImpactSequence found{{}, like.mirrored, like.half_cycles};

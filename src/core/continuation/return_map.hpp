@@ -20,7 +20,7 @@ public:
           section_(section) {}
 
     Eigen::Index equations() const override { return 4; }
-    /// A fault is the first difference in number: of sticking phases, then of impacts.
+    /// A fault is the first difference in number: of sticking phases and slips, then of impacts.
     OrbitCheck check(const Unknowns& z, const std::vector<double>& approach) const override;
     std::shared_ptr<const OrbitEquations> doubled() const override;
     Eigen::VectorXd twice(const Eigen::VectorXd& z) const override { return z; }

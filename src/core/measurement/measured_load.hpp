@@ -42,7 +42,7 @@ std::optional<Harmonic> harmonic_of(
     const std::vector<double>& time, const std::vector<double>& values,
     const std::function<void()>& look = [] {});
 
-/// What a channel of the forcing measures; the force is divided by k1.
+/// The quantity that a channel of the forcing measures. Forces are divided by k1.
 enum class ForcingKind { base_acceleration, base_displacement, force };
 
 /// A channel of the forcing, with its samples in tau. `damping`: 2 zeta, for a base.

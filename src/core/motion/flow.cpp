@@ -25,6 +25,8 @@ struct RealState {
     Real x, x_dot, sin, cos;
 };
 
+constexpr RealState unit_states[] = {{1, 0, 0, 0}, {0, 1, 0, 0}, {0, 0, 1, 0}, {0, 0, 0, 1}};
+
 /// The states that grow from the four unit states. The first two keep a phasor of zero, and the
 /// phasors of the others are one rotation: most entries of the 4x4 matrix are known.
 struct FundamentalMatrix {
@@ -88,9 +90,7 @@ Flow::Flow(double stiffness, double damping, double forcing, double Omega)
     Response* const parts[4] = {&of_x_, &of_x_dot_, &of_sin_, &of_cos_};
     FundamentalMatrix cell, growth;
     for (std::size_t j = 0; j < 4; ++j) {
-        RealState unit = {0, 0, 0, 0};
-        (j == 0 ? unit.x : j == 1 ? unit.x_dot : j == 2 ? unit.sin : unit.cos) = 1;
-        const RealState s = over_cell(coefficients(), unit, cell_, parts[j]->series);
+        const RealState s = over_cell(coefficients(), unit_states[j], cell_, parts[j]->series);
         cell.motion[j] = {s.x, s.x_dot};
         if (j == 3) cell.cos = s.cos, cell.sin = s.sin;
     }
