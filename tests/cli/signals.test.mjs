@@ -128,7 +128,7 @@ test("verify ends after a signal", async () => {
   const {out} = await run(["sweep"], {
     input: long,
     signal: "SIGINT",
-    until: (_, written) => lines(written) > 3,
+    until: (_, written) => lines(written) > 20,
   });
   writeFileSync(at("some"), out);
   const options = {signal: "SIGINT", until: hasComputed(0.1)};
