@@ -16,15 +16,15 @@ constexpr double outlier_x = 5e-4, outlier_a = 10;
 
 /// Motion at the samples, with the displacement's delay, without pulses.
 MeasuredRecord sampled(const TrueMotion& motion, const Sensors& s) {
-    const TrueOscillator oscillator(motion);
+    const TrueOscillator oscillator{motion};
     const double step = motion.omega0 / s.rate, delay = s.delay * motion.omega0;
     const auto samples = static_cast<std::size_t>(motion.seconds * s.rate);
     MeasuredRecord r;
     for (std::size_t k = 0; k < samples; ++k) {
         const double tau = motion.begin + static_cast<double>(k) * step;
         r.tau.push_back(tau);
-        r.x.push_back(oscillator.x(std::max(tau - delay, oscillator.begin())));
-        r.x_ddot.push_back(oscillator.acceleration(tau));
+        r.x.push_back(oscillator.at(std::max(tau - delay, oscillator.begin())).x);
+        r.x_ddot.push_back(oscillator.at(tau).x_ddot);
     }
     return r;
 }

@@ -13,8 +13,7 @@ namespace vines {
 
 namespace {
 
-// Search range on either side of the given frequency, relative.
-constexpr double widest = 0.05;
+constexpr double widest = 0.05;  // search range on either side of the given frequency, relative
 // Step of the search: the phase slip between the record's middle and its ends, rad.
 constexpr double slip = 0.4;
 // Longest piece, in cycles: within a piece the phase slip is neglected.
@@ -22,8 +21,7 @@ constexpr double longest_piece_cycles = 1.5;
 // Another frequency must explain more than the given one by this fraction.
 constexpr double least_gain = 0.02;
 
-/// Equations S f = h for the forcing from one piece of the record, with the piece's initial state
-/// eliminated.
+/// Equations S f = h for the forcing from one piece of the record, without its initial state.
 struct PieceEquations {
     double tau;  ///< middle of the piece
     Eigen::Matrix2d S;
@@ -54,8 +52,7 @@ struct StartAndForce {
 };
 
 /// Starts of the pieces: the borders, and further ones where impacts are far apart.
-std::vector<double> pieces_of(
-    const MeasuredRecord& r, const std::vector<Candidate>& borders, double longest) {
+std::vector<double> pieces_of(const MeasuredRecord& r, const Candidates& borders, double longest) {
     std::vector<double> starts = {r.tau.front()};
     const auto reach = [&](double to) {
         while (to - starts.back() > longest) starts.push_back(starts.back() + longest);
@@ -75,25 +72,20 @@ std::vector<PieceEquations> equations_of(
     const Flow flow(1, 2 * p.zeta(), 1, p.Omega);
     const double middle = 0.5 * (r.tau.front() + r.tau.back());
     // The median removes the sensor's offset.
-    const double x_offset = r.x.empty() ? 0 : median(r.x),
-                 a_offset = r.x_ddot.empty() ? 0 : median(r.x_ddot);
+    const double x_offset = median(r.x), a_offset = median(r.x_ddot);
     std::vector<PieceEquations> all;
     std::size_t k = 0;
     for (std::size_t i = 0; i < starts.size(); ++i) {
         in.progress.look();
         const double end = i + 1 < starts.size() ? starts[i + 1] : infinity;
-        const double angle = p.Omega * (starts[i] - middle), sin = elementary::sin(angle),
-                     cos = elementary::cos(angle);
-        FollowedFlow<4> parts(
-            flow, {{{1, 0, 0, 0}, {0, 1, 0, 0}, {0, 0, sin, cos}, {0, 0, cos, -sin}}});
+        FollowedFlow<4> parts(flow, unit_motions(p.Omega * (starts[i] - middle)));
         StartAndForce equations;
         for (; k < r.tau.size() && r.tau[k] < end; ++k) {
             const auto m = parts.at(std::max(0.0, r.tau[k] - starts[i]), r.x.empty());
             if (!r.x.empty() && !in.statistics.x.bad[k])
                 equations.add(
                     {m[0].x, m[1].x, m[2].x, m[3].x}, r.x[k] - x_offset, in.statistics.x.noise);
-            // With a displacement the acceleration adds almost nothing. Without one it is used with
-            // its pulses, which act as noise.
+            // Next to a displacement it adds almost nothing. Its pulses act as noise.
             if (r.x.empty())
                 equations.add(
                     {m[0].x_ddot, m[1].x_ddot, m[2].x_ddot, m[3].x_ddot}, r.x_ddot[k] - a_offset,
@@ -124,7 +116,7 @@ double explained(const std::vector<PieceEquations>& pieces, double faster, doubl
 
 }  // namespace
 
-double scanned_frequency(const JointFitInput& in, const std::vector<Candidate>& borders) {
+double scanned_frequency(const JointFitInput& in, const Candidates& borders) {
     const MeasuredRecord& r = in.record;
     const Parameters& p = in.parameters;
     const double middle = 0.5 * (r.tau.front() + r.tau.back()),

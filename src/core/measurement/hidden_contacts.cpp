@@ -1,7 +1,6 @@
 #include "core/measurement/hidden_contacts.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 
 #include "core/motion/elementary.hpp"
@@ -9,39 +8,36 @@
 namespace vines {
 
 IdentifiedSystem::IdentifiedSystem(const Parameters& p, const UnknownValues& v, double tau_zero)
-    : values_(v),
-      flows_(v, false),
-      own_(p),
-      faster_(std::sqrt(v[Unknown::stiffness])),
-      phase_(elementary::atan2(v[Unknown::force_cos], v[Unknown::force_sin])),
-      tau_zero_(tau_zero) {
-    own_.Omega /= faster_;
-    own_.lambda = std::max(0.0, v[Unknown::damping] / (faster_ * p.epsilon));
-    own_.G = G_of(own_, v[Unknown::force_sin], v[Unknown::force_cos]) / (faster_ * faster_);
-    own_.friction /= faster_ * faster_;
+    : values(v),
+      flows(v, false),
+      own(p),
+      faster(std::sqrt(v[Unknown::stiffness])),
+      tau_zero(tau_zero) {
+    own.Omega /= faster;
+    own.lambda = std::max(0.0, v[Unknown::damping] / (faster * p.epsilon));
+    own.G = G_of(own, v[Unknown::force_sin], v[Unknown::force_cos]) / (faster * faster);
+    own.friction /= faster * faster;
 }
 
 // simulate() counts the forcing's phase from eq. (3); the measurement has its own phase.
 double IdentifiedSystem::start_of(double tau) const {
     return std::fmod(
-        faster_ * (tau - tau_zero_) + (phase_ - own_.phi()) / own_.Omega, own_.cycle());
+        faster * (tau - tau_zero) + (flows.phase - own.phi()) / own.Omega, own.cycle());
 }
 
 Outcome IdentifiedSystem::run(
     double tau, const State& s, Limits limits, std::span<Observer* const> observers) const {
     limits.tau_start = start_of(tau);
-    limits.tau_end = limits.tau_start + faster_ * (limits.tau_end - tau);
-    return simulate(own_, {s.x_dot / faster_, s.x, s.y_dot / faster_, s.y}, limits, observers);
+    limits.tau_end = limits.tau_start + faster * (limits.tau_end - tau);
+    return simulate(own, {s.x_dot / faster, s.x, s.y_dot / faster, s.y}, limits, observers);
 }
 
 OscillatorMotion IdentifiedSystem::free_motion(
     const Release& from, int from_side, double tau, int to_side) const {
-    const double pull = faster_ * faster_ * own_.epsilon * own_.friction;
-    return IntervalMotion(
-               flows_, values_, tau_zero_,
-               {from.tau, from.x, from.x_dot, false, Sliding::between(from_side, to_side), pull})
-        .at(tau - from.tau, false)
-        .value;
+    const double pull = faster * faster * own.epsilon * own.friction;
+    const FittedInterval interval{
+        from.tau, from.x, from.x_dot, false, Sliding::between(from_side, to_side), pull};
+    return IntervalMotion(flows, values, tau_zero, interval).at(tau - from.tau, false).value;
 }
 
 Impact IdentifiedSystem::measured(Impact i, double tau) const {
@@ -49,72 +45,60 @@ Impact IdentifiedSystem::measured(Impact i, double tau) const {
     for (double* v :
          {&i.x_dot_before, &i.x_dot_after, &i.y_dot_before, &i.y_dot_after,
           &i.relative_speed_before, &i.relative_speed_after})
-        *v *= faster_;
-    i.x_ddot_before *= faster_ * faster_;
+        *v *= faster;
+    i.x_ddot_before *= faster * faster;
     return i;
 }
 
 namespace {
 
-// Largest distance between an impact of the run and the measured one: in tau, plus this fraction of
-// the time since the start.
+// Largest distance between an impact of the run and the measured one: tau, plus this share of time.
 constexpr double same_moment = 0.1, same_share = 0.01;
-// Tolerance of the jump of x', relative.
-constexpr double same_jump = 0.2;
+constexpr double same_jump = 0.2;  // tolerance of the jump of x', relative
 // A doubtful impact can be an artefact of hidden contacts within this tau.
 constexpr double artefact_range = 0.5;
-// A run continues over impacts weaker than this many tolerances: they determine the motion less
-// precisely than the run does.
+// A run continues over impacts weaker than this many tolerances: it is more precise than they are.
 constexpr double strong = 6;
 // The impacts at the end of a chatter below this many tolerances are reported as one.
 constexpr double weakest_reported = 0.4;
 // Longest run over hidden contacts, in typical flights: anything longer is a gap.
 constexpr double longest_flights = 40;
-// Limit for one run: a chatter has about fifty impacts.
-constexpr long most_impacts = 120;
-// The search ends when this many more runs have failed than succeeded: the system is not the
-// measured one.
+constexpr long most_impacts = 120;  // limit for one run: a chatter has about fifty impacts
+// The search ends when this many more runs failed than succeeded: the system is another one.
 constexpr int many_runs = 100;
 
-/// Records the contacts of a run of the identified system from `tau` on, in the measurement's
-/// units.
-class RunContacts : public Observer {
-public:
-    RunContacts(const IdentifiedSystem& system, double tau) : system_(system), tau_(tau) {}
+/// Records the contacts of a run from `tau` on, in the measurement's units.
+struct RunContacts : Observer {
+    const IdentifiedSystem& system;
+    const double tau;
+    std::optional<Release> stuck = {}, release = {};  // release: from the start
+    std::vector<RunImpact> impacts = {};
+
+    RunContacts(const IdentifiedSystem& s, double from) : system(s), tau(from) {}
 
     void on_impact(const Impact& of_run) override {
-        impacts.push_back({listed(system_.measured(of_run, tau_))});
+        impacts.push_back({listed(system.measured(of_run, tau))});
         impacts.back().is_hidden = true;
     }
     void on_stretch(const Stretch& s) override {
-        if (s.sticking_side != 0) {
-            const Oscillation end = s.flow.after(s.start, s.duration);
-            stuck_ = Release{
-                system_.measured_time(s.tau + s.duration, tau_), end.x,
-                end.x_dot * system_.faster()};
-        }
+        if (s.sticking_side == 0) return;
+        const Oscillation end = s.flow.after(s.start, s.duration);
+        const double at = system.measured_time(s.tau + s.duration, tau);
+        stuck = Release{at, end.x, end.x_dot * system.faster};
     }
     void on_release(double) override {
-        if (stuck_) (impacts.empty() ? release : impacts.back().release) = stuck_;
-        stuck_.reset();
+        if (stuck) (impacts.empty() ? release : impacts.back().release) = stuck;
+        stuck.reset();
     }
-
-    std::optional<Release> release;  // from the start
-    std::vector<RunImpact> impacts;
-
-private:
-    const IdentifiedSystem& system_;
-    const double tau_;
-    std::optional<Release> stuck_;
 };
 
 struct HiddenContactSearch {
     const IdentifiedSystem& system;
     const HiddenContactLimits& limits;
-    const std::vector<IdentifiedImpact>& impacts;
+    const IdentifiedImpacts& impacts;
     const std::vector<char>& doubtful;
 
-    std::vector<HiddenContacts> find(const std::function<void()>& look) const {
+    std::vector<HiddenContacts> find(const Look& look) const {
         std::vector<HiddenContacts> all;
         // y' before the impact according to the run that reached it; more precise than the flight.
         double y_dot_before = nan;
@@ -146,9 +130,8 @@ struct HiddenContactSearch {
     /// y' at the end of the flight to impact i.
     double flight_end(std::size_t i) const {
         const IdentifiedImpact &from = impacts[i - 1], &to = impacts[i];
-        const double faster = system.faster();
-        return flight_velocity(system.own().b, from, to) -
-               faster * faster * braking(system.own(), from, to);
+        const double braked = system.faster * system.faster * braking(system.own, from, to);
+        return flight_velocity(system.own.b, from, to) - braked;
     }
 
     /// Marks the last impacts of each chatter that ends in a sticking phase.
@@ -169,10 +152,9 @@ struct HiddenContactSearch {
                    h.impacts, [](const RunImpact& r) { return r.release || !r.shown; });
     }
 
-    bool is_firm(std::size_t i) const { return doubtful.empty() || !doubtful[i]; }
     /// Whether measured impact i can be an artefact of hidden contacts nearby.
     bool stands_for(std::size_t i, const HiddenContacts& hidden) const {
-        if (is_firm(i)) return false;
+        if (doubtful.empty() || !doubtful[i]) return false;
         const double tau = impacts[i].tau;
         const auto near = [&](double from, const std::optional<Release>& r) {
             return tau > from - artefact_range && tau < (r ? r->tau : from) + artefact_range;
@@ -186,11 +168,10 @@ struct HiddenContactSearch {
         double x_dot, y_dot;
     };
     /// Possible velocities after an impact that the mass reaches with y' = `y_dot_before`, most
-    /// reliable first. The motion and the flight before the impact are not affected by contacts
-    /// hidden soon after it; its jump can be.
+    /// reliable first: contacts hidden soon after it can affect its jump, but nothing before it.
     std::vector<Velocities> velocities_after(std::size_t i, double y_dot_before) const {
         const IdentifiedImpact& m = impacts[i];
-        const Parameters& p = system.own();
+        const Parameters& p = system.own;
         const auto R_at = [&](double speed) { return p.restitution(m.side, std::abs(speed)); };
         const auto share = [&](double R) { return p.epsilon * (1 + R) / (1 + p.epsilon); };
         std::vector<Velocities> all;
@@ -213,12 +194,10 @@ struct HiddenContactSearch {
         return gap == limits.gaps.end() ? end : std::min(end, gap->from);
     }
 
-    /// Contacts between an impact and the next measured one that the run reaches; prefers a
-    /// strong one.
+    /// Contacts between an impact and the next one that the run reaches; prefers a strong one.
     std::optional<HiddenContacts> between(std::size_t from, const Velocities& after) const {
-        const double tau = impacts[from].tau, end = end_after(tau),
-                     next = std::min(
-                         end, may_be_apart(tau, impacts[from + 1].tau) + impacts[from + 1].tau);
+        const double tau = impacts[from].tau, to = impacts[from + 1].tau, end = end_after(tau),
+                     next = std::min(end, may_be_apart(tau, to) + to);
         // Most runs reach the very next impact.
         auto near = between(from, after, next);
         if (end <= next || (near && is_strong(near->to))) return near;
@@ -227,26 +206,27 @@ struct HiddenContactSearch {
     }
     std::optional<HiddenContacts> between(
         std::size_t from, const Velocities& after, double end) const {
-        const IdentifiedImpact& m = impacts[from];
-        if (!(end > m.tau)) return std::nullopt;
-        RunContacts run(system, m.tau);
+        const IdentifiedImpact& first = impacts[from];
+        if (!(end > first.tau)) return std::nullopt;
+        RunContacts run(system, first.tau);
         Observer* const observers[] = {&run};
+        const double y = first.x - first.side * system.own.b;
         system.run(
-            m.tau, {after.x_dot, m.x, after.y_dot, m.x - m.side * system.own().b},
+            first.tau, {after.x_dot, first.x, after.y_dot, y},
             {.tau_end = end, .max_impacts = most_impacts}, observers);
         HiddenContacts hidden{from, from, after.y_dot, nan, run.release};
         std::optional<HiddenContacts> found;
         std::size_t shown = from + 1;
         int unseen = 0;
         for (RunImpact& next : run.impacts) {
-            const double apart = may_be_apart(m.tau, next.tau);
+            const double apart = may_be_apart(first.tau, next.tau);
             for (; shown < impacts.size() && impacts[shown].tau < next.tau - apart; ++shown)
                 // The run has no impact where one is measured.
                 if (!stands_for(shown, hidden)) return found;
             if (shown == impacts.size()) return found;
-            const bool is_there =
-                impacts[shown].tau < next.tau + apart && impacts[shown].side == next.side;
-            if (is_there && leads_to(hidden, after.x_dot, impacts[shown], next)) {
+            const IdentifiedImpact& m = impacts[shown];
+            const bool is_there = m.tau < next.tau + apart && m.side == next.side;
+            if (is_there && leads_to(hidden, after.x_dot, m, next)) {
                 if (is_strong(shown) || !found) {
                     found = hidden;
                     found->to = shown, found->y_dot_before = next.y_dot_before;
@@ -274,9 +254,8 @@ struct HiddenContactSearch {
     bool leads_to(
         const HiddenContacts& hidden, double x_dot, const IdentifiedImpact& shown,
         const RunImpact& next) const {
-        if (std::abs(next.jump() - shown.jump()) >
-            limits.tolerance + same_jump * std::abs(shown.jump()))
-            return false;
+        const double off = std::abs(next.jump() - shown.jump());
+        if (off > limits.tolerance + same_jump * std::abs(shown.jump())) return false;
         const IdentifiedImpact& from = impacts[hidden.from];
         Release last{from.tau, from.x, x_dot};
         int side = from.side;
@@ -297,14 +276,12 @@ struct HiddenContactSearch {
 
 std::vector<HiddenContacts> hidden_contacts(
     const IdentifiedSystem& system, const HiddenContactLimits& limits,
-    const std::vector<IdentifiedImpact>& impacts, const std::vector<char>& doubtful,
-    const std::function<void()>& look) {
+    const IdentifiedImpacts& impacts, const std::vector<char>& doubtful, const Look& look) {
     return HiddenContactSearch{system, limits, impacts, doubtful}.find(look);
 }
 
-long insert_hidden(
-    const std::vector<HiddenContacts>& hidden, std::vector<IdentifiedImpact>& impacts) {
-    std::vector<IdentifiedImpact> all;
+void insert_hidden(const std::vector<HiddenContacts>& hidden, IdentifiedImpacts& impacts) {
+    IdentifiedImpacts all;
     auto next = hidden.begin();
     for (std::size_t i = 0; i < impacts.size(); ++i) {
         all.push_back(impacts[i]);
@@ -321,9 +298,7 @@ long insert_hidden(
         impacts[next->to].y_dot_before = next->y_dot_before;
         ++next;
     }
-    const auto added = static_cast<long>(all.size() - impacts.size());
     impacts = std::move(all);
-    return added;
 }
 
 }  // namespace vines

@@ -1,10 +1,8 @@
-// Contacts that a measurement does not show between two impacts that it shows: impacts too weak to
-// be seen, the end of a chatter, the sticking phase after it, or an impact missing from a list. The
-// identified system is run from the first of the two impacts; if the run reaches the second one,
-// the contacts between them are the hidden ones.
+// Contacts that a measurement does not show between two impacts: those too weak to be seen, the end
+// of a chatter, the sticking phase after it, or an impact missing from a list. If a run of the
+// identified system from the first impact reaches the second, it has the hidden contacts.
 #pragma once
 
-#include <functional>
 #include <optional>
 #include <span>
 #include <vector>
@@ -17,18 +15,16 @@
 namespace vines {
 
 /// The identified system, prepared for runs from any time of the measurement.
-class IdentifiedSystem {
-public:
+struct IdentifiedSystem {
     /// `parameters`: with the identified b, R of each wall and Omega. `values`: forcing (phase at
     /// `tau_zero`), stiffness and damping.
     IdentifiedSystem(const Parameters& parameters, const UnknownValues& values, double tau_zero);
 
     /// Runs from `tau` on; `state` and `limits` in the measurement's units. Observers see the run's
-    /// own time, which starts at start_of(tau) and runs faster by faster().
+    /// own time, which starts at start_of(tau) and runs `faster`.
     Outcome run(
         double tau, const State& state, Limits limits, std::span<Observer* const> observers) const;
     double start_of(double tau) const;
-    double faster() const { return faster_; }
 
     /// Motion of the oscillator at `tau` while the mass flies between two walls, from a state.
     OscillatorMotion free_motion(const Release& from, int from_side, double tau, int to_side) const;
@@ -36,15 +32,14 @@ public:
     Impact measured(Impact impact, double tau) const;
     /// The measurement's tau at `own_tau` of a run from `tau` on.
     double measured_time(double own_tau, double tau) const {
-        return (own_tau - start_of(tau)) / faster_ + tau;
+        return (own_tau - start_of(tau)) / faster + tau;
     }
-    const Parameters& own() const { return own_; }
 
-private:
-    const UnknownValues values_;
-    const OscillatorFlows flows_;
-    Parameters own_;
-    double faster_, phase_, tau_zero_;
+    const UnknownValues values;
+    const OscillatorFlows flows;
+    Parameters own;  ///< in the run's own time
+    double faster;   ///< units of the run's own time per unit of tau
+    double tau_zero;
 };
 
 /// An impact of a run, in the measurement's units.
@@ -66,23 +61,20 @@ struct HiddenContactLimits {
     /// Tolerance in x and x' for reaching an impact.
     double tolerance = 0;
     double typical_flight = 0;  ///< tau; no run lasts longer than 40 of them
-    /// Most consecutive hidden impacts that are strong enough to be visible: a list or a search can
-    /// miss some.
+    /// Most consecutive hidden impacts that are strong enough to be visible.
     int most_seen = 6;
     std::vector<TimeGap> gaps = {};  ///< gaps of the record in order; no run crosses them
 };
 /// Hidden contacts in order of time. The velocity of the mass after an impact comes from the flight
 /// before it, eq. (43), or from the impact's own jump, eqs. (4), (36). `doubtful`: one entry per
 /// impact, nonzero if it can be an artefact of hidden contacts nearby; empty: all are certain.
-/// look() is called for each impact; an exception it throws passes through.
 std::vector<HiddenContacts> hidden_contacts(
     const IdentifiedSystem& system, const HiddenContactLimits& limits,
-    const std::vector<IdentifiedImpact>& impacts, const std::vector<char>& doubtful = {},
-    const std::function<void()>& look = [] {});
+    const IdentifiedImpacts& impacts, const std::vector<char>& doubtful = {},
+    const Look& look = [] {});
 
 /// Inserts the hidden contacts (found without doubtful impacts) and takes the velocities of the
-/// mass there from the run. Returns the number of impacts added.
-long insert_hidden(
-    const std::vector<HiddenContacts>& hidden, std::vector<IdentifiedImpact>& impacts);
+/// mass there from the run.
+void insert_hidden(const std::vector<HiddenContacts>& hidden, IdentifiedImpacts& impacts);
 
 }  // namespace vines

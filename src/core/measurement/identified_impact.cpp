@@ -13,13 +13,10 @@ namespace vines {
 
 namespace {
 
-// Tolerances for R outside [0, 1] and for the momentum balance of a real impact. If the others
-// conserve momentum better, ten times their scatter is the limit: an impact flown over two missing
-// ones is off by a third.
+// Tolerances for R outside [0, 1] and for the momentum balance, or ten times the others' scatter if
+// that is less: an impact flown over two missing ones is off by a third.
 constexpr double R_tolerance = 0.15, momentum_tolerance = 0.35, least_momentum_tolerance = 0.1;
 constexpr double momentum_sigmas = 10;
-// Tolerance of a flight: of its speed, and of the distance between the walls.
-constexpr double flight_tolerance = 0.1;
 
 /// `since`: time since the previous impact; `tolerance`: of the momentum balance.
 ImpactFault fault_of(const IdentifiedImpact& i, double since, double pulse, double tolerance) {
@@ -32,6 +29,71 @@ ImpactFault fault_of(const IdentifiedImpact& i, double since, double pulse, doub
     if (i.R < -R_tolerance || i.R > 1 + R_tolerance) return ImpactFault::R_impossible;
     if (!(std::abs(i.momentum_error) < tolerance)) return ImpactFault::momentum_lost;
     return ImpactFault::none;
+}
+
+// Number of reweighted rounds. A flight over a missing impact deviates strongly: it gets less
+// weight (Huber), and is ignored in the later rounds.
+constexpr int rounds = 12, rounds_with_all = 6;
+constexpr double counted_in_full = 1.5, ignored = 6;
+// A motion between two impacts hides another one if it deviates by this fraction of the median jump
+// of x' and by this many times the typical deviation.
+constexpr double hidden_share = 0.05, hidden_sigmas = 10;
+
+/// Median speed of the oscillator before an impact.
+double typical_speed(const IdentifiedImpacts& impacts) {
+    return median(
+        values_of(impacts, [](const IdentifiedImpact& i) { return std::abs(i.x_dot_before); }));
+}
+
+/// Equation for the forcing from x or x' at the end of a flight.
+struct Row {
+    Eigen::RowVector2d by_forcing;
+    double value;
+};
+
+std::vector<Row> rows_of(const Parameters& p, const IdentifiedImpacts& impacts, const Look& look) {
+    const UnknownValues given = given_unknowns(p);
+    const OscillatorFlows flows(given, false);
+    std::vector<Row> rows;
+    rows.reserve(2 * impacts.size());
+    for (std::size_t i = 1; i < impacts.size(); ++i) {
+        look();
+        const IdentifiedImpact &from = impacts[i - 1], &to = impacts[i];
+        const FittedInterval interval{
+            from.tau,
+            from.x,
+            from.x_dot_after,
+            false,
+            Sliding::between(from.side, to.side),
+            p.epsilon * p.friction};
+        const MotionRow row =
+            IntervalMotion(flows, given, 0, interval).at(to.tau - from.tau, false);
+        // The values are without the forcing, which is not known yet.
+        const OscillatorMotion &by_sin = row.parts[2], &by_cos = row.parts[3];
+        rows.push_back({{by_sin.x, by_cos.x}, to.x - row.value.x});
+        rows.push_back({{by_sin.x_dot, by_cos.x_dot}, to.x_dot_before - row.value.x_dot});
+    }
+    return rows;
+}
+
+/// The system with R of each wall from the listed impacts.
+Parameters listed_system(const Parameters& parameters, const IdentifiedImpacts& impacts) {
+    Parameters p = parameters;
+    IdentifiedImpacts copy = impacts;
+    set_flight_velocities(p, copy);
+    complete_impacts(p, copy, 0);
+    take_restitution(restitution_of(copy, 1), restitution_of(copy, -1), p);
+    return p;
+}
+
+HiddenContactLimits hidden_contact_limits(
+    const ListedForcing& forcing, const IdentifiedImpacts& impacts) {
+    const auto jump = [](const IdentifiedImpact& i) { return std::abs(i.jump()); };
+    return {
+        .tolerance = std::max(
+            hidden_share * median(values_of(impacts, jump)),
+            hidden_sigmas * forcing.misfit * typical_speed(impacts)),
+        .typical_flight = median(steps_of(values_of(impacts, &IdentifiedImpact::tau)))};
 }
 
 }  // namespace
@@ -48,7 +110,7 @@ IdentifiedImpact listed(const Impact& i) {
         .y_dot_after = i.y_dot_after};
 }
 
-void complete_impacts(const Parameters& p, std::vector<IdentifiedImpact>& impacts, double pulse) {
+void complete_impacts(const Parameters& p, IdentifiedImpacts& impacts, double pulse) {
     const double typical = median(values_of(
         impacts, [](const IdentifiedImpact& i) { return i.is_hidden ? nan : std::abs(i.jump()); }));
     for (IdentifiedImpact& i : impacts) {
@@ -60,13 +122,11 @@ void complete_impacts(const Parameters& p, std::vector<IdentifiedImpact>& impact
         impacts, [](const IdentifiedImpact& i) { return i.is_hidden ? nan : i.momentum_error; }));
     const double tolerance =
         std::min(std::max(least_momentum_tolerance, momentum_sigmas * scatter), momentum_tolerance);
-    for (std::size_t k = 0; k < impacts.size(); ++k)
-        impacts[k].fault = fault_of(
-            impacts[k],
-            k > 0 && !impacts[k].is_hidden && !impacts[k - 1].is_hidden
-                ? impacts[k].tau - impacts[k - 1].tau
-                : infinity,
-            pulse, tolerance);
+    for (std::size_t k = 0; k < impacts.size(); ++k) {
+        const bool are_visible = k > 0 && !impacts[k].is_hidden && !impacts[k - 1].is_hidden;
+        const double since = are_visible ? impacts[k].tau - impacts[k - 1].tau : infinity;
+        impacts[k].fault = fault_of(impacts[k], since, pulse, tolerance);
+    }
 }
 
 double flight_velocity(double b, const IdentifiedImpact& from, const IdentifiedImpact& to) {
@@ -77,19 +137,7 @@ double braking(const Parameters& p, const IdentifiedImpact& from, const Identifi
     return p.friction * (to.tau - from.tau) * Sliding::between(from.side, to.side).to_end;
 }
 
-bool flight_fits(
-    const Parameters& p, const IdentifiedImpact& from, const IdentifiedImpact& to,
-    double typical_speed) {
-    const Release leaves = from.release.value_or(Release{from.tau, from.x, from.y_dot_after});
-    const double duration = to.tau - leaves.tau,
-                 way = to.x - to.side * p.b - (leaves.x - from.side * p.b),
-                 flown = 0.5 * (leaves.x_dot + to.y_dot_before) * duration,
-                 braked = p.friction * duration;
-    return std::abs(to.y_dot_before - leaves.x_dot) < flight_tolerance * typical_speed + braked &&
-           std::abs(way - flown) < flight_tolerance * p.b + 0.25 * braked * duration;
-}
-
-std::vector<StickingPhase> sticking_phases(const std::vector<IdentifiedImpact>& impacts) {
+std::vector<StickingPhase> sticking_phases(const IdentifiedImpacts& impacts) {
     std::vector<StickingPhase> all;
     int chatter = 0;
     for (std::size_t k = 0; k < impacts.size(); ++k) {
@@ -102,15 +150,14 @@ std::vector<StickingPhase> sticking_phases(const std::vector<IdentifiedImpact>& 
     return all;
 }
 
-Restitution restitution_of(const std::vector<IdentifiedImpact>& impacts, int side) {
+Restitution restitution_of(const IdentifiedImpacts& impacts, int side) {
     std::vector<double> R;
     for (const IdentifiedImpact& i : impacts)
         if (i.side == side && i.is_good_and_visible() && !std::isnan(i.R)) R.push_back(i.R);
     const double centre = median(R);
     const std::vector<double> off = values_of(R, [centre](double r) { return r - centre; });
-    // Normally distributed values have a median that scatters sqrt(pi/2) times as much as their
-    // mean.
-    const double error = 1.25 * robust_deviation(off) / std::sqrt(static_cast<double>(off.size()));
+    // The median of normally distributed values scatters sqrt(pi/2) times as much as their mean.
+    const double error = 1.25 * robust_deviation(off) / std::sqrt(count_of(off));
     return {centre, error, static_cast<long>(R.size())};
 }
 
@@ -119,57 +166,7 @@ void take_restitution(const Restitution& plus, const Restitution& minus, Paramet
     if (std::isfinite(minus.R)) p.R_minus = std::clamp(minus.R, 0.0, 1.0);
 }
 
-namespace {
-
-// Number of reweighted rounds. A flight over a missing impact deviates strongly: it gets less
-// weight (Huber), and is ignored in the later rounds.
-constexpr int rounds = 12, rounds_with_all = 6;
-constexpr double counted_in_full = 1.5, ignored = 6;
-// A motion between two impacts hides another one if it deviates by this fraction of the median jump
-// of x' and by this many times the typical deviation.
-constexpr double hidden_share = 0.05, hidden_sigmas = 10;
-
-/// Median speed of the oscillator before an impact.
-double typical_speed(const std::vector<IdentifiedImpact>& impacts) {
-    return median(
-        values_of(impacts, [](const IdentifiedImpact& i) { return std::abs(i.x_dot_before); }));
-}
-
-/// Equation for the forcing from x or x' at the end of a flight.
-struct Row {
-    Eigen::RowVector2d by_forcing;
-    double value;
-};
-
-std::vector<Row> rows_of(
-    const Parameters& p, const std::vector<IdentifiedImpact>& impacts,
-    const std::function<void()>& look) {
-    const UnknownValues given = given_unknowns(p);
-    const OscillatorFlows flows(given, false);
-    std::vector<Row> rows;
-    rows.reserve(2 * impacts.size());
-    for (std::size_t i = 1; i < impacts.size(); ++i) {
-        look();
-        const IdentifiedImpact &from = impacts[i - 1], &to = impacts[i];
-        const MotionRow row = IntervalMotion(
-                                  flows, given, 0,
-                                  {from.tau, from.x, from.x_dot_after, false,
-                                   Sliding::between(from.side, to.side), p.epsilon * p.friction})
-                                  .at(to.tau - from.tau, false);
-        // Without the forcing, which is not known yet.
-        const auto add = [&](double OscillatorMotion::* member, double end) {
-            const auto& parts = row.parts;
-            rows.push_back({{parts[2].*member, parts[3].*member}, end - row.value.*member});
-        };
-        add(&OscillatorMotion::x, to.x);
-        add(&OscillatorMotion::x_dot, to.x_dot_before);
-    }
-    return rows;
-}
-
-}  // namespace
-
-void set_flight_velocities(const Parameters& p, std::vector<IdentifiedImpact>& impacts) {
+void set_flight_velocities(const Parameters& p, IdentifiedImpacts& impacts) {
     for (std::size_t i = 1; i < impacts.size(); ++i) {
         IdentifiedImpact &from = impacts[i - 1], &to = impacts[i];
         const double y_dot = flight_velocity(p.b, from, to), braked = braking(p, from, to);
@@ -178,9 +175,7 @@ void set_flight_velocities(const Parameters& p, std::vector<IdentifiedImpact>& i
     }
 }
 
-ListedForcing fit_forcing(
-    const Parameters& p, std::vector<IdentifiedImpact>& impacts,
-    const std::function<void()>& look) {
+ListedForcing fit_forcing(const Parameters& p, IdentifiedImpacts& impacts, const Look& look) {
     const std::vector<Row> rows = rows_of(p, impacts, look);
     Eigen::Vector2d f = Eigen::Vector2d::Zero();
     std::vector<double> off(rows.size(), 0);
@@ -210,40 +205,14 @@ ListedForcing fit_forcing(
     return {f(0), f(1), scale / typical_speed(impacts)};
 }
 
-namespace {
-
-/// The system with R of each wall from the listed impacts.
-Parameters listed_system(
-    const Parameters& parameters, const std::vector<IdentifiedImpact>& impacts) {
-    Parameters p = parameters;
-    std::vector<IdentifiedImpact> copy = impacts;
-    set_flight_velocities(p, copy);
-    complete_impacts(p, copy, 0);
-    take_restitution(restitution_of(copy, 1), restitution_of(copy, -1), p);
-    return p;
-}
-
-HiddenContactLimits hidden_contact_limits(
-    const ListedForcing& forcing, const std::vector<IdentifiedImpact>& impacts) {
-    const auto jump = [](const IdentifiedImpact& i) { return std::abs(i.jump()); };
-    return {
-        .tolerance = std::max(
-            hidden_share * median(values_of(impacts, jump)),
-            hidden_sigmas * forcing.misfit * typical_speed(impacts)),
-        .typical_flight = median(steps_of(impacts))};
-}
-
-}  // namespace
-
-long insert_missing_impacts(
-    const Parameters& p, const ListedForcing& forcing, std::vector<IdentifiedImpact>& impacts,
-    const std::function<void()>& look) {
+void insert_missing_impacts(
+    const Parameters& p, const ListedForcing& forcing, IdentifiedImpacts& impacts,
+    const Look& look) {
     UnknownValues values = given_unknowns(p);
     values[Unknown::force_sin] = forcing.sin, values[Unknown::force_cos] = forcing.cos;
     const IdentifiedSystem system(listed_system(p, impacts), values, 0);
-    return insert_hidden(
-        hidden_contacts(system, hidden_contact_limits(forcing, impacts), impacts, {}, look),
-        impacts);
+    const HiddenContactLimits limits = hidden_contact_limits(forcing, impacts);
+    insert_hidden(hidden_contacts(system, limits, impacts, {}, look), impacts);
 }
 
 }  // namespace vines

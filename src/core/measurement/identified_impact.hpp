@@ -5,10 +5,10 @@
 // braked by a given friction, and one forcing moves the oscillator from impact to impact.
 #pragma once
 
-#include <functional>
 #include <optional>
 #include <vector>
 
+#include "core/measurement/progress.hpp"
 #include "core/motion/elementary.hpp"
 #include "core/motion/parameters.hpp"
 #include "core/motion/record.hpp"
@@ -46,8 +46,7 @@ struct IdentifiedImpact {
     /// End of the sticking phase that starts at this impact.
     std::optional<Release> release = {};
     bool is_hidden = false;  ///< not visible: inserted (hidden_contacts.hpp)
-    /// One of the last impacts of a chatter, far weaker than any visible one: represented by the
-    /// sticking phase.
+    /// One of the last impacts of a chatter, far weaker than any visible one.
     bool comes_to_rest = false;
 
     bool is_left_out() const { return fault != ImpactFault::none; }
@@ -55,13 +54,13 @@ struct IdentifiedImpact {
     double jump() const { return x_dot_after - x_dot_before; }
 };
 
+using IdentifiedImpacts = std::vector<IdentifiedImpact>;
+
 /// An impact of a run, as a list of impacts states it.
 IdentifiedImpact listed(const Impact& impact);
 
-/// Sets R, momentum_error and fault of each impact from its velocities. Two impacts closer than
-/// `pulse` (tau) are one impact detected twice.
-void complete_impacts(
-    const Parameters& parameters, std::vector<IdentifiedImpact>& impacts, double pulse);
+/// Sets R, momentum_error and fault of each impact. Two closer than `pulse` (tau) are one.
+void complete_impacts(const Parameters& parameters, IdentifiedImpacts& impacts, double pulse);
 
 /// Mean y' of the mass between two contacts, y = x - side b at both, eq. (43).
 double flight_velocity(double b, const IdentifiedImpact& from, const IdentifiedImpact& to);
@@ -69,46 +68,37 @@ double flight_velocity(double b, const IdentifiedImpact& from, const IdentifiedI
 /// start of the flight y' exceeds its mean by this.
 double braking(const Parameters& p, const IdentifiedImpact& from, const IdentifiedImpact& to);
 
-/// Whether the mass can have flown freely from one impact to the next: with one velocity, from wall
-/// to wall. If not, an impact between them is missing, or the mass stuck to the wall.
-bool flight_fits(
-    const Parameters& parameters, const IdentifiedImpact& from, const IdentifiedImpact& to,
-    double typical_speed);
-
 /// Sticking phases; `impacts` of each: length of the chatter before it.
-std::vector<StickingPhase> sticking_phases(const std::vector<IdentifiedImpact>& impacts);
+std::vector<StickingPhase> sticking_phases(const IdentifiedImpacts& impacts);
 
 struct Restitution {
     double R, error;  ///< median and its standard error; NaN without impacts
     long impacts;
 };
 /// R of one wall, from its impacts that are not excluded.
-Restitution restitution_of(const std::vector<IdentifiedImpact>& impacts, int side);
+Restitution restitution_of(const IdentifiedImpacts& impacts, int side);
 /// Takes R of each wall that has impacts, clamped to the range of an R.
 void take_restitution(const Restitution& plus, const Restitution& minus, Parameters& parameters);
 
 /// Sets y' before and after each impact where it is NaN, from the flights, eq. (43). It stays
 /// unknown before the first and after the last impact.
-void set_flight_velocities(const Parameters& parameters, std::vector<IdentifiedImpact>& impacts);
+void set_flight_velocities(const Parameters& parameters, IdentifiedImpacts& impacts);
 
 /// f_s sin(Omega tau) + f_c cos(Omega tau), m.
 struct ListedForcing {
     double sin, cos;
-    /// Median deviation of the impacts' states from the motion under this forcing, divided by the
-    /// median speed of the oscillator.
+    /// Median deviation of the impacts' states from its motion, over the oscillator's median speed.
     double misfit;
 };
 /// Fits the forcing that leads from each impact to the next (least squares) and sets x'' before an
-/// impact, where it is NaN, by eq. (2). Needs at least two impacts with x and x'. look() is called
-/// several times for each impact; an exception it throws passes through.
+/// impact, where it is NaN, by eq. (2). Needs at least two impacts with x and x'.
 ListedForcing fit_forcing(
-    const Parameters& parameters, std::vector<IdentifiedImpact>& impacts,
-    const std::function<void()>& look = [] {});
+    const Parameters& parameters, IdentifiedImpacts& impacts, const Look& look = [] {});
 
 /// Inserts impacts missing from the list (hidden_contacts.hpp), with the R of each wall that the
-/// listed impacts have. Returns the number of impacts added. look() as above.
-long insert_missing_impacts(
-    const Parameters& parameters, const ListedForcing& forcing,
-    std::vector<IdentifiedImpact>& impacts, const std::function<void()>& look = [] {});
+/// listed impacts have.
+void insert_missing_impacts(
+    const Parameters& parameters, const ListedForcing& forcing, IdentifiedImpacts& impacts,
+    const Look& look = [] {});
 
 }  // namespace vines

@@ -13,10 +13,8 @@
 
 namespace vines {
 
-/// Displacement x and its derivatives by tau.
-struct OscillatorMotion {
-    double x, x_dot, x_ddot;
-};
+/// Motions from x = 1, from x' = 1, and from rest under a sine and a cosine that starts at `angle`.
+std::array<Oscillation, 4> unit_motions(double angle);
 
 /// N motions. The flow must outlive this object.
 template <std::size_t N>
@@ -93,9 +91,10 @@ struct FittedInterval {
 
 /// A flow with the response to a load's excess, if there is one.
 struct LoadedFlow {
+    /// Stiffness and damping exceed `values` by these amounts. `mass`: moving mass divided by m1.
     LoadedFlow(
-        double stiffness, double damping, double force, double mass, double Omega,
-        const std::optional<LoadResponse::Excess>& excess);
+        const UnknownValues& values, double stiffer, double more_damped, double force, double mass,
+        const LoadResponse::Excess* excess);
     /// Response to the load alone, tabulated from rest before the record; 0 without a load.
     OscillatorMotion load_at(double sigma, double force_sin, double force_cos) const;
 
@@ -105,11 +104,10 @@ struct LoadedFlow {
 
 /// Flows of the oscillator: with the values themselves, and with k and c each slightly increased.
 struct OscillatorFlows {
-    /// `oscillator_moves`: whether derivatives by k and c are needed. `mass`: moving mass divided
-    /// by m1. `excess`: of a load, if there is one.
+    /// `oscillator_moves`: whether derivatives by k and c are needed. `excess`: of a load, or null.
     OscillatorFlows(
         const UnknownValues& values, bool oscillator_moves, double mass = 1,
-        const std::optional<LoadResponse::Excess>& excess = {});
+        const LoadResponse::Excess* excess = nullptr);
 
     bool oscillator_moves;
     double force, phase, Omega;  ///< amplitude of the forcing, m, and its phase at tau_m
@@ -152,7 +150,6 @@ private:
     OscillatorMotion derivative(
         const LoadedFlow& flow, const OscillatorMotion& moved, double s,
         const OscillatorMotion& plain) const;
-    OscillatorMotion by_frequency(const std::array<OscillatorMotion, 4>& parts, double s) const;
 
     const OscillatorFlows& flows_;
     const double since_middle_;
@@ -170,10 +167,13 @@ private:
 using UnknownRow = Eigen::Matrix<double, 1, sensed_unknowns>;
 inline double& element(UnknownRow& row, Unknown u) { return row(static_cast<Eigen::Index>(u)); }
 
-/// Derivatives of one of x, x', x'' by the initial state and by the unknowns; 0 for unknowns that
-/// do not affect the motion.
-void take_derivatives(
-    const MotionRow& row, double OscillatorMotion::* member, Eigen::RowVector2d& by_start,
-    UnknownRow& by_unknowns);
+/// Derivatives of one of x, x', x'' by the initial state and by the unknowns; 0 for unknowns
+/// that do not affect the motion.
+struct MotionDerivatives {
+    MotionDerivatives(const MotionRow& row, double OscillatorMotion::* member);
+
+    Eigen::RowVector2d by_start;
+    UnknownRow by_unknowns = UnknownRow::Zero();
+};
 
 }  // namespace vines

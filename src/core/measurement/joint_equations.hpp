@@ -1,24 +1,17 @@
 // Normal equations of a joint fit, and its state between its stages: equations
-// (joint_fit_equations.cpp), steps (joint_fit.cpp), and evaluation of the result
-// (joint_fit_residual.cpp). Unknowns: two for each interval, the time of each impact, and those of
-// the record.
+// (joint_fit_equations.cpp), steps and evaluation (joint_fit.cpp), effects outside the model
+// (model_effects.cpp). Unknowns: two for each interval, the time of each impact, the record's.
 #pragma once
 
 #include <Eigen/Core>
 #include <Eigen/SparseCore>
+#include <optional>
 #include <vector>
 
 #include "core/measurement/joint_fit.hpp"
-#include "core/measurement/model_effects.hpp"
 #include "core/motion/elementary.hpp"
 
 namespace vines {
-
-/// Sums with the derivatives by the sizes of effects outside the model (model_effects.hpp).
-struct EffectSums {
-    Eigen::MatrixXd mixed, squares, solved;  ///< B, R^T W R (lower part), N^-1 B
-    Eigen::VectorXd right;                   ///< R^T W r
-};
 
 class JointEquations {
 public:
@@ -33,40 +26,38 @@ public:
         Eigen::Index at;
         double by;
     };
+    using Row = std::vector<Term>;
+
     /// `ridge`: added to the diagonal of the intervals, so that undetermined unknowns do not move.
     JointEquations(std::size_t intervals, double ridge);
 
     /// Adds a sample of an interval: derivatives, residual and weight.
     void add(
-        std::size_t interval, const Eigen::RowVector2d& by_start, const UnknownRow& by_unknowns,
-        double left, double weight, const Eigen::VectorXd* by_effects = nullptr);
-    /// Appends the derivatives by the record's unknowns, multiplied by `times`.
-    void append(const UnknownRow& by_unknowns, double times, std::vector<Term>& row) const;
+        std::size_t interval, const MotionDerivatives& by, double left, double weight,
+        const Eigen::VectorXd* by_effects = nullptr);
     /// Adds a residual that depends on few unknowns.
     void add(
-        const std::vector<Term>& row, double left, double weight,
-        const Eigen::VectorXd* by_effects = nullptr);
+        const Row& row, double left, double weight, const Eigen::VectorXd* by_effects = nullptr);
+    /// Appends the derivatives by the record's unknowns, multiplied by `times`.
+    void append(const UnknownRow& by_unknowns, double times, Row& row) const;
 
-    Eigen::Index start_of(std::size_t interval) const {
-        return 2 * static_cast<Eigen::Index>(interval);
-    }
-    Eigen::Index time_of(std::size_t impact) const {
-        return 2 * intervals_ + static_cast<Eigen::Index>(impact);
-    }
-    Eigen::Index unknown_at(std::size_t unknown) const {
-        return size_ - static_cast<Eigen::Index>(unknowns - unknown);
-    }
-    Eigen::Index unknown_at(Unknown unknown) const {
-        return unknown_at(static_cast<std::size_t>(unknown));
-    }
+    // Places of the unknowns.
+    Eigen::Index start_of(Eigen::Index interval) const { return 2 * interval; }
+    Eigen::Index time_of(Eigen::Index impact) const { return 2 * intervals_ + impact; }
+    Eigen::Index unknown_at(Eigen::Index u) const { return 3 * intervals_ - 1 + u; }
+    Eigen::Index unknown_at(Unknown u) const { return unknown_at(static_cast<Eigen::Index>(u)); }
     std::vector<OfInterval>& own() { return own_; }
 
     /// Sets step and errors. Call once; false if the matrix has no factorisation.
     bool solve();
 
-    /// Collects sums with this many sizes of effects from now on.
+    /// Sums with the derivatives by the sizes of effects outside the model (model_effects.cpp).
+    struct EffectSums {
+        Eigen::MatrixXd mixed, squares, solved;  ///< B, R^T W R (lower part), N^-1 B
+        Eigen::VectorXd right;                   ///< R^T W r
+    } effects;
+    /// Collects them for this many sizes from now on.
     void collect_effects(Eigen::Index sizes);
-    EffectSums effects;
 
     Eigen::VectorXd step;             ///< of all unknowns
     UnknownValues errors{};           ///< standard errors of the record's unknowns
@@ -98,8 +89,10 @@ struct FittedSensor {
     double scale = infinity;  ///< of the residuals, for their weights
 };
 
+class EffectDerivatives;
+
 struct JointFitState : JointFitInput {
-    const std::vector<Candidate>& borders;  ///< between the intervals of `fit`
+    const Candidates& borders;  ///< between the intervals of `fit`
     UnknownValues prior_mean = given_unknowns(parameters);
     UnknownValues prior = priors(parameters);  ///< standard deviations
     FittedSensor x{record.x, statistics.x.bad, statistics.x},
@@ -111,9 +104,9 @@ struct JointFitState : JointFitInput {
     /// The motion is still zero, so only unknowns that are linear in it are fitted.
     bool is_first_step = false;
     JointEquations equations{0, 0};  ///< of the current step
-    std::vector<JointEquations::OfInterval> interval_equations =
-        {};                                ///< of the last step that was solved
-    std::vector<double> time_errors = {};  ///< of the last step that was solved
+    // Of the last step that was solved:
+    std::vector<JointEquations::OfInterval> interval_equations = {};
+    std::vector<double> time_errors = {};
     JointFit fit = {};
     EffectDerivatives* effects = nullptr;  ///< in the step that tests effects outside the model
 
@@ -131,15 +124,6 @@ struct JointFitState : JointFitInput {
     /// Inverse variance, reduced for outliers (Huber); `scale`: standard deviation of the
     /// residuals. In the first step the residuals are those of a motion of zero, and count in full.
     double weight(double left, double noise, double scale) const;
-};
-
-/// An impact between two intervals: the motion before it is the end of the first one.
-struct FittedBorder : FittedImpact {
-    bool flies;  ///< an impact without a sticking phase after it
-    /// Derivative of x_dot_before by the first interval's start.
-    Eigen::RowVector2d before_by_start;
-    UnknownRow before_by_unknowns;
-    Eigen::VectorXd before_by_effects = {};  ///< with JointFitState::effects
 };
 
 /// Calls visit(k, i, motion) for each of ascending times, with the MotionRow of interval i at
@@ -162,18 +146,47 @@ void each_motion(
     }
 }
 
-/// Sets the equations of the next step, with all samples, borders, priors and given forcing.
-/// Updates the residuals.
+/// Sets the equations of the next step (joint_fit_equations.cpp) and updates the residuals.
 void set_equations(JointFitState& state);
 
-/// Adds the equations of the free mass: it flies with constant velocity from contact to contact,
-/// where y = x - side b (43); each impact conserves x' + epsilon y' (36) and has the R of its wall
-/// (4). They couple the times of neighbouring impacts.
-void add_mass_flights(JointFitState& state, const std::vector<FittedBorder>& borders);
+/// Derivatives of samples and states by the sizes of effects outside the model, with the
+/// mass.
+class EffectDerivatives {
+public:
+    explicit EffectDerivatives(const JointFitState& state);
 
-/// Sets JointFit::impacts: the motion on both sides of each border.
-void evaluate_impacts(JointFitState& state);
-/// Sets noise and misfit of each sensor, and scales the standard errors by the misfit.
-void evaluate_residual(JointFitState& state);
+    /// Columns of the sizes of one effect.
+    struct Columns {
+        Effect effect;
+        Eigen::Index first, count;
+    };
+    const std::vector<Columns>& columns() const { return columns_; }
+    Eigen::Index size() const { return row_.size(); }
+    /// First column of an effect; -1 if it is not tested.
+    Eigen::Index first_of(Effect effect) const;
+
+    /// Of the displacement, or the acceleration, at sample time tau; `row`: motion of interval i.
+    const Eigen::VectorXd& sample(bool of_x, std::size_t i, double tau, const MotionRow& row);
+    /// Of x, x' or x'' of the motion of interval i at tau.
+    const Eigen::VectorXd& motion(
+        std::size_t i, double tau, const MotionRow& row, double OscillatorMotion::* member);
+    /// Of y' at the start (+1) or the end (-1) of the flight between borders p and p + 1.
+    double flight(std::size_t p, double sign) const;
+    double mean_speed = 0;  ///< mean of |x' - y'| before the impacts
+
+private:
+    void slow(double u, Eigen::Index first, double factor);
+
+    const JointFitState& state_;
+    std::vector<Columns> columns_;
+    double corner_;  ///< of the accelerometer's high pass, where its derivative is taken
+    std::size_t interval_;
+    std::array<Flow, 2> harmonics_;  ///< at 2 Omega and 3 Omega
+    std::array<std::optional<FollowedFlow<2>>, 2> motions_;
+    Eigen::VectorXd row_;
+};
+
+/// Tests the effects outside the model and widens the fit's errors by the changes they would cause.
+void test_effects(JointFitState& state);
 
 }  // namespace vines

@@ -44,12 +44,13 @@ struct Candidate {
     Border border = Border::impact;
     bool sticks = false;  ///< the mass sticks to the wall until the next border, a release
     int side = 0;         ///< wall of the impact, or that the mass leaves; 0: unknown, or a gap
-    /// Whether the run of the identified system predicts it (hidden_contacts.hpp), with its wall:
-    /// it need not be visible.
+    /// Predicted by a run of the identified system, with its wall: it need not be visible.
     bool is_predicted = false;
 
     bool is_impact() const { return border == Border::impact; }
 };
+
+using Candidates = std::vector<Candidate>;
 
 /// Fitted motion before and after an impact or another border; without the mass.
 struct FittedImpact : IdentifiedImpact {
@@ -67,7 +68,7 @@ struct FittedImpact : IdentifiedImpact {
     bool is_impact() const { return border == Border::impact; }
 };
 
-/// Effects outside the model that a record can show (model_effects.hpp).
+/// Effects outside the model that a record can show (model_effects.cpp).
 enum class Effect {
     second_harmonic,      ///< forcing at 2 Omega
     third_harmonic,       ///< forcing at 3 Omega
@@ -94,19 +95,18 @@ struct GivenUncertainty {
 /// An effect that the residual shows.
 struct FittedEffect {
     Effect effect;
-    double size, error;  ///< size: norm of its unknowns, with its standard error
+    double size;  ///< norm of its unknowns
     /// Change of the unknowns that including the effect would cause; part of their errors.
     UnknownValues change;
 };
 
 /// Residual of one sensor; empty without it.
 struct SensorResidual {
-    /// Residual of each sample: displacements in the sensor's own scale, accelerations with pulses
-    /// and noise.
+    /// Of each sample: displacements in the sensor's own scale, accelerations with their pulses.
     std::vector<double> left;
     double noise = 0;  ///< its standard deviation; NaN without the sensor
-    /// Its standard deviation divided by that of its part unrelated to the motion
-    /// (joint_fit_residual.cpp): 1 if the fit explains everything. NaN without the sensor.
+    /// Its standard deviation over that of its part unrelated to the motion (joint_fit.cpp): 1 if
+    /// the fit explains everything. NaN without the sensor.
     double misfit = 0;
 };
 
@@ -145,16 +145,14 @@ struct JointFitInput {
     GivenUncertainty uncertainty = {};
 };
 
-/// `borders`: in order, within the record; JointFit::impacts has an entry for each. `values`:
-/// initial values. `before`: a fit of the same borders whose motion is the initial one; null: start
-/// at rest.
+/// `borders`: in order, within the record; JointFit::impacts has an entry for each. `values`, and
+/// the motion `before`, a fit of the same borders, are the initial ones; null: from rest.
 JointFit fit_jointly(
-    const JointFitInput& input, const std::vector<Candidate>& borders, const UnknownValues& values,
+    const JointFitInput& input, const Candidates& borders, const UnknownValues& values,
     const JointFit* before);
 
-/// The Omega within 5 % of the given one at which a forcing of constant amplitude and phase
-/// explains the record best.
-double scanned_frequency(const JointFitInput& input, const std::vector<Candidate>& borders);
+/// The Omega within 5 % of the given one at which a constant forcing explains the record best.
+double scanned_frequency(const JointFitInput& input, const Candidates& borders);
 
 /// Whether the residuals are no larger than the sensors' noise.
 bool explains(const JointFit& fit);

@@ -1,16 +1,14 @@
 // Impacts in a displacement: kinks, where its slope jumps.
 //
 // One motion is fitted to an interval by least squares; then a kink is tried between all
-// neighbouring points. The kink that reduces the sum of squares most is accepted if the reduction
-// is significant. All trials share the sums over the later points, so that each costs only a few
-// products.
-#include "core/measurement/candidates.hpp"
-
+// neighbouring points, with shared sums over the later points. The kink that reduces the sum of
+// squares most is accepted if the reduction is significant.
 #include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
 #include <utility>
 
+#include "core/measurement/search.hpp"
 #include "core/motion/elementary.hpp"
 
 namespace vines {
@@ -19,13 +17,11 @@ namespace {
 
 // Samples are averaged to this many points; the joint fit refines the time of a kink.
 constexpr std::size_t most_kink_points = 240, fewest_kink_points = 10;
-// Fewest points on either side of a kink.
-constexpr std::size_t points_beside_kink = 3;
-// Limit on the sum of squares of n points, in variances, below which an interval is not searched:
-// white noise yields n +- sqrt(2 n), and a little more if estimated from few samples.
+constexpr std::size_t points_beside_kink = 3;  // fewest points on either side of a kink
+// Sum of squares of n points, in variances, below which an interval is not searched: white noise
+// yields n +- sqrt(2 n), and a little more if estimated from few samples.
 double unsuspicious(std::size_t n) { return 1.3 * static_cast<double>(n) + 10; }
-// A kink must explain this many variances, and this fraction of the residual: other deviations are
-// not kinks.
+// A kink must explain this many variances, and this fraction of the residual.
 constexpr double kink_improvement = 49, kink_share = 0.3;
 
 /// Average of consecutive samples.
@@ -75,8 +71,7 @@ struct SmoothMotionBasis {
         row(4) = 1;
         return row;
     }
-    /// Free motion with x = 0 and x' = 1 at tau, as a combination of the first two; divided by
-    /// their Wronskian.
+    /// Free motion with x = 0 and x' = 1 at tau, as a combination of the first two.
     Eigen::Vector2d kink(double tau) const {
         const Transfer t = flow.transfer(std::max(0.0, tau - start));
         return Eigen::Vector2d(-t.a21, t.a22) / (t.a22 * t.a11 - t.a12 * t.a21);
@@ -90,6 +85,54 @@ struct LaterSums {
         Eigen::Matrix<double, SmoothMotionBasis::most, 2>::Zero();
     Eigen::Vector2d g = Eigen::Vector2d::Zero();
 };
+
+// Length of a search window, too short for many kinks, and distance between windows, in tau.
+constexpr double window = 4, window_hop = 1;
+// Each round finds kinks that stronger neighbours concealed.
+constexpr int most_rounds_of_kinks = 10;
+
+using TimeSpan = std::pair<double, double>;
+
+void see_in_windows(
+    const ImpactSearch& s, const Flow& flow, const TimeSpan& interval, Candidates& seen) {
+    const auto [from, to] = interval;
+    for (double begin = from; begin < to; begin += window_hop) {
+        s.progress.look();
+        const double end = std::min(to, begin + window);
+        const auto missed = find_kink(
+            {s.record, s.record.x, s.statistics.x.bad, s.statistics.x.noise, 0, begin, end}, flow,
+            true);
+        if (missed) seen.push_back(*missed);
+        if (end == to) return;
+    }
+}
+
+/// Adds the best of kinks near each other; false if there is none.
+bool add_best(Candidates seen, Candidates& candidates) {
+    std::ranges::sort(seen, std::greater(), &Candidate::improvement);
+    std::vector<double> added;  // in order of time
+    for (const Candidate& m : seen) {
+        const auto after = std::ranges::lower_bound(added, m.tau);
+        if ((after != added.end() && *after - m.tau < 0.5 * window) ||
+            (after != added.begin() && m.tau - *(after - 1) < 0.5 * window))
+            continue;
+        added.insert(after, m.tau);
+        candidates.push_back(m);
+    }
+    return !added.empty();
+}
+
+/// Intervals between candidates, reduced by the largest delay of the displacement.
+std::vector<TimeSpan> intervals_of(const Candidates& candidates, const MeasuredRecord& r) {
+    std::vector<TimeSpan> intervals;
+    double from = r.tau.front();
+    for (const Candidate& c : candidates) {
+        intervals.emplace_back(from, c.tau - largest_delay);
+        from = c.tau + largest_delay;
+    }
+    intervals.emplace_back(from, r.tau.back());
+    return intervals;
+}
 
 }  // namespace
 
@@ -138,75 +181,20 @@ std::optional<Candidate> find_kink(const IntervalSamples& in, const Flow& flow, 
     return best;
 }
 
-namespace {
-
-// Length of a search window and distance between windows, in tau: long enough to show a kink, too
-// short for many.
-constexpr double window = 4, window_hop = 1;
-// Each round finds kinks that stronger neighbours concealed.
-constexpr int most_rounds_of_kinks = 10;
-
-using TimeSpan = std::pair<double, double>;
-
-void see_in_windows(
-    const ImpactSearchInput& in, const Flow& flow, const TimeSpan& interval,
-    std::vector<Candidate>& seen) {
-    const auto [from, to] = interval;
-    for (double begin = from; begin < to; begin += window_hop) {
-        in.progress.look();
-        const double end = std::min(to, begin + window);
-        const auto missed = find_kink(
-            {in.record, in.record.x, in.statistics.x.bad, in.statistics.x.noise, 0, begin, end},
-            flow, true);
-        if (missed) seen.push_back(*missed);
-        if (end == to) return;
-    }
-}
-
-/// Adds the best of kinks near each other; false if there is none.
-bool add_best(std::vector<Candidate> seen, std::vector<Candidate>& candidates) {
-    std::ranges::sort(seen, std::greater(), &Candidate::improvement);
-    std::vector<double> added;  // in order of time
-    for (const Candidate& m : seen) {
-        const auto after = std::ranges::lower_bound(added, m.tau);
-        if ((after != added.end() && *after - m.tau < 0.5 * window) ||
-            (after != added.begin() && m.tau - *(after - 1) < 0.5 * window))
-            continue;
-        added.insert(after, m.tau);
-        candidates.push_back(m);
-    }
-    return !added.empty();
-}
-
-/// Intervals between candidates, reduced by the largest delay of the displacement.
-std::vector<TimeSpan> intervals_of(
-    const std::vector<Candidate>& candidates, const MeasuredRecord& r) {
-    std::vector<TimeSpan> intervals;
-    double from = r.tau.front();
-    for (const Candidate& c : candidates) {
-        intervals.emplace_back(from, c.tau - largest_delay);
-        from = c.tau + largest_delay;
-    }
-    intervals.emplace_back(from, r.tau.back());
-    return intervals;
-}
-
-}  // namespace
-
-void add_kinks(const ImpactSearchInput& in, std::vector<Candidate>& candidates) {
-    if (in.record.x.empty()) return;
-    const Flow flow(1, 2 * in.parameters.zeta(), 1, in.parameters.Omega);
+void add_kinks(ImpactSearch& s) {
+    if (s.record.x.empty()) return;
+    const Flow flow(1, 2 * s.parameters.zeta(), 1, s.parameters.Omega);
     std::vector<TimeSpan> looked_at;
     for (int round = 0; round < most_rounds_of_kinks; ++round) {
-        std::ranges::sort(candidates, {}, &Candidate::tau);
-        std::vector<TimeSpan> intervals = intervals_of(candidates, in.record);
-        std::vector<Candidate> seen;
+        std::ranges::sort(s.candidates, {}, &Candidate::tau);
+        std::vector<TimeSpan> intervals = intervals_of(s.candidates, s.record);
+        Candidates seen;
         for (const TimeSpan& i : intervals)
-            if (!std::ranges::binary_search(looked_at, i)) see_in_windows(in, flow, i, seen);
+            if (!std::ranges::binary_search(looked_at, i)) see_in_windows(s, flow, i, seen);
         looked_at = std::move(intervals);
-        if (!add_best(std::move(seen), candidates)) return;
+        if (!add_best(std::move(seen), s.candidates)) return;
     }
-    std::ranges::sort(candidates, {}, &Candidate::tau);
+    std::ranges::sort(s.candidates, {}, &Candidate::tau);
 }
 
 }  // namespace vines

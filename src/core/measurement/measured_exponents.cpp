@@ -8,61 +8,45 @@
 #include <numeric>
 
 #include "core/measurement/robust.hpp"
-#include "core/measures/energy.hpp"
 #include "core/motion/elementary.hpp"
 
 namespace vines {
 
 namespace {
 
-// The effect of the slow state is fitted to growth over this much tau (about half a modulation),
-// and over at most this fraction of the record.
+// The slow state's effect is fitted to growth over this tau and at most this part of the record.
 constexpr double difference_tau = 50, most_of_difference = 1.0 / 14;
-// Prior for that effect on the sum of logarithms when the slow state changes by the whole
-// amplitude. A periodic motion determines no effect, and the prior keeps it near zero.
+// Prior for that effect when the slow state changes by the whole amplitude: a periodic motion
+// determines none.
 constexpr double largest_part = 30;
 // Lag window of the spectrum (Tukey-Hanning), as a fraction of the record: steps further apart are
-// taken as independent. In 200 records of 20 s of Table 4's oscillator the 90 % intervals contain
-// the exponent in 93 % of the cases at b = 15 mm with a width of .035, in 84 % at 13 mm, and in 92
-// to 95 % at 11, 18 and 20 mm (tests/core/measurement).
+// taken as independent. docs/physics.md has how often the intervals contain the exponent.
 constexpr double dependent = 0.06;
-// The estimate, which can be negative, counts as at least this fraction of the variance of
-// independent steps.
+// Lower bound, over the variance of independent steps: the estimate can be negative.
 constexpr double least_variance = 0.02;
-// Half width of a 90 % interval in standard errors: Student's t with the 22 degrees of freedom of
-// that window.
+// Half width of a 90 % interval in standard errors: Student's t with that window's 22 degrees.
 constexpr double student = 1.717;
-// A record of one or two modulations does not show how much later ones differ: the interval is
-// twice as wide for a record of this length, and the excess falls with the cube of the length.
+// For a record of this length the interval is twice as wide, since one or two modulations do not
+// show how much later ones differ; the excess falls with the cube of the length.
 constexpr double short_tau = 250;
 
 using SlowState = Eigen::Vector2d;
 
-struct GrowthWithStates {
-    GrowthSteps steps;
-    std::vector<SlowState> change;  ///< change of the slow state in each step
-};
-
-std::size_t steps_of_difference(const GrowthSteps& steps) {
-    const auto n = static_cast<double>(steps.duration.size());
-    const double duration = std::accumulate(steps.duration.begin(), steps.duration.end(), 0.0);
-    return static_cast<std::size_t>(
-        std::max(1.0, n * std::min(most_of_difference, difference_tau / duration)));
-}
-
-/// Effect of the slow state on the sum, from differences over `apart` steps.
-SlowState part_of_state(const GrowthWithStates& g, std::size_t apart, double slope) {
+/// Effect of the slow state on the sum, from differences over `apart` steps, with its `change`.
+SlowState part_of_state(
+    const GrowthSteps& steps, const std::vector<SlowState>& change, std::size_t apart,
+    double slope) {
     Eigen::Matrix3d N = Eigen::Matrix3d::Zero();
     Eigen::Vector3d right = Eigen::Vector3d::Zero();
     double squares = 0;
-    const std::size_t differences = g.change.size() - apart + 1;
+    const std::size_t differences = change.size() - apart + 1;
     for (std::size_t i = 0; i < differences; ++i) {
         Eigen::Vector3d row = Eigen::Vector3d::Zero();
         double grown = 0;
         for (std::size_t k = i; k < i + apart; ++k) {
-            row(0) += g.steps.duration[k];
-            row.tail<2>() += g.change[k];
-            grown += g.steps.log[k] - slope * g.steps.duration[k];
+            row(0) += steps.duration[k];
+            row.tail<2>() += change[k];
+            grown += steps.log[k] - slope * steps.duration[k];
         }
         N += row * row.transpose();
         right += row * grown;
@@ -75,31 +59,27 @@ SlowState part_of_state(const GrowthWithStates& g, std::size_t apart, double slo
     return by.allFinite() ? SlowState(by.tail<2>()) : SlowState::Zero();
 }
 
-/// Variance of the sum of correlated steps `off`, whose mean is zero, after `fitted` degrees of
-/// freedom were fitted.
+/// Variance of the sum of correlated steps of mean zero, after a fit of so many degrees of freedom.
 double variance_with_fit(const std::vector<double>& off, std::size_t fitted) {
-    const auto n = static_cast<double>(off.size());
-    const auto lags = std::max<std::size_t>(1, static_cast<std::size_t>(dependent * n));
-    const auto covariance = [&off](std::size_t lag) {
-        return std::inner_product(
-            off.begin() + static_cast<std::ptrdiff_t>(lag), off.end(), off.begin(), 0.0);
+    const double n = count_of(off);
+    const int lags = std::max(1, static_cast<int>(dependent * n));
+    const auto covariance = [&off](int lag) {
+        return std::inner_product(off.begin() + lag, off.end(), off.begin(), 0.0);
     };
     const double independent = covariance(0);
     double variance = independent;
-    for (std::size_t lag = 1; lag <= lags; ++lag)
-        variance +=
-            (1 + elementary::cos(
-                     std::numbers::pi * static_cast<double>(lag) / static_cast<double>(lags))) *
-            covariance(lag);
+    for (int lag = 1; lag <= lags; ++lag)
+        variance += (1 + elementary::cos(std::numbers::pi * lag / lags)) * covariance(lag);
     // Corrects for the fitted part and for the removed mean.
     return std::max(variance, least_variance * independent) / (1 - 0.75 * dependent) /
            (1 - static_cast<double>(fitted) / n);
 }
 
+// Tolerance of a flight: of its speed, and of the distance between the walls.
+constexpr double flight_tolerance = 0.1;
 constexpr double hiding_fraction = 0.1;  // fraction of a typical flight
 
-// A record is representative from the first number of impacts on; from the second on if its jumps
-// are alike.
+// Impacts of a representative record, and of one whose jumps are alike.
 constexpr std::size_t enough_impacts = 200, enough_if_alike = 80;
 // Tolerance of the jumps at the fewest impacts, and its increase with each further impact.
 constexpr double alike = 0.02, alike_per_impact = 0.001;
@@ -108,20 +88,11 @@ constexpr double nine_in_ten = 0.9;
 // Fewest impacts that show a decay, and the factor lost from the first quarter to the last.
 constexpr std::size_t fewest_of_decay = 20;
 constexpr double least_fall = 2;
-// A forcing whose response is below this fraction of the motion counts as none: a stopped shaker
-// hums, and a fit always finds a small forcing.
-constexpr double negligible_forcing = 0.05;
-// Tolerated false impacts in a quarter.
-constexpr std::size_t false_ones = 1;
-
-/// Flows that carry deviations between impacts.
-struct DeviationFlows {
-    Flow free, stuck;
-};
+constexpr std::size_t false_ones = 1;  // tolerated false impacts in a quarter
 
 /// Appends the transfer matrix from the previous impact to impact i; the flight must be known.
 void append(
-    const Parameters& p, const DeviationFlows& flows, const IdentifiedImpact& before,
+    const Parameters& p, const Flow& free, const Flow& stuck, const IdentifiedImpact& before,
     const IdentifiedImpact& i, TransferProduct& product) {
     Impact impact{};
     impact.side = i.side;
@@ -130,16 +101,28 @@ void append(
     impact.x_ddot_before = i.x_ddot_before;
     impact.y_ddot_before = p.friction * i.side;
     const double duration = i.tau - before.tau,
-                 stuck = before.release ? before.release->tau - before.tau : 0;
-    const Leg legs[] = {
-        leg_of(flows.stuck, stuck, true), leg_of(flows.free, duration - stuck, false)};
+                 sticking = before.release ? before.release->tau - before.tau : 0;
+    const Leg legs[] = {leg_of(stuck, sticking, true), leg_of(free, duration - sticking, false)};
     product.append(
         std::span(legs).subspan(before.release ? 0 : 1), saltation(p, impact),
         product.end_tau() + duration);
 }
 
-std::vector<SlowState> slow_states(
-    const Parameters& p, const std::vector<IdentifiedImpact>& impacts) {
+/// Whether the mass can have flown freely from one impact to the next: with one velocity, from wall
+/// to wall. If not, an impact between them is missing, or the mass stuck to the wall.
+bool flight_fits(
+    const Parameters& p, const IdentifiedImpact& from, const IdentifiedImpact& to,
+    double typical_speed) {
+    const Release leaves = from.release.value_or(Release{from.tau, from.x, from.y_dot_after});
+    const double duration = to.tau - leaves.tau,
+                 way = to.x - to.side * p.b - (leaves.x - from.side * p.b),
+                 flown = 0.5 * (leaves.x_dot + to.y_dot_before) * duration,
+                 braked = p.friction * duration;
+    return std::abs(to.y_dot_before - leaves.x_dot) < flight_tolerance * typical_speed + braked &&
+           std::abs(way - flown) < flight_tolerance * p.b + 0.25 * braked * duration;
+}
+
+std::vector<SlowState> slow_states(const Parameters& p, const IdentifiedImpacts& impacts) {
     std::vector<SlowState> states;
     for (const IdentifiedImpact& i : impacts) {
         const double sin = elementary::sin(p.Omega * i.tau), cos = elementary::cos(p.Omega * i.tau);
@@ -156,9 +139,9 @@ std::vector<SlowState> slow_states(
 /// second half never agree within 2 %, in windows of 150 never within 9 %, while those of a
 /// periodic motion soon do (nine in ten jumps, relative to the typical jump at their wall). From
 /// six b between 10.8 and 13 mm, about 30,000 windows of 80 to 200 impacts.
-bool is_representative(const std::vector<IdentifiedImpact>& impacts) {
-    const auto known = static_cast<std::size_t>(
-        std::ranges::count_if(impacts, &IdentifiedImpact::is_good_and_visible));
+bool is_representative(const IdentifiedImpacts& impacts) {
+    const std::size_t known =
+        std::ranges::count_if(impacts, &IdentifiedImpact::is_good_and_visible);
     if (known >= enough_impacts || known < enough_if_alike) return known >= enough_impacts;
     std::vector<double> jumps[2], off;
     for (std::size_t k = impacts.size() / 2; k < impacts.size(); ++k)
@@ -173,8 +156,7 @@ bool is_representative(const std::vector<IdentifiedImpact>& impacts) {
 }  // namespace
 
 Continuity continuity_of(
-    const Parameters& p, const std::vector<IdentifiedImpact>& impacts,
-    const std::vector<TimeGap>& gaps) {
+    const Parameters& p, const IdentifiedImpacts& impacts, std::vector<TimeGap> gaps) {
     Continuity c;
     std::vector<double> flights, speeds;
     for (std::size_t i = 1; i < impacts.size(); ++i) {
@@ -183,11 +165,9 @@ Continuity continuity_of(
         speeds.push_back(std::abs(impacts[i].y_dot_before));
     }
     const double typical_flight = median(flights), typical_speed = median(speeds);
-    const auto over_gap = [&](double from, double to) {
-        return std::ranges::any_of(gaps, [&](const TimeGap& g) {
-            return g.to - g.from > hiding_fraction * typical_flight && g.overlaps(from, to);
-        });
-    };
+    std::erase_if(gaps, [&](const TimeGap& g) {
+        return !(g.to - g.from > hiding_fraction * typical_flight);
+    });
     for (std::size_t i = 0; i < impacts.size(); ++i) {
         if (impacts[i].is_left_out()) {
             ++c.left_out;
@@ -195,22 +175,20 @@ Continuity continuity_of(
         }
         const bool follows = i > 0 && !impacts[i - 1].is_left_out();
         const bool known = follows && flight_fits(p, impacts[i - 1], impacts[i], typical_speed) &&
-                           !over_gap(impacts[i - 1].tau, impacts[i].tau);
+                           !overlaps_any(gaps, impacts[i - 1].tau, impacts[i].tau);
         if (known && !c.stretches.empty() && c.stretches.back().last == i - 1)
             c.stretches.back().last = i;
         else if (known) c.stretches.push_back({i - 1, i});
         else if (follows) ++c.missing;
     }
-    const long seen =
-        std::ranges::count_if(impacts, [](const IdentifiedImpact& i) { return !i.is_hidden; });
-    if (seen > 0)
-        c.share =
-            static_cast<double>(c.left_out + c.missing) / static_cast<double>(seen + c.missing);
+    const auto seen = std::ranges::count(impacts, false, &IdentifiedImpact::is_hidden);
+    const auto lost = static_cast<double>(c.left_out + c.missing);
+    if (seen > 0) c.share = lost / static_cast<double>(seen + c.missing);
     return c;
 }
 
 MeasuredExponents::MeasuredExponents(
-    const Parameters& p, const UnknownValues& v, const std::vector<IdentifiedImpact>& impacts,
+    const Parameters& p, const UnknownValues& v, const IdentifiedImpacts& impacts,
     const std::vector<KnownStretch>& stretches, const ExponentOptions& o)
     : zeta_(0.5 * v[Unknown::damping]),
       all_(p.epsilon, {.qr = true, .history = o.history}),
@@ -219,7 +197,7 @@ MeasuredExponents::MeasuredExponents(
           {.eigenvalues = o.eigenvalues, .raw_product = o.raw_product, .history = o.history}) {
     // The growth of deviations does not depend on the forcing.
     const double k = v[Unknown::stiffness], c = v[Unknown::damping], mass = 1 + p.epsilon;
-    const DeviationFlows flows{{k, c, 0, p.Omega}, {k / mass, c / mass, 0, p.Omega}};
+    const Flow free(k, c, 0, p.Omega), stuck(k / mass, c / mass, 0, p.Omega);
     const std::vector<SlowState> states = slow_states(p, impacts);
     SlowState slow = SlowState::Zero();
     for (const KnownStretch& s : stretches) {
@@ -227,7 +205,7 @@ MeasuredExponents::MeasuredExponents(
         if (starts_.empty()) all_.start(tau);
         starts_.push_back({starts_.empty() ? tau : all_.end_tau(), tau});
         for (std::size_t i = s.first + 1; i <= s.last; ++i) {
-            append(p, flows, impacts[i - 1], impacts[i], all_);
+            append(p, free, stuck, impacts[i - 1], impacts[i], all_);
             slow += states[i] - states[i - 1];
             slow_.push_back({all_.end_tau(), slow});
         }
@@ -238,12 +216,11 @@ MeasuredExponents::MeasuredExponents(
     if (longest == stretches.end()) return;
     longest_.start(impacts[longest->first].tau);
     for (std::size_t i = longest->first + 1; i <= longest->last; ++i)
-        append(p, flows, impacts[i - 1], impacts[i], longest_);
+        append(p, free, stuck, impacts[i - 1], impacts[i], longest_);
 }
 
 double MeasuredExponents::moment(double clock) const {
-    // Where one stretch ends and the next starts, the clock shows the same time: the end's is
-    // returned.
+    // Between two stretches the clock shows one time: the end's is returned.
     auto after = std::ranges::lower_bound(starts_, clock, {}, &StretchStart::clock);
     if (after != starts_.begin()) --after;
     return after == starts_.end() ? nan : after->tau + (clock - after->clock);
@@ -252,32 +229,31 @@ double MeasuredExponents::moment(double clock) const {
 MeasuredSlope MeasuredExponents::slope() const {
     const ExponentHistory& h = all_.qr_history();
     const std::size_t stride = h.coarse_stride(), entries = (h.tau.size() + stride - 1) / stride;
-    GrowthWithStates g{growth_steps(h, all_.start_tau(), stride), {}};
-    const double plain = slope_of(g.steps);
+    GrowthSteps steps = growth_steps(h, all_.start_tau(), stride);
+    const double plain = slope_of(steps);
     if (std::isnan(plain)) return {nan, nan, nan};
     const auto state_at = [&](std::size_t entry) -> SlowState {
         const auto at = std::ranges::lower_bound(slow_, h.tau[entry], {}, &SlowAt::clock);
         return at == slow_.end() ? SlowState::Zero() : at->state;
     };
-    for (std::size_t k = entries - g.steps.log.size(); k < entries; ++k)
-        g.change.push_back(state_at(k * stride) - state_at((k - 1) * stride));
-    const std::size_t n = g.change.size(), apart = steps_of_difference(g.steps);
-    const SlowState by = part_of_state(g, apart, plain);
-    for (std::size_t i = 0; i < n; ++i) g.steps.log[i] -= by.dot(g.change[i]);
-    const double slope = slope_of(g.steps);
-    double duration = 0;
+    std::vector<SlowState> change;
+    for (std::size_t k = entries - steps.log.size(); k < entries; ++k)
+        change.push_back(state_at(k * stride) - state_at((k - 1) * stride));
+    const double duration = std::accumulate(steps.duration.begin(), steps.duration.end(), 0.0),
+                 fraction = std::min(most_of_difference, difference_tau / duration);
+    const auto apart = static_cast<std::size_t>(std::max(1.0, count_of(change) * fraction));
+    const SlowState by = part_of_state(steps, change, apart, plain);
+    for (std::size_t i = 0; i < change.size(); ++i) steps.log[i] -= by.dot(change[i]);
+    const double slope = slope_of(steps);
     std::vector<double> off;
-    for (std::size_t i = 0; i < n; ++i) {
-        duration += g.steps.duration[i];
-        off.push_back(g.steps.log[i] - slope * g.steps.duration[i]);
-    }
-    const double brief = short_tau / duration, half = (1 + brief * brief * brief) * student *
-                                                      std::sqrt(variance_with_fit(off, apart)) /
-                                                      duration;
+    for (std::size_t i = 0; i < change.size(); ++i)
+        off.push_back(steps.log[i] - slope * steps.duration[i]);
+    const double brief = short_tau / duration, error = std::sqrt(variance_with_fit(off, apart)),
+                 half = (1 + brief * brief * brief) * student * error / duration;
     return {slope, slope - half, slope + half};
 }
 
-bool weakens(const std::vector<IdentifiedImpact>& impacts) {
+bool weakens(const IdentifiedImpacts& impacts) {
     if (impacts.size() < fewest_of_decay) return false;
     // A chatter is represented by its first impact; one impact can be false.
     std::array<std::vector<double>, 4> jumps;
@@ -297,18 +273,8 @@ bool weakens(const std::vector<IdentifiedImpact>& impacts) {
            largest.back() > 0 && largest.back() * least_fall < largest.front();
 }
 
-bool is_unforced(const Parameters& p, const std::vector<IdentifiedImpact>& impacts) {
-    if (p.G == 0) return true;
-    const double quarter = 0.25 * (impacts.back().tau - impacts.front().tau);
-    double last = 0;
-    for (const IdentifiedImpact& i : impacts)
-        if (!i.is_left_out() && i.tau >= impacts.back().tau - quarter)
-            last = std::max(last, elementary::hypot(i.x, i.x_dot_after));
-    return free_amplitude(p).value_or(infinity) < negligible_forcing * last;
-}
-
 IdentifiedExponents judge_exponents(
-    const MeasuredExponents& exponents, const std::vector<IdentifiedImpact>& impacts) {
+    const MeasuredExponents& exponents, const IdentifiedImpacts& impacts) {
     IdentifiedExponents e{exponents.slope(), Verdict::not_decided};
     if (e.slope.low > exponents.zeta()) e.verdict = Verdict::chaotic;
     if (e.slope.high < exponents.zeta() && is_representative(impacts)) e.verdict = Verdict::regular;

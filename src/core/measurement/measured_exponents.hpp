@@ -1,11 +1,9 @@
 // Lyapunov exponents of a sequence of impacts with gaps.
 //
-// The transfer matrix of a stretch is known only if every impact in it is known, so the impacts are
-// divided into known stretches. `qr` adds the growth over all stretches and divides by their total
-// duration; the deviations are carried across gaps, because the growing directions change little
-// from impact to impact. (With 10 % of the impacts missing lambda1 is 2 % too small; restarted
-// after each gap it would be 50 % too large.) No matrix product across a gap exists: `eigenvalues`
-// and `raw_product` use the longest stretch.
+// Transfer matrices are known only where every impact is known, in stretches. `qr` adds the growth
+// over all stretches and divides by their total duration; the deviations are carried across gaps,
+// because the growing directions change little from impact to impact (docs/numerics.md). No matrix
+// product across a gap exists: `eigenvalues` and `raw_product` use the longest stretch.
 #pragma once
 
 #include <Eigen/Core>
@@ -20,12 +18,9 @@
 namespace vines {
 
 /// Growth rate of a measured sum of logarithms in the long run, with a confidence interval.
-///
-/// The growth follows the amplitude modulation of the oscillator, so a short record shows more or
-/// less of it depending on the part of a modulation in which it begins and ends. That part is a
-/// function of the slow state at both ends: it is fitted to the growth over about half a modulation
-/// and subtracted. The remaining steps are nearly independent; their remaining correlation is taken
-/// from their spectrum at frequency zero.
+/// The growth follows the amplitude modulation of the oscillator, so that of a short record depends
+/// on the slow state at both ends: this part is fitted to the growth over about half a modulation
+/// and subtracted. The correlation of the remaining steps follows from their spectrum at zero.
 struct MeasuredSlope {
     double value;      ///< per unit of tau
     double low, high;  ///< 90 % interval; NaN with too few steps
@@ -50,16 +45,14 @@ struct Continuity {
 };
 /// Only gaps longer than a tenth of a typical flight count: an impact could hide in them.
 Continuity continuity_of(
-    const Parameters& parameters, const std::vector<IdentifiedImpact>& impacts,
-    const std::vector<TimeGap>& gaps);
+    const Parameters& parameters, const IdentifiedImpacts& impacts, std::vector<TimeGap> gaps);
 
 class MeasuredExponents {
 public:
     /// `values`: stiffness and damping of the oscillator, in tau of the given omega0.
     MeasuredExponents(
-        const Parameters& parameters, const UnknownValues& values,
-        const std::vector<IdentifiedImpact>& impacts, const std::vector<KnownStretch>& stretches,
-        const ExponentOptions& options);
+        const Parameters& parameters, const UnknownValues& values, const IdentifiedImpacts& impacts,
+        const std::vector<KnownStretch>& stretches, const ExponentOptions& options);
 
     /// The oscillator's own damping, per unit of tau.
     double zeta() const { return zeta_; }
@@ -94,8 +87,7 @@ private:
 /// Conclusions from the growth of deviations.
 struct IdentifiedExponents {
     MeasuredSlope slope;
-    /// Chaotic if slope.low exceeds the oscillator's damping zeta; regular if slope.high is below
-    /// it and the impacts represent the motion.
+    /// Chaotic if slope.low exceeds zeta; regular if slope.high is below it and impacts suffice.
     Verdict verdict;
     bool weakens = false;  ///< not decided for this reason, although forced
 };
@@ -103,12 +95,9 @@ struct IdentifiedExponents {
 /// An unforced motion then dies out; a forced one can be in a transient or in the falling part of a
 /// modulation. In windows of 30 impacts of Table 4's system at b = 15, 18 and 22 mm 80 of 677
 /// weaken.
-bool weakens(const std::vector<IdentifiedImpact>& impacts);
-/// Whether the forcing is zero, or too weak to sustain the motion in the last quarter of the
-/// impacts.
-bool is_unforced(const Parameters& parameters, const std::vector<IdentifiedImpact>& impacts);
+bool weakens(const IdentifiedImpacts& impacts);
 /// `impacts`: those of the exponents.
 IdentifiedExponents judge_exponents(
-    const MeasuredExponents& exponents, const std::vector<IdentifiedImpact>& impacts);
+    const MeasuredExponents& exponents, const IdentifiedImpacts& impacts);
 
 }  // namespace vines

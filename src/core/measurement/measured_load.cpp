@@ -1,12 +1,14 @@
 #include "core/measurement/measured_load.hpp"
 
+#include <Eigen/LU>
 #include <Eigen/SparseCholesky>
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <numbers>
-#include <optional>
+#include <numeric>
 
+#include "core/measurement/robust.hpp"
 #include "core/motion/elementary.hpp"
 
 namespace vines {
@@ -15,20 +17,90 @@ namespace {
 
 using Complex = std::complex<double>;
 
+double squares_of(const std::vector<double>& values) {
+    return std::inner_product(values.begin(), values.end(), values.begin(), 0.0);
+}
+
+constexpr double fewest_cycles = 5, least_explained = 0.75;
+// A crossing counts once the signal passes the mean by this fraction of its standard deviation.
+constexpr double hysteresis = 0.5;
+// The crossings give the frequency to about one crossing in the whole record. Pieces of this many
+// cycles resolve the remaining phase drift, and pieces four times as long refine it.
+constexpr double cycles_of_piece = 4;
+constexpr int refinements = 6;
+constexpr double longer = 4;
+
+/// From the upward mean crossings; 0 with too few.
+double rough_omega(
+    const std::vector<double>& time, const std::vector<double>& values, double mean, double level) {
+    double first = 0, last = 0;
+    long crossings = 0;
+    bool is_low = false;
+    for (std::size_t k = 0; k < values.size(); ++k) {
+        if (values[k] < mean - level) is_low = true;
+        if (!is_low || values[k] < mean + level) continue;
+        is_low = false;
+        if (crossings++ == 0) first = time[k];
+        last = time[k];
+    }
+    if (static_cast<double>(crossings - 1) < fewest_cycles) return 0;
+    return 2 * std::numbers::pi * static_cast<double>(crossings - 1) / (last - first);
+}
+
+struct HarmonicFit {
+    Eigen::Vector3d by;  ///< coefficients of sine, cosine and 1
+    double squares;      ///< sum of squared residuals
+};
+
+HarmonicFit fit_harmonic(
+    const std::vector<double>& time, const std::vector<double>& values, double omega,
+    std::size_t from, std::size_t to) {
+    Eigen::Matrix3d N = Eigen::Matrix3d::Zero();
+    Eigen::Vector3d right = Eigen::Vector3d::Zero();
+    double squares = 0;
+    for (std::size_t k = from; k < to; ++k) {
+        const double angle = omega * time[k];
+        const Eigen::Vector3d row(elementary::sin(angle), elementary::cos(angle), 1);
+        N += row * row.transpose();
+        right += values[k] * row;
+        squares += values[k] * values[k];
+    }
+    const Eigen::Vector3d by = N.inverse() * right;
+    return {by, squares - by.dot(right)};
+}
+
+/// Correction of omega, from the phase drift between pieces of length `piece`.
+double omega_off(
+    const std::vector<double>& time, const std::vector<double>& values, double omega,
+    double piece) {
+    double last = 0, turned = 0, n = 0, t = 0, a = 0, tt = 0, ta = 0;
+    for (std::size_t from = 0; from < time.size();) {
+        std::size_t to = from + 1;
+        while (to < time.size() && time[to] < time[from] + piece) ++to;
+        // A shorter last piece is ignored.
+        if (to == time.size() && from > 0) break;
+        const HarmonicFit f = fit_harmonic(time, values, omega, from, to);
+        const double angle = elementary::atan2(f.by(1), f.by(0));
+        if (n > 0) turned += std::remainder(angle - last, 2 * std::numbers::pi);
+        else turned = angle;
+        last = angle;
+        const double middle = 0.5 * (time[from] + time[to - 1]);
+        n += 1, t += middle, a += turned, tt += middle * middle, ta += middle * turned;
+        from = to;
+    }
+    return n > 1 ? (n * ta - t * a) / (n * tt - t * t) : 0;
+}
+
 constexpr std::size_t most_harmonics = 5;
 // Harmonics below this fraction of the channel's sampling rate are fitted.
 constexpr double most_of_rate = 0.4;
 // Shortest pieces of a spline, in cycles, those of the drift, and their largest number.
 constexpr double shortest_piece = 3, drift_piece = 10, most_pieces = 512;
-// Noise below this fraction of the amplitude is assumed in the choice of a spline: numerical errors
-// are no modulation.
+// Least noise in the choice of a spline, over the amplitude: numerical errors are no modulation.
 constexpr double least_noise = 1e-3;
-// Penalty of a parameter in Akaike's criterion.
-constexpr double akaike = 2;
-// Fits of all harmonics after the choice.
-constexpr int passes = 2;
-// Weight of the second differences of a spline's coefficients, relative to the samples: bridges
-// gaps of the channel.
+constexpr double akaike = 2;  // penalty of a parameter in Akaike's criterion
+constexpr int passes = 2;     // fits of all harmonics after the choice
+// Weight of a spline's second differences, relative to the samples: bridges gaps of the channel.
 constexpr double bridging = 1e-6;
 // Cell of a response, tau, and its margin beyond the record, which exceeds any delay.
 constexpr double cell_tau = 0.1, margin_tau = 1;
@@ -56,46 +128,96 @@ SplineRow spline_row(std::size_t coefficients, double u) {
 }
 
 /// Fits envelopes to a channel, harmonic by harmonic.
-class EnvelopeFit {
-public:
-    EnvelopeFit(
-        const ForcingChannel& channel, const Harmonic& sine, const std::function<void()>& look)
-        : channel_(channel),
-          look_(look),
-          Omega_(sine.omega),
-          length_(channel.end - channel.begin),
-          floor_(least_noise * least_noise * (sine.sin * sine.sin + sine.cos * sine.cos)),
-          left_(channel.values) {}
+struct EnvelopeFit {
+    const ForcingChannel& channel;
+    const Harmonic& sine;
+    const Look& look;
+    const double length = channel.end - channel.begin;
+    std::vector<double> left = channel.values;  ///< what the harmonics leave of the channel
+    double explained = 0;                       ///< decrease of its squares by the last fit
+
+    /// Harmonic k at sample n: the real part of the sum of `by` times coefficients.
+    struct Row {
+        std::size_t first, count;
+        std::array<Complex, 4> by;
+    };
+    Row row_at(std::size_t n, std::size_t k, std::size_t coefficients) const {
+        const double tau = channel.tau[n], omega = static_cast<double>(k) * sine.omega,
+                     sigma = tau - 0.5 * (channel.begin + channel.end), by_tau = 1 / length;
+        const SplineRow s = spline_row(coefficients, (tau - channel.begin) * by_tau);
+        Row row{s.first, s.count, {}};
+        const Complex phasor = elementary::phasor(omega * sigma);
+        for (std::size_t j = 0; j < s.count; ++j)
+            row.by[j] =
+                phasor * (k == 0 || channel.kind != ForcingKind::base_acceleration
+                              ? s.value[j]
+                              : Complex(
+                                    s.second[j] * by_tau * by_tau - omega * omega * s.value[j],
+                                    2 * omega * s.rate[j] * by_tau));
+        return row;
+    }
 
     /// Fits harmonic k with this many coefficients to what the others leave.
     Envelope fitted(std::size_t k, std::size_t coefficients) {
-        look_();
-        equations_.setZero(2 * coefficients);
-        for (std::size_t n = 0; n < left_.size(); ++n)
-            equations_.add(row_at(n, k, coefficients), left_[n]);
-        return equations_.solved();
+        look();
+        // Normal equations of the coefficients' real and imaginary parts: entries (j, j - n).
+        std::vector<std::array<double, 8>> band(2 * coefficients, std::array<double, 8>{});
+        Eigen::VectorXd right = Eigen::VectorXd::Zero(2 * coefficients);
+        for (std::size_t n = 0; n < left.size(); ++n) {
+            const Row row = row_at(n, k, coefficients);
+            std::array<double, 8> by{};
+            for (std::size_t j = 0; j < row.count; ++j)
+                by[2 * j] = row.by[j].real(), by[2 * j + 1] = -row.by[j].imag();
+            for (std::size_t a = 0; a < 2 * row.count; ++a) {
+                right[2 * row.first + a] += by[a] * left[n];
+                for (std::size_t b = 0; b <= a; ++b)
+                    band[2 * row.first + a][a - b] += by[a] * by[b];
+            }
+        }
+        double largest = 0;
+        for (const auto& row : band) largest = std::max(largest, row[0]);
+        const double weight = bridging * largest;
+        // (c_j - 2 c_(j+1) + c_(j+2))^2, for both parts.
+        for (std::size_t j = 4; j < band.size(); ++j) {
+            band[j][0] += weight, band[j - 2][0] += 4 * weight, band[j - 4][0] += weight;
+            band[j][2] -= 2 * weight, band[j - 2][2] -= 2 * weight, band[j][4] += weight;
+        }
+        std::vector<Eigen::Triplet<double>> entries;
+        for (std::size_t j = 0; j < band.size(); ++j) {
+            band[j][0] += 1e-12 * largest;
+            for (std::size_t n = 0; n < 8 && n <= j; ++n)
+                entries.emplace_back(j, j - n, band[j][n]);
+        }
+        Eigen::SparseMatrix<double> N(right.size(), right.size());
+        N.setFromTriplets(entries.begin(), entries.end());
+        const Eigen::VectorXd c =
+            Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>>(N).solve(right);
+        explained = c.dot(right);
+        Envelope e;
+        for (Eigen::Index j = 0; j < c.size(); j += 2) e.coefficients.emplace_back(c(j), c(j + 1));
+        return e;
     }
     /// Adds `sign` times a harmonic to what is left.
     void add(std::size_t k, const Envelope& e, double sign) {
         if (e.coefficients.empty()) return;
-        for (std::size_t n = 0; n < left_.size(); ++n) {
+        for (std::size_t n = 0; n < left.size(); ++n) {
             const Row row = row_at(n, k, e.coefficients.size());
             for (std::size_t j = 0; j < row.count; ++j)
-                left_[n] += sign * (row.by[j] * e.coefficients[row.first + j]).real();
+                left[n] += sign * (row.by[j] * e.coefficients[row.first + j]).real();
         }
     }
     /// The best envelope among numbers of coefficients; 0: none. Bayes' criterion decides whether
     /// it varies, Akaike's then how much: too few pieces are worse than noise.
     Envelope best(std::size_t k, const std::vector<std::size_t>& choices) {
-        const double n = static_cast<double>(left_.size());
-        double all = 0;
-        for (const double v : left_) all += v * v;
+        const double n = count_of(left), all = squares_of(left),
+                     floor =
+                         least_noise * least_noise * (sine.sin * sine.sin + sine.cos * sine.cos);
         std::vector<Envelope> envelopes;
         std::vector<double> misfit;
         for (const std::size_t coefficients : choices) {
             envelopes.push_back(coefficients > 0 ? fitted(k, coefficients) : Envelope{});
-            const double squares = coefficients > 0 ? all - equations_.explained : all;
-            misfit.push_back(n * elementary::log(std::max(squares, 0.0) / n + floor_));
+            const double squares = coefficients > 0 ? all - explained : all;
+            misfit.push_back(n * elementary::log(std::max(squares, 0.0) / n + floor));
         }
         const auto least = [&](double penalty) {
             const auto criterion = [&](std::size_t i) {
@@ -109,91 +231,9 @@ public:
         const std::size_t chosen = least(elementary::log(n));
         return envelopes[envelopes[chosen].varies() ? least(akaike) : chosen];
     }
-    double noise() const {
-        double sum = 0;
-        for (const double v : left_) sum += v * v;
-        return std::sqrt(sum / static_cast<double>(left_.size()));
-    }
-
-private:
-    /// A sample is the real part of the sum of `by` times coefficients.
-    struct Row {
-        std::size_t first, count;
-        std::array<Complex, 4> by;
-    };
-    /// Normal equations: the coefficients' real and imaginary parts, in a band.
-    struct Equations {
-        std::vector<std::array<double, 8>> band;  ///< entries (j, j - n), n < 8
-        std::vector<double> right;
-        double explained = 0;  ///< decrease of the sum of squares
-
-        void setZero(std::size_t size) {
-            band.assign(size, {});
-            right.assign(size, 0);
-        }
-        void add(const Row& row, double value) {
-            std::array<double, 8> by{};
-            for (std::size_t j = 0; j < row.count; ++j)
-                by[2 * j] = row.by[j].real(), by[2 * j + 1] = -row.by[j].imag();
-            for (std::size_t a = 0; a < 2 * row.count; ++a) {
-                right[2 * row.first + a] += by[a] * value;
-                for (std::size_t b = 0; b <= a; ++b)
-                    band[2 * row.first + a][a - b] += by[a] * by[b];
-            }
-        }
-        Envelope solved() {
-            double largest = 0;
-            for (const auto& row : band) largest = std::max(largest, row[0]);
-            const double weight = bridging * largest;
-            // (c_j - 2 c_(j+1) + c_(j+2))^2, for both parts.
-            for (std::size_t j = 4; j < band.size(); ++j) {
-                band[j][0] += weight, band[j - 2][0] += 4 * weight, band[j - 4][0] += weight;
-                band[j][2] -= 2 * weight, band[j - 2][2] -= 2 * weight, band[j][4] += weight;
-            }
-            std::vector<Eigen::Triplet<double>> entries;
-            for (std::size_t j = 0; j < band.size(); ++j) {
-                band[j][0] += 1e-12 * largest;
-                for (std::size_t n = 0; n < 8 && n <= j; ++n)
-                    entries.emplace_back(j, j - n, band[j][n]);
-            }
-            const auto size = static_cast<Eigen::Index>(band.size());
-            Eigen::SparseMatrix<double> N(size, size);
-            N.setFromTriplets(entries.begin(), entries.end());
-            const Eigen::Map<const Eigen::VectorXd> g(right.data(), size);
-            const Eigen::VectorXd c =
-                Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>>(N).solve(g);
-            explained = c.dot(g);
-            Envelope e;
-            for (Eigen::Index j = 0; j < size; j += 2) e.coefficients.emplace_back(c(j), c(j + 1));
-            return e;
-        }
-    };
-
-    Row row_at(std::size_t n, std::size_t k, std::size_t coefficients) const {
-        const double tau = channel_.tau[n], omega = static_cast<double>(k) * Omega_,
-                     sigma = tau - 0.5 * (channel_.begin + channel_.end), by_tau = 1 / length_;
-        const SplineRow s = spline_row(coefficients, (tau - channel_.begin) * by_tau);
-        Row row{s.first, s.count, {}};
-        const Complex phasor = elementary::phasor(omega * sigma);
-        for (std::size_t j = 0; j < s.count; ++j)
-            row.by[j] =
-                phasor * (k == 0 || channel_.kind != ForcingKind::base_acceleration
-                              ? s.value[j]
-                              : Complex(
-                                    s.second[j] * by_tau * by_tau - omega * omega * s.value[j],
-                                    2 * omega * s.rate[j] * by_tau));
-        return row;
-    }
-
-    const ForcingChannel& channel_;
-    const std::function<void()>& look_;
-    const double Omega_, length_, floor_;
-    std::vector<double> left_;
-    Equations equations_;
 };
 
-/// Numbers of coefficients to choose from: a constant, and splines with pieces of `shortest` cycles
-/// or more.
+/// Numbers of coefficients: of a constant, and of splines with pieces of `shortest` cycles or more.
 std::vector<std::size_t> choices_for(double cycles, double shortest) {
     std::vector<std::size_t> all = {1};
     for (double pieces = 1; pieces <= std::min(most_pieces, cycles / shortest); pieces *= 2)
@@ -215,6 +255,27 @@ Complex mean_envelope(const Envelope& e) {
 
 }  // namespace
 
+std::optional<Harmonic> harmonic_of(
+    const std::vector<double>& time, const std::vector<double>& values, const Look& look) {
+    const double n = count_of(values),
+                 mean = std::accumulate(values.begin(), values.end(), 0.0) / n;
+    std::vector<double> about(values);
+    for (double& v : about) v -= mean;
+    const double deviation = std::sqrt(squares_of(about) / n);
+    double omega = rough_omega(time, values, mean, hysteresis * deviation);
+    if (!(omega > 0) || !std::isfinite(omega)) return std::nullopt;
+    const double duration = time.back() - time.front();
+    double piece = cycles_of_piece * 2 * std::numbers::pi / omega;
+    for (int k = 0; k < refinements; ++k) {
+        look();
+        omega += omega_off(time, about, omega, piece);
+        if (piece * longer < duration / longer) piece *= longer;
+    }
+    const HarmonicFit all = fit_harmonic(time, about, omega, 0, time.size());
+    if (!(all.squares < (1 - least_explained) * n * deviation * deviation)) return std::nullopt;
+    return Harmonic{omega, all.by(0), all.by(1)};
+}
+
 Complex Envelope::at(double u) const {
     const SplineRow row = spline_row(coefficients.size(), u);
     Complex sum = 0;
@@ -223,12 +284,11 @@ Complex Envelope::at(double u) const {
 }
 
 std::shared_ptr<const MeasuredLoad> MeasuredLoad::of(
-    const ForcingChannel& channel, const Harmonic& sine, const std::function<void()>& look) {
+    const ForcingChannel& channel, const Harmonic& sine, const Look& look) {
     const double length = channel.end - channel.begin,
                  cycles = length * sine.omega / (2 * std::numbers::pi),
-                 rate = static_cast<double>(channel.tau.size() - 1) /
-                        (channel.tau.back() - channel.tau.front());
-    EnvelopeFit fit(channel, sine, look);
+                 rate = (count_of(channel.tau) - 1) / (channel.tau.back() - channel.tau.front());
+    EnvelopeFit fit{channel, sine, look};
     const std::vector<std::size_t> choices = choices_for(cycles, shortest_piece);
     // The offset and its drift are not part of the load. Without the sine they are small.
     const Envelope constant = fit.fitted(1, 1);
@@ -255,8 +315,8 @@ std::shared_ptr<const MeasuredLoad> MeasuredLoad::of(
         }
     MeasuredLoad load;
     load.Omega = sine.omega, load.length_ = length, load.kind_ = channel.kind;
-    const double samples = static_cast<double>(channel.tau.size());
-    load.noise_ = fit.noise() * std::sqrt(2 / samples) / elementary::hypot(sine.sin, sine.cos);
+    const double samples = count_of(channel.tau), noise = std::sqrt(squares_of(fit.left) / samples);
+    load.noise_ = noise * std::sqrt(2 / samples) / elementary::hypot(sine.sin, sine.cos);
     for (std::size_t k = 1; k < all.size(); ++k) {
         // The base acts through spring and damper.
         const Complex by_base(
@@ -271,15 +331,13 @@ std::shared_ptr<const MeasuredLoad> MeasuredLoad::of(
     return std::make_shared<const MeasuredLoad>(std::move(load));
 }
 
-double MeasuredLoad::lead(const UnknownValues& v) const {
+Complex MeasuredLoad::excess(double sigma, const UnknownValues& v) const {
     const Complex z = Complex(v[Unknown::force_cos], -v[Unknown::force_sin]) / fundamental;
-    return std::remainder(elementary::atan2(z.imag(), z.real()), std::numbers::pi);
-}
-
-Complex MeasuredLoad::excess(double sigma, const UnknownValues& values) const {
-    const double u = 0.5 + sigma / length_;
-    const Complex phasor = elementary::phasor(values[Unknown::Omega] * sigma),
-                  turned = phasor * elementary::phasor(lead(values));
+    // Phase of the fitted fundamental before that of the channel, up to a reversed sign.
+    const double lead = std::remainder(elementary::atan2(z.imag(), z.real()), std::numbers::pi),
+                 u = 0.5 + sigma / length_;
+    const Complex phasor = elementary::phasor(v[Unknown::Omega] * sigma),
+                  turned = phasor * elementary::phasor(lead);
     Complex sum = phasor * (harmonics_[0].at(u) - 1.0), of_harmonic = phasor;
     for (std::size_t k = 1; k < harmonics_.size(); ++k) {
         of_harmonic *= turned;
@@ -330,17 +388,17 @@ LoadResponse::Motion LoadResponse::at(double sigma) const {
                      (sigma - begin_) / step_, 0.0, static_cast<double>(nodes_.size() - 1)),
                  cell = std::min(std::floor(at), static_cast<double>(nodes_.size() - 2)),
                  t = at - cell, h = step_;
-    const Motion &from = nodes_[static_cast<std::size_t>(cell)],
-                 &to = nodes_[static_cast<std::size_t>(cell) + 1];
+    const Node &from = nodes_[static_cast<std::size_t>(cell)],
+               &to = nodes_[static_cast<std::size_t>(cell) + 1];
     const Complex v = h * from.x_dot, a = h * h * from.x_ddot, x_off = to.x - from.x - v - 0.5 * a,
                   v_off = h * to.x_dot - v - a, a_off = h * h * to.x_ddot - a,
                   c3 = 10.0 * x_off - 4.0 * v_off + 0.5 * a_off,
                   c4 = -15.0 * x_off + 7.0 * v_off - a_off,
                   c5 = 6.0 * x_off - 3.0 * v_off + 0.5 * a_off;
-    return {
-        from.x + t * (v + t * (0.5 * a + t * (c3 + t * (c4 + t * c5)))),
-        (v + t * (a + t * (3.0 * c3 + t * (4.0 * c4 + t * (5.0 * c5))))) / h,
-        (a + t * (6.0 * c3 + t * (12.0 * c4 + t * (20.0 * c5)))) / (h * h)};
+    const Complex x = from.x + t * (v + t * (0.5 * a + t * (c3 + t * (c4 + t * c5)))),
+                  x_dot = (v + t * (a + t * (3.0 * c3 + t * (4.0 * c4 + t * (5.0 * c5))))) / h,
+                  x_ddot = (a + t * (6.0 * c3 + t * (12.0 * c4 + t * (20.0 * c5)))) / (h * h);
+    return {{x.imag(), x_dot.imag(), x_ddot.imag()}, {x.real(), x_dot.real(), x_ddot.real()}};
 }
 
 }  // namespace vines

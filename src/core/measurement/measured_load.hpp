@@ -1,16 +1,12 @@
-// The forcing as a channel of the record shows it, the motion of the base or a force: its
-// sine (harmonic.cpp), and harmonics of one frequency, each with a constant or slowly varying
-// amplitude and phase: modulation and sweeps of a shaker, and its harmonics.
+// The forcing as a channel of the record shows it, the motion of the base or a force: its dominant
+// sine, and the load, in which modulation and sweeps of a shaker and its harmonics appear. With
+// sigma = tau - tau_m, tau_m the middle of the record, the force on the right of eq. (2) is
 //
-// With sigma = tau - tau_m, tau_m the middle of the record, the channel shows the force
+//     f(tau) = Re sum_k C_k(tau) exp(i k Omega sigma),   k = 1 to 5.
 //
-//     f(tau) = Re sum_k C_k(tau) exp(i k Omega sigma),   k = 1 to 5,
-//
-// on the right of eq. (2). C_k is a constant or a cubic spline. The least-squares fit to the
-// acceleration of a base has the splines in the displacement of the base and the derivatives of
-// spline and phasor in the acceleration, so that nothing is integrated; a slow spline takes offset
-// and drift of the sensor. Bayes' information criterion decides which harmonics exist, and how many
-// pieces the splines have: noise alone adds none.
+// C_k is a constant or a cubic spline, a least-squares fit to the channel; to the acceleration of a
+// base with the derivatives of spline and phasor, so that nothing is integrated. A slow spline
+// takes offset and drift of the sensor. Bayes' information criterion decides which harmonics exist.
 //
 // The fit (unknowns.hpp) determines amplitude and phase of the fundamental from the motion; the
 // channel gives the rest in relation to the fundamental, so that its gain and sign do not matter.
@@ -18,17 +14,16 @@
 #pragma once
 
 #include <complex>
-#include <functional>
 #include <memory>
 #include <optional>
 #include <vector>
 
+#include "core/measurement/progress.hpp"
 #include "core/measurement/unknowns.hpp"
 
 namespace vines {
 
-/// The dominant harmonic of a channel, offset + sin sin(omega t) + cos cos(omega t), in the given
-/// unit of time.
+/// The dominant harmonic of a channel, offset + sin sin(omega t) + cos cos(omega t).
 struct Harmonic {
     double omega;  ///< per unit of time
     double sin, cos;
@@ -36,11 +31,9 @@ struct Harmonic {
 
 /// Fits one harmonic. The frequency comes from the mean crossings first, then from the phase drift
 /// between shorter pieces. Empty if the harmonic explains less than three quarters of the signal,
-/// or with fewer than five cycles. look() is called before each pass through the samples; an
-/// exception it throws passes through.
+/// or with fewer than five cycles.
 std::optional<Harmonic> harmonic_of(
-    const std::vector<double>& time, const std::vector<double>& values,
-    const std::function<void()>& look = [] {});
+    const std::vector<double>& time, const std::vector<double>& values, const Look& look = [] {});
 
 /// The quantity that a channel of the forcing measures. Forces are divided by k1.
 enum class ForcingKind { base_acceleration, base_displacement, force };
@@ -65,11 +58,9 @@ struct Envelope {
 class MeasuredLoad {
 public:
     /// The load; null if the channel shows nothing but a sine and noise. `sine`: the channel's
-    /// dominant harmonic, by tau. look() is called before each pass through the samples; an
-    /// exception it throws passes through.
+    /// dominant harmonic, by tau.
     static std::shared_ptr<const MeasuredLoad> of(
-        const ForcingChannel& channel, const Harmonic& sine,
-        const std::function<void()>& look = [] {});
+        const ForcingChannel& channel, const Harmonic& sine, const Look& look = [] {});
 
     double Omega;                      ///< of the fundamental
     std::complex<double> fundamental;  ///< mean of C_1: mean modulus and phase, m
@@ -84,8 +75,6 @@ public:
 
 private:
     MeasuredLoad() = default;
-    /// Phase of the fitted fundamental before that of the channel, up to a reversed sign.
-    double lead(const UnknownValues& values) const;
 
     double length_ = 0, noise_ = 0;
     ForcingKind kind_ = ForcingKind::base_acceleration;
@@ -105,15 +94,19 @@ public:
     /// The response of x'' + damping x' + stiffness x = by_force times the excess.
     LoadResponse(const Excess& excess, double stiffness, double damping, double by_force);
 
-    /// The real part is the response to f_c = 1, the imaginary part that to f_s = 1.
+    /// The responses to f_s = 1 and to f_c = 1.
     struct Motion {
-        std::complex<double> x, x_dot, x_ddot;
+        OscillatorMotion by_sin, by_cos;
     };
     Motion at(double sigma) const;
 
 private:
+    /// The real part is the response to f_c = 1, the imaginary part that to f_s = 1.
+    struct Node {
+        std::complex<double> x, x_dot, x_ddot;
+    };
     double begin_, step_;
-    std::vector<Motion> nodes_;
+    std::vector<Node> nodes_;
 };
 
 }  // namespace vines

@@ -4,33 +4,11 @@
 #include <cmath>
 #include <complex>
 #include <numbers>
+#include <optional>
 
 #include "core/motion/elementary.hpp"
 
 namespace vines {
-
-namespace {
-
-double sample_interval(const MeasuredRecord& r) {
-    std::vector<double> steps;
-    steps.reserve(r.tau.size());
-    for (std::size_t k = 1; k < r.tau.size(); ++k) steps.push_back(r.tau[k] - r.tau[k - 1]);
-    return median(std::move(steps));
-}
-
-}  // namespace
-
-std::size_t first_index(const MeasuredRecord& r, double tau) {
-    return static_cast<std::size_t>(std::ranges::lower_bound(r.tau, tau) - r.tau.begin());
-}
-
-std::vector<TimeGap> time_gaps(const MeasuredRecord& r) {
-    std::vector<TimeGap> gaps;
-    const double longest = 3 * sample_interval(r);
-    for (std::size_t k = 1; k < r.tau.size(); ++k)
-        if (r.tau[k] - r.tau[k - 1] > longest) gaps.push_back({r.tau[k - 1], r.tau[k]});
-    return gaps;
-}
 
 namespace {
 
@@ -40,12 +18,15 @@ constexpr std::ptrdiff_t clipped_times = 4;
 // than this fraction of all neighbours are equal.
 constexpr std::size_t held_samples = 5;
 constexpr double coarse_share = 0.05;
-// A sample of the displacement further than this many standard deviations from the cubic through
-// its neighbours is an outlier. A kink can cause that too, by up to two thirds of the jump times
-// the step; losing that sample is harmless.
+// Standard deviations of an outlier of the displacement from the cubic through its neighbours. A
+// kink can look like one, by up to two thirds of the jump times the step, which is harmless.
 constexpr double outlier_sigmas = 10;
 // The four neighbours span four steps; across a gap no cubic is fitted.
 constexpr double longest_span_steps = 6;
+// The parabola's error, as a fraction of the signal: smaller spikes cannot be seen.
+constexpr double background_share = 1e-3;
+// Lower bound in m: zero noise would mean infinite weight.
+constexpr double least_sensor_noise = 1e-12;
 
 void mark_clipped(const std::vector<double>& v, std::vector<char>& bad) {
     if (v.empty()) return;
@@ -60,9 +41,8 @@ void mark_clipped(const std::vector<double>& v, std::vector<char>& bad) {
 /// Marks held samples as bad too; returns those that are not clipped.
 std::vector<char> mark_held(const std::vector<double>& v, std::vector<char>& bad) {
     std::vector<char> held(v.size(), 0);
-    std::size_t equal = 0;
-    for (std::size_t k = 1; k < v.size(); ++k) equal += v[k] == v[k - 1];
-    if (static_cast<double>(equal) > coarse_share * static_cast<double>(v.size())) return held;
+    const std::vector<double> steps = steps_of(v);
+    if (static_cast<double>(std::ranges::count(steps, 0)) > coarse_share * count_of(v)) return held;
     for (std::size_t k = 0; k < v.size();) {
         std::size_t end = k + 1;
         while (end < v.size() && v[end] == v[k]) ++end;
@@ -86,26 +66,19 @@ double cubic_at(const MeasuredRecord& r, std::size_t k) {
     return value;
 }
 
-void mark_outliers(const MeasuredRecord& r, std::vector<char>& bad) {
+void mark_outliers(const MeasuredRecord& r, double step, std::vector<char>& bad) {
     const std::size_t n = r.x.size();
-    const double step = sample_interval(r);
     if (n < 5) return;
     std::vector<double> off(n, 0);
     for (std::size_t k = 2; k + 2 < n; ++k)
-        if (!(r.tau[k + 2] - r.tau[k - 2] > longest_span_steps * step) && !bad[k - 2] &&
-            !bad[k - 1] && !bad[k] && !bad[k + 1] && !bad[k + 2])
+        if (!(r.tau[k + 2] - r.tau[k - 2] > longest_span_steps * step) &&
+            std::count(&bad[k - 2], &bad[k - 2] + 5, 0) == 5)
             off[k] = std::abs(r.x[k] - cubic_at(r, k));
     const double limit = outlier_sigmas * robust_deviation(off);
     for (std::size_t k = 2; k + 2 < n; ++k)
         if (off[k] > limit && off[k] >= std::max({off[k - 2], off[k - 1], off[k + 1], off[k + 2]}))
             bad[k] = 1;
 }
-
-// The parabola's error, as a fraction of the signal: smaller spikes cannot be seen.
-constexpr double background_share = 1e-3;
-
-// Lower bound in m: zero noise would mean infinite weight.
-constexpr double least_sensor_noise = 1e-12;
 
 void set_noise(
     const std::vector<double>& tau, const std::vector<double>& signal, SensorStatistics& s) {
@@ -117,21 +90,8 @@ void set_noise(
     s.least_noise = background_share * robust_deviation(values_of(signal, off));
 }
 
-}  // namespace
-
-RecordStatistics::RecordStatistics(const MeasuredRecord& r) : step(sample_interval(r)) {
-    x.bad.assign(r.x.size(), 0), a.bad.assign(r.x_ddot.size(), 0);
-    mark_clipped(r.x, x.bad), mark_clipped(r.x_ddot, a.bad);
-    mark_held(r.x, x.bad);
-    a_held = mark_held(r.x_ddot, a.bad);
-    mark_outliers(r, x.bad);
-    set_noise(r.tau, r.x, x), set_noise(r.tau, r.x_ddot, a);
-}
-
-namespace {
-
-// The record times exp(-i Omega tau) is averaged over overlapping blocks with a Hann window, which
-// suppress the motion; the spectrum of the averages shows the line and its neighbourhood.
+// Hum: the record times exp(-i Omega tau) is averaged over overlapping blocks with a Hann window,
+// which suppress the motion; the spectrum of the averages shows the line and its neighbourhood.
 
 using Complex = std::complex<double>;
 
@@ -147,17 +107,24 @@ double hann(double place) {
     return sine * sine;
 }
 
-/// The channel near one frequency.
-class NearLine {
-public:
-    NearLine(const std::vector<double>& tau, const std::vector<double>& v, double Omega)
-        : length_(tau.back() - tau.front()),
-          hop_(half_block_periods * 2 * std::numbers::pi / Omega) {
-        const auto blocks = static_cast<std::size_t>(std::max(0.0, length_ / hop_ - 1));
+/// The channel near one frequency, in weighted averages of blocks.
+struct NearLine {
+    struct Average {
+        double tau, weight;
+        Complex value;
+    };
+    double resolution, total = 0;
+    std::vector<Average> averages = {};
+
+    NearLine(const std::vector<double>& tau, const std::vector<double>& v, double Omega) {
+        const double length = tau.back() - tau.front(),
+                     hop = half_block_periods * 2 * std::numbers::pi / Omega;
+        resolution = 2 * std::numbers::pi / length;
+        const auto blocks = static_cast<std::size_t>(std::max(0.0, length / hop - 1));
         std::vector<Complex> sums(blocks, 0);
         std::vector<double> weights(blocks, 0);
         for (std::size_t k = 0; k < tau.size(); ++k) {
-            const double place = (tau[k] - tau.front()) / hop_;
+            const double place = (tau[k] - tau.front()) / hop;
             const Complex value = v[k] * elementary::phasor(-Omega * (tau[k] - tau.front()));
             const auto last = static_cast<std::size_t>(place);
             for (std::size_t j = last > 0 ? last - 1 : 0; j <= last && j < blocks; ++j) {
@@ -165,40 +132,29 @@ public:
                 sums[j] += weight * value, weights[j] += weight;
             }
         }
-        for (std::size_t j = 0; j < blocks; ++j)
-            if (weights[j] > 0) {
-                const double at = static_cast<double>(j + 1) * hop_;
-                const double weight = hann(at / length_);
-                averages_.push_back({at, weight, 2.0 * sums[j] / weights[j]});
-                total_ += weight;
-            }
+        for (std::size_t j = 0; j < blocks; ++j) {
+            if (!(weights[j] > 0)) continue;
+            const double at = static_cast<double>(j + 1) * hop, weight = hann(at / length);
+            averages.push_back({at, weight, 2.0 * sums[j] / weights[j]});
+            total += weight;
+        }
     }
-
-    double resolution() const { return 2 * std::numbers::pi / length_; }
     /// Amplitude and phase at Omega + faster, cos and -sin of the time since the start.
     Complex at(double faster) const {
         Complex sum = 0;
-        for (const Average& a : averages_)
+        for (const Average& a : averages)
             sum += a.weight * a.value * elementary::phasor(-faster * a.tau);
-        return sum / total_;
+        return sum / total;
     }
-    bool is_empty() const { return averages_.size() < 3; }
-
-private:
-    struct Average {
-        double tau, weight;
-        Complex value;
-    };
-    double length_, hop_, total_ = 0;
-    std::vector<Average> averages_;
 };
 
-/// Removes the line near Omega; returns its frequency and amplitude, 0 if there is none.
-Hum remove_line(const std::vector<double>& tau, std::vector<double>& v, double Omega) {
+/// Removes the line near Omega, if there is one.
+std::optional<Hum> remove_line(
+    const std::vector<double>& tau, std::vector<double>& v, double Omega) {
     const NearLine near(tau, v, Omega);
-    if (near.is_empty()) return {Omega, 0, false};
+    if (near.averages.size() < 3) return std::nullopt;
     double best = 0, highest = 0;
-    const double step = near.resolution() / trials_per_resolution;
+    const double step = near.resolution / trials_per_resolution;
     const int trials = static_cast<int>(searched_range * Omega / step) + 1;
     for (int k = -trials; k <= trials; ++k)
         if (const double height = elementary::modulus(near.at(k * step)); height > highest)
@@ -206,26 +162,51 @@ Hum remove_line(const std::vector<double>& tau, std::vector<double>& v, double O
     std::vector<double> around;
     for (int k = line_width; k <= neighbourhood; ++k)
         for (const int sign : {1, -1})
-            around.push_back(elementary::modulus(near.at(best + sign * k * near.resolution())));
+            around.push_back(elementary::modulus(near.at(best + sign * k * near.resolution)));
     const double noise = third_difference_noise(tau, v);
     if (!(highest > stands_above * median(std::move(around)) && highest > above_noise * noise))
-        return {Omega, 0, false};
+        return std::nullopt;
     const Complex line = near.at(best);
     for (std::size_t k = 0; k < tau.size(); ++k)
         v[k] -= (line * elementary::phasor((Omega + best) * (tau[k] - tau.front()))).real();
-    return {Omega + best, highest, false};
+    return Hum{Omega + best, highest, false};
 }
 
 }  // namespace
+
+std::size_t first_index(const MeasuredRecord& r, double tau) {
+    return static_cast<std::size_t>(std::ranges::lower_bound(r.tau, tau) - r.tau.begin());
+}
+
+std::vector<TimeGap> time_gaps(const MeasuredRecord& r) {
+    std::vector<TimeGap> gaps;
+    const double longest = 3 * median(steps_of(r.tau));
+    for (std::size_t k = 1; k < r.tau.size(); ++k)
+        if (r.tau[k] - r.tau[k - 1] > longest) gaps.push_back({r.tau[k - 1], r.tau[k]});
+    return gaps;
+}
+
+bool overlaps_any(const std::vector<TimeGap>& gaps, double begin, double end) {
+    return std::ranges::any_of(
+        gaps, [=](const TimeGap& g) { return g.from < end && begin < g.to; });
+}
+
+RecordStatistics::RecordStatistics(const MeasuredRecord& r) : step(median(steps_of(r.tau))) {
+    x.bad.assign(r.x.size(), 0), a.bad.assign(r.x_ddot.size(), 0);
+    mark_clipped(r.x, x.bad), mark_clipped(r.x_ddot, a.bad);
+    mark_held(r.x, x.bad);
+    a_held = mark_held(r.x_ddot, a.bad);
+    mark_outliers(r, step, x.bad);
+    set_noise(r.tau, r.x, x), set_noise(r.tau, r.x_ddot, a);
+}
 
 std::vector<Hum> remove_hum(MeasuredRecord& r, const std::vector<double>& mains) {
     std::vector<Hum> found;
     for (const double Omega : mains)
         for (std::vector<double>* channel : {&r.x, &r.x_ddot}) {
             if (channel->empty()) continue;
-            Hum hum = remove_line(r.tau, *channel, Omega);
-            hum.in_displacement = channel == &r.x;
-            if (hum.amplitude > 0) found.push_back(hum);
+            const std::optional<Hum> hum = remove_line(r.tau, *channel, Omega);
+            if (hum) found.push_back({hum->Omega, hum->amplitude, channel == &r.x});
         }
     return found;
 }

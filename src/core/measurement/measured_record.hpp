@@ -21,19 +21,18 @@ std::size_t first_index(const MeasuredRecord& record, double tau);
 /// A stretch of time without samples, in tau.
 struct TimeGap {
     double from, to;
-
-    bool overlaps(double begin, double end) const { return from < end && begin < to; }
 };
 
 /// Gaps: steps longer than three median steps.
 std::vector<TimeGap> time_gaps(const MeasuredRecord& record);
+/// Whether a gap overlaps the time between `begin` and `end`.
+bool overlaps_any(const std::vector<TimeGap>& gaps, double begin, double end);
 
 /// Properties of one sensor's signal.
 struct SensorStatistics {
     std::vector<char> bad;  ///< marks unusable samples: clipped, held, or an outlier of x
     double noise = 0;       ///< standard deviation, above zero; NaN without a signal
-    /// Lower bound for it. In a nearly noiseless record the residual is dominated by errors of the
-    /// background or of the frequency.
+    /// Lower bound for it: errors of background and frequency dominate a nearly noiseless record.
     double least_noise = 0;
 };
 

@@ -3,9 +3,11 @@
 #include <algorithm>
 #include <cassert>
 #include <cmath>
-#include <compare>
+#include <utility>
 
 #include "core/measurement/robust.hpp"
+#include "core/measurement/search.hpp"
+#include "core/measures/energy.hpp"
 #include "core/motion/elementary.hpp"
 #include "core/motion/record.hpp"
 
@@ -13,14 +15,12 @@ namespace vines {
 
 namespace {
 
-// Largest scatter of the impacts' values of b, relative.
-constexpr double b_scatter = 0.5;
+constexpr double b_scatter = 0.5;  // largest scatter of the impacts' values of b, relative
 // Tolerance of the given b relative to the fitted one, or in standard errors.
 constexpr double b_tolerance = 0.03, b_sigmas = 5;
-// Smaller differences are ignored: walls are set to a tenth of a millimetre.
-constexpr double least_of_b = 0.003;
-// Larger differences indicate another problem: no one measures b that badly.
-constexpr double most_of_b = 0.5;
+// Relative differences that count: walls are set to a tenth of a millimetre, and no one measures b
+// so badly that a larger difference does not indicate another problem.
+constexpr double least_of_b = 0.003, most_of_b = 0.5;
 // Among the effects of tests/laboratory, none that leaves this many pulses without an impact leaves
 // a tenth of the impacts without a pulse; none scatters R by more than .006, or the momentum by
 // more than .018 of the typical jump. A motion that sticks in each cycle, evaluated as one that
@@ -34,81 +34,50 @@ struct Flight {
     double y_dot(double b) const { return offset - b * rate; }
 };
 
-/// A value of b with its weight.
-struct WeightedB {
-    double b, weight;
-    auto operator<=>(const WeightedB&) const = default;
-};
-
-/// Values of b from each impact: x' + epsilon y' is conserved, and y' is linear in b.
-std::vector<WeightedB> b_of_impacts(
-    const Parameters& p, const std::vector<FittedImpact>& m, const std::vector<Flight>& flights) {
-    std::vector<WeightedB> estimates;
+/// Fits b, the weighted median of the impacts' values: x' + epsilon y' is conserved.
+void fit_b(
+    const Parameters& p, const std::vector<FittedImpact>& m, const std::vector<Flight>& flights,
+    Identification& found) {
+    std::vector<std::pair<double, double>> values;  // b, and its weight
+    double total = 0, sum = 0;
     for (std::size_t i = 1; i < flights.size(); ++i) {
         const double rate = flights[i].rate - flights[i - 1].rate;
         const double b = (m[i].jump() / p.epsilon + flights[i].offset + m[i].braked_after -
                           flights[i - 1].offset - m[i].braked_before) /
                          rate;
-        if (std::isfinite(b)) estimates.push_back({b, std::abs(rate)});
+        if (!std::isfinite(b)) continue;
+        values.emplace_back(b, std::abs(rate));
+        total += std::abs(rate);
     }
-    return estimates;
-}
-
-double weighted_median(std::vector<WeightedB> values) {
-    double total = 0, sum = 0;
-    for (const WeightedB& v : values) total += v.weight;
     std::ranges::sort(values);
     const auto middle = std::ranges::find_if(
-        values, [&](const WeightedB& v) { return (sum += v.weight) >= 0.5 * total; });
-    return middle == values.end() ? nan : middle->b;
-}
-
-/// Weighted median of the impacts' values of b.
-void fit_b(
-    const Parameters& p, const std::vector<FittedImpact>& m, const std::vector<Flight>& flights,
-    Identification& found) {
-    const std::vector<WeightedB> estimates = b_of_impacts(p, m, flights);
-    if (estimates.empty()) {
-        found.b_fault = BFault::no_flight;
-        return;
-    }
-    const double b = weighted_median(estimates);
-    const auto off = [b](const WeightedB& s) { return s.b - b; };
-    if (!(b > 0)) found.b_fault = BFault::negative;
-    else if (!(robust_deviation(values_of(estimates, off)) < b_scatter * b))
+        values, [&](const auto& v) { return (sum += v.second) >= 0.5 * total; });
+    const double b = middle == values.end() ? nan : middle->first;
+    const auto off = [b](const auto& v) { return v.first - b; };
+    if (values.empty()) found.b_fault = BFault::no_flight;
+    else if (!(b > 0)) found.b_fault = BFault::negative;
+    else if (!(robust_deviation(values_of(values, off)) < b_scatter * b))
         found.b_fault = BFault::scattered;
     else found.b_fitted = b;
 }
 
-/// Flights across a gap are unknown.
-std::vector<Flight> flights_of(
-    const std::vector<FittedImpact>& m, const std::vector<TimeGap>& gaps) {
-    std::vector<Flight> flights;
-    for (std::size_t i = 0; i + 1 < m.size(); ++i) {
-        const double from = m[i].tau, to = m[i + 1].tau, duration = to - from;
-        const bool over_gap =
-            std::ranges::any_of(gaps, [&](const TimeGap& g) { return g.overlaps(from, to); });
-        if (over_gap) flights.push_back({nan, nan});
-        else
-            flights.push_back(
-                {(m[i + 1].x - m[i].x) / duration, (m[i + 1].side - m[i].side) / duration});
-    }
-    return flights;
-}
-
-/// Uses b and epsilon of the parameters; R of each wall comes from its impacts. `pulse`: length of
-/// a pulse in tau; two impacts closer than that are one detected twice. Flights across a gap are
-/// unknown.
+/// Uses b and epsilon of the parameters. `pulse`: length of a pulse in tau; two impacts closer than
+/// that are one detected twice. Flights across a gap are unknown.
 Identification identify_impacts(
     const Parameters& p, const std::vector<FittedImpact>& m, const std::vector<TimeGap>& gaps,
     double pulse) {
     Identification found;
-    const std::vector<Flight> flights = flights_of(m, gaps);
+    std::vector<Flight> flights;
+    for (std::size_t i = 0; i + 1 < m.size(); ++i) {
+        const bool is_known = !overlaps_any(gaps, m[i].tau, m[i + 1].tau);
+        const double duration = is_known ? m[i + 1].tau - m[i].tau : nan;
+        flights.push_back(
+            {(m[i + 1].x - m[i].x) / duration, (m[i + 1].side - m[i].side) / duration});
+    }
     for (std::size_t i = 0; i < m.size(); ++i) {
-        IdentifiedImpact impact = m[i];
+        IdentifiedImpact& impact = found.impacts.emplace_back(m[i]);
         if (i > 0) impact.y_dot_before = flights[i - 1].y_dot(p.b) + m[i].braked_before;
         if (i < flights.size()) impact.y_dot_after = flights[i].y_dot(p.b) + m[i].braked_after;
-        found.impacts.push_back(impact);
     }
     complete_impacts(p, found.impacts, pulse);
     found.plus = restitution_of(found.impacts, 1);
@@ -117,12 +86,11 @@ Identification identify_impacts(
     return found;
 }
 
-/// Some impacts have no pulse and some pulses are not impacts; if both are frequent, the impacts
-/// are not at the pulses.
+/// Whether many impacts have no pulse and many pulses are no impacts.
 bool pulses_disagree(const FoundImpacts& f) {
-    const auto n = static_cast<double>(f.fit.impacts.size());
+    const double n = count_of(f.fit.impacts);
     return static_cast<double>(f.unseen) > most_unseen * n &&
-           static_cast<double>(f.dropped.size()) > most_dropped * n;
+           count_of(f.dropped) > most_dropped * n;
 }
 
 bool impacts_differ(const Parameters& p, const Identification& found) {
@@ -151,17 +119,12 @@ std::vector<Doubt> doubts_of(
     return doubts;
 }
 
-// Time of a difference, in tau: over longer times x'' changes, over shorter ones the noise of x
-// dominates.
+// Time of a difference, in tau: x'' changes over longer ones, noise dominates shorter ones.
 constexpr double difference_span = 0.2;
 
-/// Motion at an impact, seen from one side.
-struct SideEstimate {
-    double x, x_dot, x_ddot;
-};
-
-/// At tau, from the sample next to the pulse (`near`) and one further away (`far`).
-SideEstimate side_estimate(
+/// Motion at an impact as seen from one side, from the sample next to the pulse (`near`) and one
+/// further away (`far`).
+OscillatorMotion side_motion(
     const MeasuredRecord& r, double tau, std::ptrdiff_t near, std::ptrdiff_t far) {
     const auto last = static_cast<std::ptrdiff_t>(r.tau.size()) - 1;
     near = std::clamp<std::ptrdiff_t>(near, 0, last);
@@ -179,9 +142,7 @@ SideEstimate side_estimate(
 std::vector<FittedImpact> direct_motion(
     const MeasuredRecord& r, const std::vector<FittedImpact>& impacts, double pulse) {
     std::vector<FittedImpact> motions = impacts;
-    const auto sample = [&](double tau) {
-        return static_cast<std::ptrdiff_t>(first_index(r, tau));
-    };
+    const auto sample = [&](double tau) -> std::ptrdiff_t { return first_index(r, tau); };
     for (std::size_t i = 0; i < impacts.size(); ++i) {
         // Excludes the pulses of neighbouring impacts.
         const double earliest = i > 0 ? impacts[i - 1].tau + 0.5 * pulse : r.tau.front(),
@@ -189,12 +150,10 @@ std::vector<FittedImpact> direct_motion(
                          i + 1 < impacts.size() ? impacts[i + 1].tau - 0.5 * pulse : r.tau.back();
         FittedImpact& m = motions[i];
         const double begin = m.tau - 0.5 * pulse, end = m.tau + 0.5 * pulse;
-        const SideEstimate before = side_estimate(
-                               r, m.tau, sample(begin) - 1,
-                               sample(std::max(earliest, begin - difference_span))),
-                           after = side_estimate(
-                               r, m.tau, sample(end),
-                               sample(std::min(latest, end + difference_span)) - 1);
+        const std::ptrdiff_t first = sample(std::max(earliest, begin - difference_span)),
+                             last = sample(std::min(latest, end + difference_span)) - 1;
+        const OscillatorMotion before = side_motion(r, m.tau, sample(begin) - 1, first),
+                               after = side_motion(r, m.tau, sample(end), last);
         m.tau_error = nan;
         m.x = 0.5 * (before.x + after.x);
         m.x_dot_before = before.x_dot, m.x_dot_after = after.x_dot;
@@ -203,14 +162,13 @@ std::vector<FittedImpact> direct_motion(
     return motions;
 }
 
-/// Far above the impacts in a record of minutes.
-constexpr long most_forward_impacts = 100000;
-/// With this many impacts the mass takes part in the fit, unless that fails.
+constexpr long most_forward_impacts = 100000;  // far above the impacts in a record of minutes
+// With this many impacts the mass takes part in the fit, unless that fails.
 constexpr std::size_t enough_for_mass = 8;
 
 /// The stretches, split at impacts whose relative speed is unknown.
 std::vector<KnownStretch> with_speeds(
-    const std::vector<IdentifiedImpact>& impacts, const std::vector<KnownStretch>& stretches) {
+    const IdentifiedImpacts& impacts, const std::vector<KnownStretch>& stretches) {
     std::vector<KnownStretch> known;
     for (const KnownStretch& s : stretches)
         for (std::size_t first = s.first, i = first + 1; i <= s.last; ++i) {
@@ -252,17 +210,17 @@ std::optional<ForwardRun> forward_run(
     if (known == found.impacts.end()) return std::nullopt;
     const IdentifiedImpact& first = *known;
     ImpactRecord impacts;
-    Lyapunov lyapunov(system.own(), 0, infinity, qr_alone);
+    Lyapunov lyapunov(system.own, 0, infinity, qr_alone);
     Observer* const observers[] = {&impacts, &lyapunov};
     system.run(
         first.tau,
-        {first.x_dot_after, first.x, first.y_dot_after, first.x - first.side * system.own().b},
+        {first.x_dot_after, first.x, first.y_dot_after, first.x - first.side * system.own.b},
         {.tau_end = tau_end, .max_impacts = most_forward_impacts, .stop = progress.stop()},
         observers);
     progress.look();
     for (Impact& i : impacts.entries) i = system.measured(i, first.tau);
     Exponents lambda = lyapunov.product().qr();
-    for (double& l : lambda) l *= system.faster();
+    for (double& l : lambda) l *= system.faster;
     return ForwardRun{first.tau, std::move(impacts.entries), lambda};
 }
 
@@ -293,11 +251,25 @@ Identification identified(const FoundImpacts& f, Parameters& p) {
     return found;
 }
 
+// A forcing whose response is below this fraction of the motion counts as none: shakers hum.
+constexpr double negligible_forcing = 0.05;
+
+/// Whether the forcing is zero, or too weak to sustain the motion in the last quarter.
+bool is_unforced(const Parameters& p, const IdentifiedImpacts& impacts) {
+    if (p.G == 0) return true;
+    const double quarter = 0.25 * (impacts.back().tau - impacts.front().tau);
+    double last = 0;
+    for (const IdentifiedImpact& i : impacts)
+        if (!i.is_left_out() && i.tau >= impacts.back().tau - quarter)
+            last = std::max(last, elementary::hypot(i.x, i.x_dot_after));
+    return free_amplitude(p).value_or(infinity) < negligible_forcing * last;
+}
+
 /// The exponents with their verdict: not decided for a measurement that is not sound, or whose
 /// impacts weaken although the motion is forced; none for a motion that dies out.
 IdentifiedExponents judged_exponents(
-    const Parameters& p, const MeasuredExponents& exponents,
-    const std::vector<IdentifiedImpact>& impacts, bool is_sound) {
+    const Parameters& p, const MeasuredExponents& exponents, const IdentifiedImpacts& impacts,
+    bool is_sound) {
     IdentifiedExponents judged = judge_exponents(exponents, impacts);
     if (!is_sound) {
         judged.verdict = Verdict::not_decided;
@@ -313,8 +285,7 @@ IdentifiedExponents judged_exponents(
 void withhold_values(
     const std::vector<Doubt>& doubts, bool is_incomplete, FoundImpacts& refined,
     Identification& found) {
-    const bool about_b_alone =
-        std::ranges::all_of(doubts, [](Doubt d) { return d == Doubt::b_disagrees; });
+    const bool about_b_alone = std::ranges::count(doubts, Doubt::b_disagrees) == std::ssize(doubts);
     const bool without_mass = !refined.with_mass && refined.fit.impacts.size() >= enough_for_mass;
     if (about_b_alone && !is_incomplete && !without_mass) return;
     for (const Unknown u : {Unknown::b, Unknown::R_plus, Unknown::R_minus})
@@ -332,7 +303,7 @@ bool b_agrees(const Parameters& p, const Identification& i) {
 }
 
 double Measurement::step() const {
-    return (record.tau.back() - record.tau.front()) / static_cast<double>(record.tau.size() - 1);
+    return (record.tau.back() - record.tau.front()) / (count_of(record.tau) - 1);
 }
 
 MeasurementResult evaluate_measurement(const Measurement& m, const IdentificationWatch& watch) {

@@ -1,5 +1,13 @@
-#include "core/measurement/model_effects.hpp"
-
+// Effects outside the model of a record (unknowns.hpp): tests on the residual of a fit.
+//
+// Each effect changes the predicted samples and states linearly, by a few unknown sizes e. With the
+// equations N z = g of the fit, B = J^T W R for the derivatives R by the sizes, and r the residual,
+// the sizes and the change of all unknowns that including the effect would cause are
+//
+//     S = R^T W R - B^T N^-1 B,   e = S^-1 (R^T W r - B^T z),   change = -N^-1 B e.
+//
+// The effect is present if e S e is far above the number of its sizes, and matters if the change
+// exceeds the standard errors.
 #include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
@@ -11,21 +19,14 @@ namespace vines {
 
 namespace {
 
-// Slow variations over the record: harmonics of its length, in addition to a parabola of the
-// displacement, or to a slope of the forcing's amplitude. A slope of its phase is its frequency,
-// which is an unknown of the fit.
+// Slow variations over the record: harmonics of its length, next to a parabola of the displacement,
+// or a slope of the forcing's amplitude; a slope of its phase is its frequency, an unknown.
 constexpr Eigen::Index slow_harmonics = 4, slow_columns = 2 * slow_harmonics + 1,
                        forcing_columns = 4 * slow_harmonics + 1;
-// An effect is present if its statistic exceeds its degrees of freedom by this many of their
-// standard deviations and this much; it matters if it moves b, R or the forcing by this many
-// standard errors.
+// A statistic exceeds its degrees of freedom by this many standard deviations and this much if the
+// effect is present; it matters if it moves b, R or the forcing by this many standard errors.
 constexpr double sure_deviations = 6, sure = 25, matters = 1;
-// Largest phase lead of a high pass, rad.
-constexpr double most_lead = 0.5;
-
-double angle_of(const JointFitState& state, double times, double tau) {
-    return times * state.fit.values[Unknown::Omega] * (tau - state.fit.tau_middle);
-}
+constexpr double most_lead = 0.5;  // largest phase lead of a high pass, rad
 
 Flow harmonic_flow(const JointFitState& state, double times) {
     const UnknownValues& v = state.fit.values;
@@ -37,16 +38,97 @@ std::array<Oscillation, 2> at_rest(double angle) {
     return {{{0, 0, sin, cos}, {0, 0, cos, -sin}}};
 }
 
+/// Tests the effects with the equations of the last step, solved with them. Returns those that are
+/// present and matter for b, R or the forcing. `factor`: of standard errors.
+std::vector<FittedEffect> tested_effects(
+    const JointFitState& state, const EffectDerivatives& effects, double factor) {
+    const JointEquations& e = state.equations;
+    const JointEquations::EffectSums& sums = e.effects;
+    const Eigen::MatrixXd S = sums.squares.selfadjointView<Eigen::Lower>().toDenseMatrix() -
+                              sums.mixed.transpose() * sums.solved;
+    const Eigen::VectorXd g = sums.right - sums.mixed.transpose() * e.step;
+    std::vector<FittedEffect> found;
+    for (const EffectDerivatives::Columns& c : effects.columns()) {
+        if (c.effect == Effect::given_mass_ratio || c.effect == Effect::given_oscillator) continue;
+        // Scaled: the sizes have different units.
+        const Eigen::VectorXd scale =
+            S.diagonal().segment(c.first, c.count).cwiseMax(1e-300).cwiseSqrt().cwiseInverse();
+        Eigen::MatrixXd scaled =
+            scale.asDiagonal() * S.block(c.first, c.first, c.count, c.count) * scale.asDiagonal();
+        scaled.diagonal().array() += 1e-9;
+        const Eigen::VectorXd right = scale.asDiagonal() * g.segment(c.first, c.count),
+                              z = scaled.ldlt().solve(right);
+        const auto n = static_cast<double>(c.count);
+        const double statistic = right.dot(z) / (factor * factor);
+        if (!(statistic > n + sure_deviations * std::sqrt(2 * n) + sure)) continue;
+        const Eigen::VectorXd size = scale.asDiagonal() * z;
+        FittedEffect effect{c.effect, size.norm(), {}};
+        for (std::size_t k = 0; k < unknowns; ++k)
+            if (!state.fit.fixed[k])
+                effect.change[k] =
+                    -(sums.solved.row(e.unknown_at(k)).segment(c.first, c.count) * size).value();
+        double most = 0;
+        for (const Unknown u :
+             {Unknown::b, Unknown::R_plus, Unknown::R_minus, Unknown::force_sin,
+              Unknown::force_cos})
+            if (!state.fit.fixed[u])
+                most = std::max(most, std::abs(effect.change[u]) / state.fit.errors[u]);
+        // A slope of R leaves its mean as it is.
+        if (most > matters || c.effect == Effect::R_varies) found.push_back(effect);
+    }
+    return found;
+}
+
+/// Standard errors that follow from those of the given masses, stiffness and damping, and from the
+/// noise of a channel of the forcing.
+UnknownValues propagated_uncertainty(const JointFitState& state, const EffectDerivatives& effects) {
+    const UnknownValues& v = state.fit.values;
+    const double amplitude = elementary::hypot(v[Unknown::force_sin], v[Unknown::force_cos]);
+    const MeasuredLoad* load = state.forcing.load.get();
+    const GivenUncertainty& given = state.uncertainty;
+    const Eigen::Index mass = effects.first_of(Effect::given_mass_ratio),
+                       oscillator = effects.first_of(Effect::given_oscillator);
+    UnknownValues errors{};
+    for (std::size_t k = 0; k < unknowns; ++k) {
+        if (state.fit.fixed[k]) continue;
+        const auto by = state.equations.effects.solved.row(state.equations.unknown_at(k));
+        const auto add = [&](double error) { errors[k] = elementary::hypot(errors[k], error); };
+        const auto add_columns = [&](Eigen::Index first, Eigen::Index count, double error) {
+            add(error * amplitude * by.segment(first, count).norm());
+        };
+        if (load) {
+            add_columns(effects.first_of(Effect::second_harmonic), 2, load->error_of(2));
+            add_columns(effects.first_of(Effect::third_harmonic), 2, load->error_of(3));
+            // Slow variations of the fundamental: the mean square of a slow harmonic is 1/2.
+            add_columns(
+                effects.first_of(Effect::forcing_varies) + 1, forcing_columns - 1,
+                std::numbers::sqrt2 * load->error_of(1));
+        }
+        if (mass < 0) continue;
+        // The fit determines stiffness and damping where it is free to do so.
+        const double ratio = state.fit.epsilon * by(mass),
+                     stiffness = state.fit.fixed[Unknown::stiffness] ? by(oscillator) : 0,
+                     damping = state.fit.fixed[Unknown::damping]
+                                   ? v[Unknown::damping] * by(oscillator + 1)
+                                   : 0;
+        for (const double error :
+             {given.m2 * ratio, given.m1 * (ratio + stiffness + damping), given.k1 * stiffness,
+              given.c1 * damping})
+            add(error);
+    }
+    return errors;
+}
+
 }  // namespace
 
 EffectDerivatives::EffectDerivatives(const JointFitState& state)
     : state_(state),
       interval_(state.fit.intervals.size()),
-      second_(harmonic_flow(state, 2)),
-      third_(harmonic_flow(state, 3)) {
-    const auto add = [this](Effect effect, Eigen::Index count) {
-        columns_.push_back({effect, size_, count});
-        size_ += count;
+      harmonics_{harmonic_flow(state, 2), harmonic_flow(state, 3)} {
+    Eigen::Index size = 0;
+    const auto add = [&](Effect effect, Eigen::Index count) {
+        columns_.push_back({effect, size, count});
+        size += count;
     };
     const bool both = !state.record.x.empty() && !state.record.x_ddot.empty();
     add(Effect::second_harmonic, 2);
@@ -58,7 +140,7 @@ EffectDerivatives::EffectDerivatives(const JointFitState& state)
     add(Effect::friction, 1), add(Effect::R_varies, 1);
     if (state.uncertainty.any()) add(Effect::given_mass_ratio, 1), add(Effect::given_oscillator, 2);
     for (std::size_t k = 0; k < state.mains.size(); ++k) add(Effect::hum, both ? 4 : 2);
-    row_ = Eigen::VectorXd::Zero(size_);
+    row_ = Eigen::VectorXd::Zero(size);
     // A fit without a high pass takes its phase lead at the forcing frequency for a delay.
     const double Omega = state.fit.values[Unknown::Omega],
                  lead = std::clamp(Omega * state.fit.values[Unknown::x_delay], 0.0, most_lead);
@@ -66,7 +148,7 @@ EffectDerivatives::EffectDerivatives(const JointFitState& state)
 }
 
 Eigen::Index EffectDerivatives::first_of(Effect effect) const {
-    const auto at = std::ranges::find(columns_, effect, &EffectColumns::effect);
+    const auto at = std::ranges::find(columns_, effect, &Columns::effect);
     return at == columns_.end() ? -1 : at->first;
 }
 
@@ -83,25 +165,23 @@ const Eigen::VectorXd& EffectDerivatives::motion(
     std::size_t i, double tau, const MotionRow& row, double OscillatorMotion::* member) {
     const FittedInterval& from = state_.fit.intervals[i];
     const UnknownValues& v = state_.fit.values;
-    if (i != interval_) {
-        by_second_.emplace(second_, at_rest(angle_of(state_, 2, from.tau)));
-        by_third_.emplace(third_, at_rest(angle_of(state_, 3, from.tau)));
-        interval_ = i;
-    }
+    const double since_middle = from.tau - state_.fit.tau_middle;
     row_.setZero();
-    const double s = std::max(0.0, tau - from.tau);
-    const bool second_derivative = member == &OscillatorMotion::x_ddot;
-    for (const auto& [flow, effect] :
-         {std::pair(&by_second_, Effect::second_harmonic),
-          std::pair(&by_third_, Effect::third_harmonic)}) {
-        const auto parts = (*flow)->at(s, second_derivative);
-        for (Eigen::Index k = 0; k < 2; ++k)
-            row_(first_of(effect) + k) = parts[static_cast<std::size_t>(k)].*member;
+    // The first columns: harmonics of the forcing.
+    for (std::size_t h = 0; h < harmonics_.size(); ++h) {
+        if (i != interval_)
+            motions_[h].emplace(
+                harmonics_[h],
+                at_rest(static_cast<double>(h + 2) * v[Unknown::Omega] * since_middle));
+        const auto parts =
+            motions_[h]->at(std::max(0.0, tau - from.tau), member == &OscillatorMotion::x_ddot);
+        row_(2 * h) = parts[0].*member, row_(2 * h + 1) = parts[1].*member;
     }
+    interval_ = i;
     // The forcing hardly changes within an interval.
-    const double u = (from.tau - state_.fit.tau_middle) / state_.fit.length,
-                 sin = row.parts[2].*member, cos = row.parts[3].*member,
-                 f_s = v[Unknown::force_sin], f_c = v[Unknown::force_cos];
+    const double u = since_middle / state_.fit.length, sin = row.parts[2].*member,
+                 cos = row.parts[3].*member, f_s = v[Unknown::force_sin],
+                 f_c = v[Unknown::force_cos];
     const Eigen::Index varies = first_of(Effect::forcing_varies);
     row_(varies) = u * (f_s * sin + f_c * cos) / elementary::hypot(f_s, f_c);
     slow(u, varies + 1, sin);
@@ -144,8 +224,8 @@ const Eigen::VectorXd& EffectDerivatives::sample(
     // The last columns: two for each hum and sensor.
     for (std::size_t k = 0; k < state_.mains.size(); ++k) {
         const Eigen::Index count = columns_.back().count,
-                           at = size_ - static_cast<Eigen::Index>(state_.mains.size() - k) * count +
-                                (of_x ? 0 : count - 2);
+                           first = columns_[columns_.size() - state_.mains.size() + k].first,
+                           at = first + (of_x ? 0 : count - 2);
         const double angle = state_.mains[k] * since_middle;
         row_(at) = elementary::sin(angle), row_(at + 1) = elementary::cos(angle);
     }
@@ -158,83 +238,21 @@ double EffectDerivatives::flight(std::size_t p, double sign) const {
     return duration * (sign > 0 ? i.sliding.to_end : -i.sliding.from_start);
 }
 
-std::vector<FittedEffect> tested_effects(
-    const JointFitState& state, const EffectDerivatives& effects, double factor) {
-    const JointEquations& e = state.equations;
-    const EffectSums& sums = e.effects;
-    const Eigen::MatrixXd S = sums.squares.selfadjointView<Eigen::Lower>().toDenseMatrix() -
-                              sums.mixed.transpose() * sums.solved;
-    const Eigen::VectorXd g = sums.right - sums.mixed.transpose() * e.step;
-    std::vector<FittedEffect> found;
-    for (const EffectColumns& c : effects.columns()) {
-        if (c.effect == Effect::given_mass_ratio || c.effect == Effect::given_oscillator) continue;
-        // Scaled: the sizes have different units.
-        const Eigen::VectorXd scale =
-            S.diagonal().segment(c.first, c.count).cwiseMax(1e-300).cwiseSqrt().cwiseInverse();
-        Eigen::MatrixXd scaled =
-            scale.asDiagonal() * S.block(c.first, c.first, c.count, c.count) * scale.asDiagonal();
-        scaled.diagonal().array() += 1e-9;
-        const Eigen::VectorXd right = scale.asDiagonal() * g.segment(c.first, c.count),
-                              z = scaled.ldlt().solve(right);
-        const auto n = static_cast<double>(c.count);
-        const double statistic = right.dot(z) / (factor * factor);
-        if (!(statistic > n + sure_deviations * std::sqrt(2 * n) + sure)) continue;
-        FittedEffect effect{c.effect, 0, 0, {}};
-        const Eigen::VectorXd size = scale.asDiagonal() * z;
-        effect.size = size.norm();
-        effect.error = effect.size / std::sqrt(statistic);
-        double most = 0;
-        for (std::size_t k = 0; k < unknowns; ++k) {
-            if (state.fit.fixed[k]) continue;
-            effect.change[k] =
-                -(sums.solved.row(e.unknown_at(k)).segment(c.first, c.count) * size).value();
-            const auto u = static_cast<Unknown>(k);
-            if (u == Unknown::b || u == Unknown::R_plus || u == Unknown::R_minus ||
-                u == Unknown::force_sin || u == Unknown::force_cos)
-                most = std::max(most, std::abs(effect.change[k]) / state.fit.errors[k]);
-        }
-        // A slope of R leaves its mean as it is.
-        if (most > matters || c.effect == Effect::R_varies) found.push_back(effect);
-    }
-    return found;
-}
-
-UnknownValues propagated_uncertainty(const JointFitState& state, const EffectDerivatives& effects) {
-    const UnknownValues& v = state.fit.values;
-    const double amplitude = elementary::hypot(v[Unknown::force_sin], v[Unknown::force_cos]);
-    const MeasuredLoad* load = state.forcing.load.get();
-    const GivenUncertainty& given = state.uncertainty;
-    const Eigen::Index mass = effects.first_of(Effect::given_mass_ratio),
-                       oscillator = effects.first_of(Effect::given_oscillator);
-    UnknownValues errors{};
-    for (std::size_t k = 0; k < unknowns; ++k) {
-        if (state.fit.fixed[k]) continue;
-        const auto by = state.equations.effects.solved.row(state.equations.unknown_at(k));
-        const auto add = [&](double error) { errors[k] = elementary::hypot(errors[k], error); };
-        const auto add_columns = [&](Eigen::Index first, Eigen::Index count, double error) {
-            add(error * amplitude * by.segment(first, count).norm());
-        };
-        if (load) {
-            add_columns(effects.first_of(Effect::second_harmonic), 2, load->error_of(2));
-            add_columns(effects.first_of(Effect::third_harmonic), 2, load->error_of(3));
-            // Slow variations of the fundamental: the mean square of a slow harmonic is 1/2.
-            add_columns(
-                effects.first_of(Effect::forcing_varies) + 1, forcing_columns - 1,
-                std::numbers::sqrt2 * load->error_of(1));
-        }
-        if (mass < 0) continue;
-        // The fit determines stiffness and damping where it is free to do so.
-        const double ratio = state.fit.epsilon * by(mass),
-                     stiffness = state.fit.fixed[Unknown::stiffness] ? by(oscillator) : 0,
-                     damping = state.fit.fixed[Unknown::damping]
-                                   ? v[Unknown::damping] * by(oscillator + 1)
-                                   : 0;
-        for (const double error :
-             {given.m2 * ratio, given.m1 * (ratio + stiffness + damping), given.k1 * stiffness,
-              given.c1 * damping})
-            add(error);
-    }
-    return errors;
+void test_effects(JointFitState& state) {
+    EffectDerivatives derivatives(state);
+    state.effects = &derivatives;
+    set_equations(state);
+    if (!state.equations.solve()) return;
+    // evaluate_residual() scaled the errors.
+    const double factor = state.fit.errors[Unknown::Omega] / state.equations.errors[Unknown::Omega];
+    state.fit.effects =
+        tested_effects(state, derivatives, std::isfinite(factor) && factor > 1 ? factor : 1);
+    const auto widen = [&state](const UnknownValues& by) {
+        for (std::size_t k = 0; k < unknowns; ++k)
+            state.fit.errors[k] = elementary::hypot(state.fit.errors[k], by[k]);
+    };
+    for (const FittedEffect& e : state.fit.effects) widen(e.change);
+    widen(propagated_uncertainty(state, derivatives));
 }
 
 }  // namespace vines

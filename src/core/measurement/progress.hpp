@@ -8,9 +8,11 @@
 
 namespace vines {
 
-/// Stages in order: spikes are detected, impacts are refined round by round, exponents and
-/// comparisons are computed.
+/// Stages: detecting spikes, refining impacts round by round, computing exponents and comparisons.
 enum class IdentificationStage { spikes, impacts, exponents };
+
+/// Called often by a function that takes long; an exception it throws passes through.
+using Look = std::function<void()>;
 
 /// Callbacks of the caller.
 struct IdentificationWatch {
@@ -45,8 +47,7 @@ public:
     void check_impacts(std::size_t impacts) const {
         if (impacts > watch_.most_impacts) throw TooManyImpacts();
     }
-    /// For inner loops: calls look() now and then. work: amount since the last call, in units of a
-    /// few hundred operations.
+    /// For inner loops: calls look() now and then. work: in units of a few hundred operations.
     void tick(std::size_t work = 1) {
         ticks_ += work;
         if (ticks_ < ticks_per_look) return;

@@ -4,8 +4,6 @@
 // x, x' and the forcing. Without one, or where it is unusable, the motion is the smooth background
 // of the acceleration: a parabola through the neighbours of each sample, without those in a pulse.
 // The pulses are masked in rounds, first by a running median, then by the parabola.
-#include "core/measurement/candidates.hpp"
-
 #include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
@@ -13,6 +11,7 @@
 #include <utility>
 
 #include "core/measurement/robust.hpp"
+#include "core/measurement/search.hpp"
 #include "core/motion/elementary.hpp"
 
 namespace vines {
@@ -23,12 +22,10 @@ namespace {
 // The neighbourhood holds at least 9 samples on each side, because pulses may cover half of them.
 constexpr double background_least = 0.25;
 constexpr int background_samples = 9;
-// Minimum number of unmasked samples for a parabola.
-constexpr int parabola_samples = 5;
+constexpr int parabola_samples = 5;  // minimum number of unmasked samples for a parabola
 // Samples further off than this many standard deviations of the noise, and their neighbours, are
-// masked.
+// masked, in a limited number of rounds, in case two masks alternate.
 constexpr double masking_sigmas = 4;
-// Limit on the masking rounds, in case two masks alternate.
 constexpr int masking_rounds = 8;
 
 /// Samples [from, to) within `reach` of a sample that moves forward.
@@ -39,122 +36,72 @@ struct Neighbourhood {
         while (tau[k] - tau[from] > reach) ++from;
         while (to < tau.size() && tau[to] - tau[k] <= reach) ++to;
     }
+    /// Work of one pass through it, for IdentificationProgress::tick.
+    std::size_t work() const { return 1 + (to - from) / 64; }
 };
-
-/// Sorted values without NaN.
-class OrderedValues {
-public:
-    void add(double value) {
-        if (!std::isnan(value)) values_.insert(place_of(value), value);
-    }
-    void remove(double value) {
-        if (!std::isnan(value)) values_.erase(place_of(value));
-    }
-    /// NaN without values.
-    double median() const {
-        if (values_.empty()) return nan;
-        const std::size_t middle = values_.size() / 2;
-        return values_.size() % 2 ? values_[middle] : 0.5 * (values_[middle] + values_[middle - 1]);
-    }
-
-private:
-    std::vector<double>::iterator place_of(double value) {
-        return std::lower_bound(values_.begin(), values_.end(), value);
-    }
-    std::vector<double> values_;
-};
-
-/// Work of one pass through a neighbourhood, for IdentificationProgress::tick.
-std::size_t work_of(const Neighbourhood& near) { return 1 + (near.to - near.from) / 64; }
 
 /// Deviation from the median of the neighbourhood: the first approximation.
-std::vector<double> without_median(const ImpactSearchInput& in, double reach) {
-    const MeasuredRecord& r = in.record;
-    std::vector<double> residual(r.tau.size());
-    OrderedValues values;
+std::vector<double> without_median(const ImpactSearch& s, double reach) {
+    const std::vector<double>&tau = s.record.tau, &a = s.record.x_ddot;
+    std::vector<double> residual(tau.size()), values;  // values of the neighbourhood, sorted
+    const auto place_of = [&](double value) { return std::ranges::lower_bound(values, value); };
     Neighbourhood near;
-    for (std::size_t k = 0; k < r.tau.size(); ++k) {
+    for (std::size_t k = 0; k < tau.size(); ++k) {
         const Neighbourhood before = near;
-        near.move_to(k, r.tau, reach);
+        near.move_to(k, tau, reach);
         for (std::size_t j = before.from; j < std::min(before.to, near.from); ++j) {
-            in.progress.tick(work_of(near));
-            values.remove(r.x_ddot[j]);
+            s.progress.tick(near.work());
+            if (!std::isnan(a[j])) values.erase(place_of(a[j]));
         }
         for (std::size_t j = std::max(before.to, near.from); j < near.to; ++j) {
-            in.progress.tick(work_of(near));
-            values.add(r.x_ddot[j]);
+            s.progress.tick(near.work());
+            if (!std::isnan(a[j])) values.insert(place_of(a[j]), a[j]);
         }
-        residual[k] = r.x_ddot[k] - values.median();
+        const std::size_t n = values.size(), middle = n / 2;
+        residual[k] =
+            n == 0 ? nan
+                   : a[k] - (n % 2 ? values[middle] : 0.5 * (values[middle] + values[middle - 1]));
     }
     return residual;
 }
 
-/// Least-squares parabola through samples, as normal equations N z = g.
-struct ParabolaEquations {
-    Eigen::Matrix3d N = Eigen::Matrix3d::Zero();
-    Eigen::Vector3d g = Eigen::Vector3d::Zero();
-
-    void add(double at, double value) {
-        const Eigen::Vector3d row(1, at, at * at);
-        N += row * row.transpose();
-        g += value * row;
-    }
-    double count() const { return N(0, 0); }
-    /// Value at 0.
-    double solve() const { return N.ldlt().solve(g)(0); }
-};
-
 /// Residual of the acceleration: each sample minus the parabola through its unmasked neighbours.
-class BackgroundFit {
-public:
-    BackgroundFit(const ImpactSearchInput& in, double reach)
-        : r_(in.record),
-          reach_(reach),
-          progress_(in.progress),
-          residual_(r_.tau.size(), 0) {}
+struct BackgroundFit {
+    const ImpactSearch& s;
+    const double reach;
+    std::vector<double> residual = std::vector<double>(s.record.tau.size(), 0);
+    std::vector<char> masked = {};
 
-    const std::vector<double>& residual() const { return residual_; }
-
-    /// Applies another mask; only samples with a neighbour at which the masks differ are
-    /// recomputed.
-    void mask(std::vector<char> masked) {
-        const std::vector<char> before = std::exchange(masked_, std::move(masked));
+    /// Applies another mask; recomputes the samples with a neighbour at which the masks differ.
+    void mask(std::vector<char> mask) {
+        const std::vector<char> before = std::exchange(masked, std::move(mask));
         Neighbourhood near;
         std::size_t changed = 0;
-        for (std::size_t k = 0; k < r_.tau.size(); ++k) {
-            near.move_to(k, r_.tau, reach_);
-            progress_.tick(work_of(near));
+        for (std::size_t k = 0; k < residual.size(); ++k) {
+            near.move_to(k, s.record.tau, reach);
+            s.progress.tick(near.work());
             changed = std::max(changed, near.from);
-            while (changed < near.to && !before.empty() && masked_[changed] == before[changed])
+            while (changed < near.to && !before.empty() && masked[changed] == before[changed])
                 ++changed;
-            if (changed < near.to) residual_[k] = residual_at(k, near);
+            if (changed < near.to) residual[k] = residual_at(k, near);
         }
     }
 
-    const std::vector<char>& masked() const { return masked_; }
-
-private:
     /// 0 if too few neighbours are unmasked.
     double residual_at(std::size_t k, const Neighbourhood& near) const {
-        ParabolaEquations equations;
-        for (std::size_t j = near.from; j < near.to; ++j)
-            if (!masked_[j]) equations.add((r_.tau[j] - r_.tau[k]) / reach_, r_.x_ddot[j]);
-        return equations.count() >= parabola_samples ? r_.x_ddot[k] - equations.solve() : 0;
+        const MeasuredRecord& r = s.record;
+        Eigen::Matrix3d N = Eigen::Matrix3d::Zero();
+        Eigen::Vector3d g = Eigen::Vector3d::Zero();
+        for (std::size_t j = near.from; j < near.to; ++j) {
+            if (masked[j]) continue;
+            const double at = (r.tau[j] - r.tau[k]) / reach;
+            const Eigen::Vector3d row(1, at, at * at);
+            N += row * row.transpose();
+            g += r.x_ddot[j] * row;
+        }
+        return N(0, 0) >= parabola_samples ? r.x_ddot[k] - N.ldlt().solve(g)(0) : 0;
     }
-
-    const MeasuredRecord& r_;
-    const double reach_;
-    IdentificationProgress& progress_;
-    std::vector<char> masked_;
-    std::vector<double> residual_;
 };
-
-double noise_outside(const std::vector<char>& masked, const std::vector<double>& residual) {
-    std::vector<double> quiet;
-    for (std::size_t k = 0; k < residual.size(); ++k)
-        if (!masked[k]) quiet.push_back(residual[k]);
-    return robust_deviation(std::move(quiet));
-}
 
 /// Samples above the noise, each with its neighbours.
 std::vector<char> mask_of(const std::vector<double>& residual, double noise) {
@@ -167,50 +114,48 @@ std::vector<char> mask_of(const std::vector<double>& residual, double noise) {
 }
 
 /// Subtracts a parabola through the neighbours of each sample outside pulses. Needs x_ddot.
-PulseSignal smooth_background(const ImpactSearchInput& in) {
-    const MeasuredRecord& r = in.record;
-    const std::size_t n = r.tau.size();
-    const double reach = std::max(background_least, background_samples * in.statistics.step);
-    PulseSignal found{{}, third_difference_noise(r.tau, r.x_ddot)};
-    std::vector<double> residual = without_median(in, reach);
-    const double coarse = std::max(found.noise, robust_deviation(residual));
-    std::vector<char> masked(n, 0);
-    for (std::size_t k = 0; k < n; ++k) masked[k] = std::abs(residual[k]) > masking_sigmas * coarse;
+PulseSignal smooth_background(const ImpactSearch& s) {
+    const MeasuredRecord& r = s.record;
+    const double reach = std::max(background_least, background_samples * s.statistics.step);
+    std::vector<double> residual = without_median(s, reach);
+    const double coarse =
+        std::max(third_difference_noise(r.tau, r.x_ddot), robust_deviation(residual));
+    std::vector<char> masked;
+    for (const double off : residual) masked.push_back(std::abs(off) > masking_sigmas * coarse);
     residual = {};
-    BackgroundFit background(in, reach);
+    BackgroundFit background{s, reach};
+    double noise = nan;
     for (int round = 0; round < masking_rounds; ++round) {
         background.mask(std::move(masked));
-        found.noise = noise_outside(background.masked(), background.residual());
-        masked = mask_of(background.residual(), found.noise);
-        if (masked == background.masked()) break;
+        noise = robust_deviation(unmarked(background.residual, background.masked));
+        masked = mask_of(background.residual, noise);
+        if (masked == background.masked) break;
     }
-    found.noise = std::max(found.noise, in.statistics.a.least_noise);
-    found.value = background.residual();
-    return found;
+    return {std::move(background.residual), std::max(noise, s.statistics.a.least_noise)};
 }
 
 // Cycles of the oscillator in a stretch: a frequency error of .3 % slips by .15 rad within it.
 constexpr double stretch_cycles = 8;
-// Number of reweighted fits; samples further off than this many standard deviations get less
-// weight.
+// Number of reweighted fits; samples further off than this many standard deviations weigh less.
 constexpr int fits = 12;
 constexpr double off_motion = 2;
-constexpr Eigen::Index columns = 6;
 // x' at a sample is a difference over this tau on both sides. The difference amplifies noise, but
 // its coefficient is small: damping and the displacement's delay.
 constexpr double difference_reach = 0.1;
 constexpr std::size_t fewest_samples_of_stretch = 40;
 
 /// Samples [from, to) of a record with the measured motion.
-class SampledStretch {
-public:
-    SampledStretch(const ImpactSearchInput& in, std::size_t from, std::size_t to)
-        : rows_(static_cast<Eigen::Index>(to - from), columns),
-          a_(static_cast<Eigen::Index>(to - from)),
-          known_(to - from),
-          usable_(to - from) {
-        const MeasuredRecord& r = in.record;
-        const std::vector<char>&bad_x = in.statistics.x.bad, &bad_a = in.statistics.a.bad;
+struct SampledStretch {
+    using Row = Eigen::Matrix<double, 6, 1>;
+    Eigen::Matrix<double, Eigen::Dynamic, 6> rows;
+    Eigen::VectorXd a;
+    std::vector<char> known = {}, usable = {};  ///< the displacement is usable, and both channels
+
+    SampledStretch(const ImpactSearch& s, std::size_t from, std::size_t to)
+        : rows(to - from, 6),
+          a(to - from) {
+        const MeasuredRecord& r = s.record;
+        const std::vector<char>&bad_x = s.statistics.x.bad, &bad_a = s.statistics.a.bad;
         const double middle = 0.5 * (r.tau[from] + r.tau[to - 1]),
                      length = r.tau[to - 1] - r.tau[from];
         std::size_t before = from, after = from;
@@ -220,99 +165,78 @@ public:
                 ++after;
             const std::size_t left = before < k ? before : std::max<std::size_t>(k, 1) - 1,
                               right = after > k ? after : std::min(k + 1, r.tau.size() - 1);
-            const double angle = in.parameters.Omega * (r.tau[k] - middle);
-            const auto row = static_cast<Eigen::Index>(k - from);
-            rows_.row(row) << r.x[k], (r.x[right] - r.x[left]) / (r.tau[right] - r.tau[left]), 1,
-                (r.tau[k] - middle) / length, elementary::sin(angle), elementary::cos(angle);
-            a_(row) = r.x_ddot[k];
-            known_[k - from] = !bad_x[k] && !bad_x[left] && !bad_x[right];
-            usable_[k - from] = known_[k - from] && !bad_a[k];
+            const double angle = s.parameters.Omega * (r.tau[k] - middle);
+            rows.row(k - from) << r.x[k], (r.x[right] - r.x[left]) / (r.tau[right] - r.tau[left]),
+                1, (r.tau[k] - middle) / length, elementary::sin(angle), elementary::cos(angle);
+            a(k - from) = r.x_ddot[k];
+            known.push_back(!bad_x[k] && !bad_x[left] && !bad_x[right]);
+            usable.push_back(known.back() && !bad_a[k]);
         }
     }
 
-    Eigen::VectorXd left() const {
-        Eigen::Matrix<double, columns, 1> z = Eigen::Matrix<double, columns, 1>::Zero();
-        Eigen::VectorXd left = a_;
+    /// The acceleration without the motion.
+    Eigen::VectorXd residual() const {
+        Eigen::VectorXd left = a;
         double scale = infinity;
         for (int fit = 0; fit < fits; ++fit) {
-            Eigen::Matrix<double, columns, columns> N =
-                Eigen::Matrix<double, columns, columns>::Zero();
-            Eigen::Matrix<double, columns, 1> g = Eigen::Matrix<double, columns, 1>::Zero();
-            for (Eigen::Index k = 0; k < a_.size(); ++k) {
-                if (!usable_[static_cast<std::size_t>(k)]) continue;
+            Eigen::Matrix<double, 6, 6> N = Eigen::Matrix<double, 6, 6>::Zero();
+            Row g = Row::Zero();
+            for (Eigen::Index k = 0; k < a.size(); ++k) {
+                if (!usable[k]) continue;
                 const double off = std::abs(left(k)) / scale,
                              weight = off > off_motion ? off_motion / off : 1;
-                N.noalias() += weight * rows_.row(k).transpose() * rows_.row(k);
-                g.noalias() += weight * a_(k) * rows_.row(k).transpose();
+                N.noalias() += weight * rows.row(k).transpose() * rows.row(k);
+                g.noalias() += weight * a(k) * rows.row(k).transpose();
             }
             // The columns of x and x' are about a thousandth of the others.
-            const Eigen::Matrix<double, columns, 1> size =
-                N.diagonal().cwiseSqrt().cwiseMax(1e-300).cwiseInverse();
-            Eigen::Matrix<double, columns, columns> scaled =
-                size.asDiagonal() * N * size.asDiagonal();
+            const Row size = N.diagonal().cwiseSqrt().cwiseMax(1e-300).cwiseInverse();
+            Eigen::Matrix<double, 6, 6> scaled = size.asDiagonal() * N * size.asDiagonal();
             scaled.diagonal().array() += 1e-9;
-            z = size.asDiagonal() * scaled.ldlt().solve(size.asDiagonal() * g);
-            left = a_ - rows_ * z;
-            scale = deviation(left);
+            const Row z = size.asDiagonal() * scaled.ldlt().solve(size.asDiagonal() * g);
+            left = a - rows * z;
+            std::vector<double> of_usable;
+            for (Eigen::Index k = 0; k < a.size(); ++k)
+                if (usable[k]) of_usable.push_back(left(k));
+            scale = robust_deviation(std::move(of_usable));
+            if (!(scale > 0)) scale = infinity;
         }
         return left;
     }
-
-    /// Whether the displacement is usable at sample k of the stretch.
-    bool is_known(std::size_t k) const { return known_[k]; }
-
-private:
-    double deviation(const Eigen::VectorXd& left) const {
-        std::vector<double> values;
-        for (Eigen::Index k = 0; k < left.size(); ++k)
-            if (usable_[static_cast<std::size_t>(k)]) values.push_back(left(k));
-        const double d = robust_deviation(std::move(values));
-        return d > 0 ? d : infinity;
-    }
-
-    Eigen::Matrix<double, Eigen::Dynamic, columns> rows_;
-    Eigen::VectorXd a_;
-    std::vector<char> known_, usable_;
 };
 
 }  // namespace
 
-PulseSignal pulse_signal(const ImpactSearchInput& in) {
-    const MeasuredRecord& r = in.record;
+PulseSignal pulse_signal(const ImpactSearch& s) {
+    const MeasuredRecord& r = s.record;
     const std::size_t n = r.tau.size();
-    if (r.x.empty()) return smooth_background(in);
+    if (r.x.empty()) return smooth_background(s);
     PulseSignal signal{std::vector<double>(n), nan};
-    std::vector<char> unknown(n, 0);
-    const double longest = 2 * std::numbers::pi * stretch_cycles;
+    std::vector<char> known(n, 1);
+    const double duration = r.tau.back() - r.tau.front(),
+                 longest = 2 * std::numbers::pi * stretch_cycles;
     const auto stretches = std::max<std::size_t>(
-        1, std::min(
-               static_cast<std::size_t>((r.tau.back() - r.tau.front()) / longest),
-               n / fewest_samples_of_stretch));
+        1, std::min(static_cast<std::size_t>(duration / longest), n / fewest_samples_of_stretch));
     std::size_t from = 0;
     for (std::size_t i = 1; i <= stretches; ++i) {
-        in.progress.look();
-        const double end = r.tau.front() + (r.tau.back() - r.tau.front()) * static_cast<double>(i) /
-                                               static_cast<double>(stretches);
+        s.progress.look();
+        const double end =
+            r.tau.front() + duration * static_cast<double>(i) / static_cast<double>(stretches);
         const std::size_t to = i == stretches ? n : first_index(r, end);
         if (i < stretches && to - from < fewest_samples_of_stretch) continue;
-        const SampledStretch stretch(in, from, to);
-        const Eigen::VectorXd left = stretch.left();
-        for (std::size_t k = from; k < to; ++k) {
-            signal.value[k] = left(static_cast<Eigen::Index>(k - from));
-            unknown[k] = !stretch.is_known(k - from);
-        }
+        const SampledStretch stretch(s, from, to);
+        const Eigen::VectorXd left = stretch.residual();
+        std::copy(left.begin(), left.end(), signal.value.begin() + from);
+        std::ranges::copy(stretch.known, known.begin() + from);
         from = to;
     }
     // Where the displacement is unusable, the smooth part of the acceleration replaces it.
-    if (std::ranges::count(unknown, 1) > 0) {
-        const PulseSignal background = smooth_background(in);
+    if (std::ranges::count(known, 0) > 0) {
+        const PulseSignal background = smooth_background(s);
         for (std::size_t k = 0; k < n; ++k)
-            if (unknown[k]) signal.value[k] = background.value[k];
+            if (!known[k]) signal.value[k] = background.value[k];
     }
-    std::vector<double> quiet;
-    for (std::size_t k = 0; k < n; ++k)
-        if (!in.statistics.a.bad[k]) quiet.push_back(signal.value[k]);
-    signal.noise = std::max(robust_deviation(std::move(quiet)), in.statistics.a.least_noise);
+    const SensorStatistics& a = s.statistics.a;
+    signal.noise = std::max(robust_deviation(unmarked(signal.value, a.bad)), a.least_noise);
     return signal;
 }
 

@@ -8,6 +8,20 @@
 
 namespace vines {
 
+std::vector<double> steps_of(const std::vector<double>& v) {
+    std::vector<double> steps;
+    for (std::size_t k = 1; k < v.size(); ++k) steps.push_back(v[k] - v[k - 1]);
+    return steps;
+}
+
+std::vector<double> unmarked(const std::vector<double>& v, const std::vector<char>& marks) {
+    std::vector<double> some;
+    some.reserve(v.size());
+    for (std::size_t k = 0; k < v.size(); ++k)
+        if (!marks[k]) some.push_back(v[k]);
+    return some;
+}
+
 double median(std::vector<double> v) {
     std::erase_if(v, [](double x) { return std::isnan(x); });
     if (v.empty()) return nan;
@@ -20,8 +34,7 @@ double quantile_of_moduli(std::vector<double> v, double share) {
     std::erase_if(v, [](double x) { return std::isnan(x); });
     if (v.empty()) return nan;
     for (double& x : v) x = std::abs(x);
-    const auto at =
-        v.begin() + static_cast<std::ptrdiff_t>(share * static_cast<double>(v.size() - 1));
+    const auto at = v.begin() + static_cast<std::ptrdiff_t>(share * (count_of(v) - 1));
     std::nth_element(v.begin(), at, v.end());
     return *at;
 }
@@ -36,15 +49,13 @@ double third_difference_noise(
     const std::vector<double>& tau, const std::vector<double>& v,
     const std::vector<char>& spoiled) {
     if (v.size() < 4) return nan;
-    const double step = (tau.back() - tau.front()) / static_cast<double>(tau.size() - 1);
+    const double step = (tau.back() - tau.front()) / (count_of(tau) - 1);
     std::vector<double> scaled;  // to the variance of the noise
     scaled.reserve(v.size());
     for (std::size_t i = 0; i + 3 < v.size(); ++i) {
-        const auto is_spoiled = [&](std::size_t k) { return !spoiled.empty() && spoiled[k]; };
         // Allows one missing sample among the four.
-        if (tau[i + 3] - tau[i] > 4.5 * step || is_spoiled(i) || is_spoiled(i + 1) ||
-            is_spoiled(i + 2) || is_spoiled(i + 3))
-            continue;
+        if (tau[i + 3] - tau[i] > 4.5 * step) continue;
+        if (!spoiled.empty() && std::count(&spoiled[i], &spoiled[i] + 4, 0) < 4) continue;
         double difference = 0, variance = 0;
         for (std::size_t j = i; j <= i + 3; ++j) {
             double product = 1;

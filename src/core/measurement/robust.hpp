@@ -15,13 +15,17 @@ std::vector<double> values_of(const std::vector<Element>& list, const F& f) {
     return values;
 }
 
-/// Times from each element of a list to the next.
-template <class Element>
-std::vector<double> steps_of(const std::vector<Element>& list) {
-    std::vector<double> steps;
-    for (std::size_t k = 1; k < list.size(); ++k) steps.push_back(list[k].tau - list[k - 1].tau);
-    return steps;
+/// Number of elements of a list, for arithmetic.
+template <class List>
+double count_of(const List& list) {
+    return static_cast<double>(list.size());
 }
+
+/// Differences of successive values.
+std::vector<double> steps_of(const std::vector<double>& values);
+
+/// The values without a mark, one for each.
+std::vector<double> unmarked(const std::vector<double>& values, const std::vector<char>& marks);
 
 /// Median; NaN without values.
 double median(std::vector<double> values);

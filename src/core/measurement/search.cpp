@@ -1,12 +1,9 @@
-// The order of the search and its fits: candidates, the forcing's frequency, a fit of the
-// displacement alone, fits of both sensors with the pulses, the oscillator, the mass, and contacts
-// that no sample shows.
+// The search and its fits in order: candidates, the forcing's frequency, a fit of the displacement
+// alone, fits of both sensors with the pulses, the oscillator, the mass, and hidden contacts.
 #include "core/measurement/search.hpp"
 
 #include <algorithm>
 #include <cmath>
-
-#include "core/measurement/search_state.hpp"
 
 namespace vines {
 
@@ -14,23 +11,17 @@ namespace {
 
 // Fewest rounds with pulses: the first round determines the pulses, the second uses them.
 constexpr int rounds_with_pulses = 2;
-// Fewest impacts for a fit with the mass.
-constexpr std::ptrdiff_t fewest_with_mass = 8;
-// Fraction of impacts without a pulse times that of pulses without an impact, from which on the
-// search starts again.
+constexpr int most_hidden_rounds = 3;  // rounds of searching hidden contacts and fitting again
+constexpr std::ptrdiff_t fewest_with_mass = 8;  // fewest impacts for a fit with the mass
+// Fractions of impacts without a pulse times pulses without an impact that cause another search.
 constexpr double most_contradicting = 1e-3;
-// Rounds of searching hidden contacts and fitting again.
-constexpr int most_hidden_rounds = 3;
-// Shortest gap of the record that can hide an impact, in tau.
-constexpr double hiding_gap = 0.5;
+constexpr double hiding_gap = 0.5;  // shortest gap of the record that can hide an impact, in tau
 // Largest standard error of a known velocity, in typical jumps of x'.
 constexpr double most_velocity_error = 0.5;
 // Standard error of an impact's time as its pulse shows it, in sampling steps.
 constexpr double event_steps = 0.1;
-// Alignments of the pulses with their template after each fit.
-constexpr int alignments = 3;
-// Largest fraction of a typical flight that a pulse can spoil before and after an impact: the rest
-// of the acceleration is needed for the fit.
+constexpr int alignments = 3;  // alignments of the pulses with their template after each fit
+// Largest part of a typical flight that a pulse spoils on either side: the fit needs the rest.
 constexpr double most_spoiled = 0.35;
 // The record contradicts the given oscillator if a value is off by this many standard errors, and k
 // or c by more than these fractions.
@@ -58,8 +49,7 @@ bool is_plausible(const ImpactSearch& s, const UnknownValues& v) {
            c > given_c / most_of_damping - slack_of_damping;
 }
 
-/// Sets the walls of the impacts. The wall pushes x back, so the jump of x' shows its side; if it
-/// is uncertain, the pulse does.
+/// Sets the walls of the impacts, by the jump of x' or, if that is uncertain, by the pulse.
 void assign_walls(ImpactSearch& s) {
     for (std::size_t i = 0; i < s.candidates.size(); ++i) {
         Candidate& c = s.candidates[i];
@@ -85,22 +75,9 @@ JointFitInput fit_input(const ImpactSearch& s) {
         .uncertainty = s.measurement.uncertainty};
 }
 
-void fit_motion(ImpactSearch& s) {
-    JointFit& last = s.found.fit;
-    last.x.left = {}, last.a.left = {};  // releases a value per sample
-    last =
-        fit_jointly(fit_input(s), s.candidates, s.values, s.candidates_changed ? nullptr : &last);
-    s.candidates_changed = false;
-    s.values = last.values;
-    for (std::size_t i = 0; i < s.candidates.size(); ++i) {
-        s.candidates[i].tau = last.impacts[i].tau;
-        s.candidates[i].jump = last.impacts[i].jump();
-    }
-}
-
 /// Limits the extent of pulses to a fraction of a typical flight.
 void limit_pulse_extent(ImpactSearch& s) {
-    const double most = most_spoiled * median(steps_of(s.candidates));
+    const double most = most_spoiled * median(steps_of(values_of(s.candidates, &Candidate::tau)));
     s.spoiled.a = {std::min(s.spoiled.a.before, most), std::min(s.spoiled.a.after, most)};
 }
 
@@ -126,15 +103,13 @@ bool release_oscillator(ImpactSearch& s) {
     return true;
 }
 
-/// Returns to the given oscillator if the fitted one is implausible, which indicates another
-/// problem; returns whether it is.
+/// Returns to the given oscillator if the fitted one is implausible; returns whether it is.
 bool restore_given_oscillator(ImpactSearch& s) {
     if (s.fixed.oscillator() || is_plausible(s, s.values)) return false;
     const UnknownValues given = given_unknowns(s.parameters);
     s.may_release_oscillator = false;
-    s.fixed[Unknown::stiffness] = s.fixed[Unknown::damping] = true;
-    s.values[Unknown::stiffness] = given[Unknown::stiffness];
-    s.values[Unknown::damping] = given[Unknown::damping];
+    for (const Unknown u : {Unknown::stiffness, Unknown::damping})
+        s.fixed[u] = true, s.values[u] = given[u];
     s.candidates_changed = true;
     return true;
 }
@@ -153,34 +128,17 @@ void fit_with_mass(ImpactSearch& s) {
     if (fit.converged) s.found.fit = std::move(fit);
 }
 
-std::vector<TimeGap> hiding_gaps(const MeasuredRecord& r) {
-    std::vector<TimeGap> gaps = time_gaps(r);
-    std::erase_if(gaps, [](const TimeGap& g) { return g.to - g.from < hiding_gap; });
-    return gaps;
-}
-
 /// Candidates from the record, or from given times, and the gaps of the record as borders.
 void find_candidates(ImpactSearch& s, bool events_first) {
     s.fixed[Unknown::stiffness] = s.fixed[Unknown::damping] = true;
-    s.found.gaps = hiding_gaps(s.record);
-    if (s.searches()) {
-        FirstCandidates first = first_candidates(s, events_first);
-        s.candidates = std::move(first.candidates);
-        s.spoiled.a = first.extent;
-        s.values[Unknown::x_delay] = first.x_delay;
-    } else {
-        s.spoiled.a = unknown_extent(s.statistics);
-        for (const double tau : s.measurement.impact_times) s.candidates.push_back({.tau = tau});
-    }
+    s.found.gaps = time_gaps(s.record);
+    std::erase_if(s.found.gaps, [](const TimeGap& g) { return g.to - g.from < hiding_gap; });
+    for (const double tau : s.measurement.impact_times) s.candidates.push_back({.tau = tau});
+    if (s.searches()) find_first_candidates(s, events_first);
     std::erase_if(s.candidates, [&](const Candidate& c) { return is_in_gap(s, c.tau); });
     for (const TimeGap& g : s.found.gaps)
         s.candidates.push_back({.tau = 0.5 * (g.from + g.to), .border = Border::gap});
     std::ranges::sort(s.candidates, {}, &Candidate::tau);
-}
-
-void find_frequency(ImpactSearch& s) {
-    const MeasuredLoad* load = s.measurement.forcing.load.get();
-    s.values[Unknown::Omega] = load ? load->Omega : scanned_frequency(fit_input(s), s.candidates);
 }
 
 /// Number of impacts without an event in the acceleration.
@@ -190,8 +148,7 @@ std::ptrdiff_t unseen_count(const ImpactSearch& s) {
     });
 }
 
-/// Fits the displacement alone, with the impact times of the events: this does not depend on other
-/// errors of the acceleration.
+/// Fits the displacement alone, with the times of the events but no other acceleration.
 void fit_displacement_first(ImpactSearch& s) {
     s.displacement = {s.record.tau, s.record.x, {}};
     for (Candidate& c : s.candidates)
@@ -210,11 +167,12 @@ void fit_displacement_first(ImpactSearch& s) {
 void clear_unknown_velocities(ImpactSearch& s) {
     const double most = most_velocity_error * typical_jump(s.candidates);
     std::vector<FittedImpact>& all = s.found.fit.impacts;
+    const auto is_gap = [&](std::size_t i) {
+        return i >= all.size() || all[i].border == Border::gap;
+    };
     for (std::size_t i = 0; i < all.size(); ++i) {
-        const bool after_gap = i == 0 || all[i - 1].border == Border::gap,
-                   before_gap = i + 1 == all.size() || all[i + 1].border == Border::gap;
-        if (after_gap && !(all[i].x_dot_before_error < most)) all[i].x_dot_before = nan;
-        if (before_gap && !(all[i].x_dot_after_error < most)) all[i].x_dot_after = nan;
+        if (is_gap(i - 1) && !(all[i].x_dot_before_error < most)) all[i].x_dot_before = nan;
+        if (is_gap(i + 1) && !(all[i].x_dot_after_error < most)) all[i].x_dot_after = nan;
     }
 }
 
@@ -231,22 +189,23 @@ void report_impacts(ImpactSearch& s) {
     s.found.unseen = s.searches() ? unseen_count(s) : 0;
     clear_unknown_velocities(s);
     std::vector<FittedImpact> impacts;
-    for (std::size_t i = 0; i < s.candidates.size(); ++i) {
-        if (!s.candidates[i].is_impact() || s.candidates[i].is_predicted) continue;
-        impacts.push_back(s.found.fit.impacts[i]);
-    }
+    for (std::size_t i = 0; i < s.candidates.size(); ++i)
+        if (s.candidates[i].is_impact() && !s.candidates[i].is_predicted)
+            impacts.push_back(s.found.fit.impacts[i]);
     s.found.fit.impacts = std::move(impacts);
     s.found.extent = s.spoiled.a;
 }
 
-/// The whole search; `events_first`: as in first_candidates().
+/// The whole search; `events_first`: as in find_first_candidates().
 FoundImpacts searched(const Measurement& m, IdentificationProgress& progress, bool events_first) {
-    ImpactSearch s{{m, progress}};
+    ImpactSearch s{m, progress};
     find_candidates(s, events_first);
     progress.reach(IdentificationStage::impacts);
     if (impact_count(s) < 2) return std::move(s.found);
 
-    if (!s.fixed[Unknown::Omega]) find_frequency(s);
+    if (!s.fixed[Unknown::Omega])
+        s.values[Unknown::Omega] =
+            m.forcing.load ? m.forcing.load->Omega : scanned_frequency(fit_input(s), s.candidates);
     // The acceleration can determine the sensors' errors only once the impacts are known.
     if (!m.record.x.empty() && !m.record.x_ddot.empty()) fit_displacement_first(s);
     limit_pulse_extent(s);
@@ -267,30 +226,38 @@ FoundImpacts searched(const Measurement& m, IdentificationProgress& progress, bo
 /// Fraction of the impacts that contradict their pulses; 1 if the fit fails as a whole.
 double contradicting_share(const FoundImpacts& f) {
     if (!f.with_mass || !f.settled || !explains(f.fit)) return 1;
-    return static_cast<double>(f.unseen) * static_cast<double>(f.dropped.size()) /
-           static_cast<double>(f.fit.impacts.size() * f.fit.impacts.size());
+    const double impacts = count_of(f.fit.impacts);
+    return static_cast<double>(f.unseen) * count_of(f.dropped) / (impacts * impacts);
 }
 
 }  // namespace
 
 void fit_motion_and_pulses(ImpactSearch& s) {
-    fit_motion(s);
-    const JointFit& fit = s.found.fit;
-    if (!s.record.x.empty()) s.spoiled.x = kink_extent(s, fit);
+    JointFit& last = s.found.fit;
+    last.x.left = {}, last.a.left = {};  // releases a value per sample
+    const JointFit* const before = s.candidates_changed ? nullptr : &last;
+    last = fit_jointly(fit_input(s), s.candidates, s.values, before);
+    s.candidates_changed = false;
+    s.values = last.values;
+    for (std::size_t i = 0; i < s.candidates.size(); ++i) {
+        s.candidates[i].tau = last.impacts[i].tau;
+        s.candidates[i].jump = last.impacts[i].jump();
+    }
+    if (!s.record.x.empty()) s.spoiled.x = kink_extent(s);
     if (s.record.x_ddot.empty() || s.displacement) return;
-    s.spoiled.a = pulse_extent(s, fit);
+    s.spoiled.a = pulse_extent(s);
     limit_pulse_extent(s);
-    std::vector<double> times = values_of(fit.impacts, &FittedImpact::tau);
+    std::vector<double> times = values_of(s.found.fit.impacts, &FittedImpact::tau);
     const double late = event_delay(s);
     // The template sharpens the times, and these the template.
     for (int alignment = 0; alignment < alignments; ++alignment) {
-        s.found.pulse = PulseTemplate(s, fit, times, s.spoiled.a);
+        s.found.pulse = PulseTemplate(s, times);
         for (std::size_t i = 0; i < s.candidates.size(); ++i) {
             Candidate& c = s.candidates[i];
             if (!c.is_impact()) continue;
             s.progress.tick();
-            const double other = c.height != 0 ? c.event - late : fit.impacts[i].tau;
-            const PulseTime m = pulse_time(s, s.found.pulse, fit, i, other);
+            const double other = c.height != 0 ? c.event - late : s.found.fit.impacts[i].tau;
+            const PulseTime m = pulse_time(s, i, other);
             c.pulse_tau = m.tau, times[i] = m.with_x;
             c.pulse_error = elementary::hypot(m.error, s.found.pulse.time_error());
         }

@@ -11,27 +11,6 @@
 
 namespace vines {
 
-TrueOscillator::TrueOscillator(const TrueMotion& m)
-    : motion_(m),
-      free_(Flow::free(m.parameters)),
-      stuck_(Flow::sticking(m.parameters)) {}
-
-double TrueOscillator::x(double tau) const {
-    const TrueStretch& s = stretch(tau);
-    return flow(s).after(s.start, tau - s.tau).x;
-}
-
-double TrueOscillator::acceleration(double tau) const {
-    const TrueStretch& s = stretch(tau);
-    return flow(s).acceleration(flow(s).after(s.start, tau - s.tau));
-}
-
-const TrueStretch& TrueOscillator::stretch(double tau) const {
-    const auto after = std::ranges::upper_bound(
-        motion_.stretches.begin() + 1, motion_.stretches.end(), tau, {}, &TrueStretch::tau);
-    return *(after - 1);
-}
-
 namespace {
 
 constexpr double sampling_rate = 2048, pulse_seconds = 0.8e-3;
@@ -72,6 +51,15 @@ void add_half_sines(const TrueMotion& motion, MeasuredRecord& r) {
 
 }  // namespace
 
+OscillatorMotion TrueOscillator::at(double tau) const {
+    const auto after = std::ranges::upper_bound(
+        motion.stretches.begin() + 1, motion.stretches.end(), tau, {}, &TrueStretch::tau);
+    const TrueStretch& s = *(after - 1);
+    const Flow& flow = s.sticks ? stuck : free;
+    const Oscillation o = flow.after(s.start, tau - s.tau);
+    return {o.x, o.x_dot, flow.acceleration(o)};
+}
+
 TrueMotion true_motion(
     const Parameters& p, double omega0, double settling, double seconds,
     const ExponentOptions& estimators) {
@@ -102,7 +90,7 @@ TrueMotion true_motion(
 }
 
 MeasuredRecord synthetic_record(const TrueMotion& motion, const SensorNoise& noise) {
-    const TrueOscillator oscillator(motion);
+    const TrueOscillator oscillator{motion};
     const double step = motion.omega0 / sampling_rate,
                  noise_a = noise.noise_a * (1 / (motion.omega0 * motion.omega0));
     const auto samples = static_cast<std::size_t>(motion.seconds * sampling_rate);
@@ -110,8 +98,8 @@ MeasuredRecord synthetic_record(const TrueMotion& motion, const SensorNoise& noi
     for (std::size_t k = 0; k < samples; ++k) {
         const double tau = motion.begin + static_cast<double>(k) * step;
         r.tau.push_back(tau);
-        r.x.push_back(oscillator.x(std::max(tau, oscillator.begin())));
-        r.x_ddot.push_back(oscillator.acceleration(tau));
+        r.x.push_back(oscillator.at(std::max(tau, oscillator.begin())).x);
+        r.x_ddot.push_back(oscillator.at(tau).x_ddot);
     }
     add_half_sines(motion, r);
     std::mt19937_64 engine(noise_seed);

@@ -1,8 +1,8 @@
-// Synthetic records: a computed motion as seen by two sensors with noise. tau = omega0 t is
-// dimensionless time; lengths are in m.
+// Synthetic records: a computed motion as seen by two sensors with noise. tau = omega0 t.
 #pragma once
 
 #include "core/measurement/measured_record.hpp"
+#include "core/measurement/unknowns.hpp"
 #include "core/stability/lyapunov.hpp"
 
 namespace vines {
@@ -33,20 +33,13 @@ TrueMotion true_motion(
     const Parameters& parameters, double omega0, double settling, double seconds,
     const ExponentOptions& estimators = qr_alone);
 
-/// State of the oscillator at any time from the first stretch on. The motion must outlive it.
-class TrueOscillator {
-public:
-    explicit TrueOscillator(const TrueMotion& motion);
-    double x(double tau) const;
-    double acceleration(double tau) const;
-    double begin() const { return motion_.stretches.front().tau; }
+/// The oscillator's motion from the first stretch on.
+struct TrueOscillator {
+    const TrueMotion& motion;
+    const Flow free = Flow::free(motion.parameters), stuck = Flow::sticking(motion.parameters);
 
-private:
-    const TrueStretch& stretch(double tau) const;
-    const Flow& flow(const TrueStretch& s) const { return s.sticks ? stuck_ : free_; }
-
-    const TrueMotion& motion_;
-    const Flow free_, stuck_;
+    double begin() const { return motion.stretches.front().tau; }
+    OscillatorMotion at(double tau) const;
 };
 
 /// Standard deviations of the noise of both sensors, m and m/s^2.
@@ -54,9 +47,8 @@ struct SensorNoise {
     double noise_x = 2e-6, noise_a = 0.05;
 };
 
-/// Record of `motion` with 2048 samples per second. The acceleration shows each impact as a half
-/// sine of 0.8 ms; the noise is normal and the same in each call. tau has the same origin as the
-/// motion's.
+/// Record of `motion` with 2048 samples per second and the motion's tau. The acceleration shows
+/// each impact as a half sine of 0.8 ms; the noise is normal and the same in each call.
 MeasuredRecord synthetic_record(const TrueMotion& motion, const SensorNoise& noise);
 
 }  // namespace vines

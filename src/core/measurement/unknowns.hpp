@@ -15,24 +15,36 @@
 // the forcing. The phase ends where x'' = 0, with x and x' continuous.
 //
 // Residuals: all samples outside pulses; at each impact the continuity of x, and its time according
-// to its pulse. Once the impacts are known, those of the mass follow (joint_equations.hpp): between
-// impacts it flies with constant velocity from wall to wall, eq. (43), each impact conserves x' +
-// epsilon y', eq. (36), and each wall has one R, eq. (4). Contacts that no sample shows, weak
-// impacts and sticking phases, follow from a run of the system identified so far
-// (hidden_contacts.hpp); then everything is fitted again.
-//
-// Priors: the given k and c are known to stiffness_prior and damping_prior, the clocks of both
-// channels agree to delay_prior, and so on. They are wide: the record is far more precise.
+// to its pulse. Once the impacts are known, those of the mass follow (joint_fit_equations.cpp).
+// Contacts that no sample shows, weak impacts and sticking phases, follow from a run of the system
+// identified so far (hidden_contacts.hpp); then everything is fitted again. Priors for the given k
+// and c, the delay and others are wide: the record is far more precise.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstddef>
 #include <memory>
 #include <optional>
 
+#include "core/motion/elementary.hpp"
 #include "core/motion/parameters.hpp"
 
 namespace vines {
+
+/// Displacement x and its derivatives by tau.
+struct OscillatorMotion {
+    double x, x_dot, x_ddot;
+};
+inline OscillatorMotion operator+(const OscillatorMotion& a, const OscillatorMotion& b) {
+    return {a.x + b.x, a.x_dot + b.x_dot, a.x_ddot + b.x_ddot};
+}
+inline OscillatorMotion operator-(const OscillatorMotion& a, const OscillatorMotion& b) {
+    return {a.x - b.x, a.x_dot - b.x_dot, a.x_ddot - b.x_ddot};
+}
+inline OscillatorMotion operator*(double by, const OscillatorMotion& m) {
+    return {by * m.x, by * m.x_dot, by * m.x_ddot};
+}
 
 /// Unknowns common to the whole record.
 enum class Unknown {
@@ -51,8 +63,7 @@ enum class Unknown {
     b,        ///< m
     R_plus,   ///< wall at +b
     R_minus,  ///< wall at -b
-    /// Delay of the impact times from pulses, in tau: the template was aligned with approximate
-    /// impact times.
+    /// Delay of the impact times from pulses, in tau: those of the template are approximate.
     pulse_lag
 };
 inline constexpr std::size_t unknowns = 15;
@@ -82,18 +93,45 @@ class MeasuredLoad;
 struct KnownForcing {
     std::optional<double> amplitude = {};  ///< f, m
     std::optional<double> phase = {};
-    /// The forcing beyond its fundamental, from a channel of the record (measured_load.hpp); null:
-    /// it is a sine.
+    /// The forcing beyond its fundamental, from a channel (measured_load.hpp); null: a sine.
     std::shared_ptr<const MeasuredLoad> load = {};
 };
 
 /// Values for ideal sensors and the given oscillator.
-UnknownValues given_unknowns(const Parameters& parameters);
+inline UnknownValues given_unknowns(const Parameters& p) {
+    UnknownValues v{};
+    v[Unknown::x_gain] = 1;
+    v[Unknown::Omega] = p.Omega;
+    v[Unknown::stiffness] = 1;
+    v[Unknown::damping] = 2 * p.zeta();
+    v[Unknown::b] = p.b;
+    v[Unknown::R_plus] = p.R_plus;
+    v[Unknown::R_minus] = p.R_minus;
+    return v;
+}
+
+/// Standard deviations of the priors; infinite without a prior. Masses and springs are known better
+/// than this, dampings hardly; the displacement's scale to a tenth, its delay to part of a cycle.
+inline UnknownValues priors(const Parameters& p) {
+    UnknownValues sigma;
+    sigma.fill(infinity);
+    sigma[Unknown::x_gain] = 0.1;
+    sigma[Unknown::x_delay] = 0.1;
+    sigma[Unknown::Omega] = 0.02 * p.Omega;
+    sigma[Unknown::stiffness] = 0.02;
+    sigma[Unknown::damping] = std::max(0.5 * 2 * p.zeta(), 1e-3);
+    return sigma;
+}
+
 /// Amplitude f of the forcing in eq. (2), m.
-double forcing_of(const Parameters& parameters);
+inline double forcing_of(const Parameters& p) {
+    return p.G * p.epsilon * elementary::hypot(1.0, p.lambda * p.epsilon * p.Omega);
+}
+
 /// G of a forcing f_s sin(Omega tau) + f_c cos(Omega tau), eq. (3), m.
-double G_of(const Parameters& parameters, double force_sin, double force_cos);
-/// Standard deviations of the priors; infinite without a prior.
-UnknownValues priors(const Parameters& parameters);
+inline double G_of(const Parameters& p, double force_sin, double force_cos) {
+    return elementary::hypot(force_sin, force_cos) / p.epsilon /
+           elementary::hypot(1.0, p.lambda * p.epsilon * p.Omega);
+}
 
 }  // namespace vines
