@@ -1,6 +1,5 @@
-// An analysis is one run with a list of observers, in three steps: Observers constructs the
-// observers of the requested parts, simulate() passes the motion to them, and Conclusion turns
-// their records into the parts of Analysis and its warnings.
+// AnalysisObservers constructs the observers of the requested parts, simulate() passes the motion
+// to them, and AnalysisConclusion turns their records into the parts of Analysis and its warnings.
 #include "core/analysis/analysis.hpp"
 
 #include <algorithm>
@@ -26,19 +25,16 @@ void add_warnings(const TransferProduct& product, bool histories, std::vector<Wa
 
 namespace {
 
-/// Points on each branch of the manifold: a smooth curve on a screen.
-constexpr std::size_t manifold_points = 200;
+constexpr std::size_t manifold_points = 200;  // on each branch
 
 double series_step(const AnalysisRequest& w) {
     const double requested = w.parameters.cycle() / w.samples_per_cycle;
     return std::max(requested, w.tau_end / static_cast<double>(w.most_points - 1));
 }
 
-/// Upper estimate for most responses; sizes a reservation only.
-constexpr double many_impacts_per_cycle = 4;
-
+/// Upper estimate for most responses, four per cycle; sizes a reservation only.
 std::size_t impacts_expected(const AnalysisRequest& w) {
-    const double expected = many_impacts_per_cycle * (w.tau_end / w.parameters.cycle() + 1);
+    const double expected = 4 * (w.tau_end / w.parameters.cycle() + 1);
     return static_cast<std::size_t>(
         std::min({expected, static_cast<double>(w.max_impacts), static_cast<double>(w.most_kept)}));
 }
@@ -49,12 +45,8 @@ bool needs_verdict(const AnalysisRequest& w) {
 }
 
 ExponentOptions main_estimators(const AnalysisRequest& w) {
-    const ExponentOptions& e = w.estimators;
-    return {
-        .qr = true,
-        .eigenvalues = e.eigenvalues && w.parts.exponents,
-        .raw_product = e.raw_product && w.parts.exponents,
-        .history = e.history};
+    const auto& [qr, eigenvalues, raw_product, history] = w.estimators;
+    return {true, eigenvalues && w.parts.exponents, raw_product && w.parts.exponents, history};
 }
 
 ExponentOptions window_estimators(const AnalysisRequest& w) {
@@ -68,25 +60,25 @@ struct AnalysisObservers {
     explicit AnalysisObservers(const AnalysisRequest& w)
         : series(series_step(w), w.parameters.load && w.parameters.load->moves_base()),
           impacts(w.most_listed, w.most_kept),
-          section(w.window.from, w.window.to, w.most_points),
+          section(w.window, w.most_points),
           sticks(w.most_listed),
           grazing(w.most_listed),
-          lyapunov(w.parameters, w.window.from, w.window.to, main_estimators(w)),
+          lyapunov(w.parameters, w.window, main_estimators(w)),
           windows(w.parameters, window_estimators(w)),
-          transfers(w.parameters, w.window.from, w.window.to, w.most_points),
-          at_phase_zero(w.parameters, {.most = kept_states, .until = w.window.to}),
-          at_section_phase(w.parameters, 0, w.section_phase),
-          cycle_peaks(w.window.from, w.window.to, w.parameters.cycle()),
-          extremes(w.parameters, w.window.from, w.window.to, w.parts.extremes),
+          transfers(w.parameters, w.window, w.most_points),
+          at_phase_zero(w.parameters, {.until = w.window.to}, kept_states),
+          at_section_phase(w.parameters, {.phase = w.section_phase}),
+          cycle_peaks(w.window, w.parameters.cycle()),
+          extremes(w.parameters, w.window, w.parts.extremes),
           decay(w.parameters, w.window.from),
           rhythm(w.parameters, w.window, w.parts.regime ? w.most_points : 0),
-          half_cycles(w.parameters, w.window.from, w.window.to, w.most_points) {
+          half_cycles(w.parameters, w.window, w.most_points) {
         // Without a reservation, growing the lists takes longer than the simulation. Reserved
         // memory that is never written takes no RAM.
         if (w.parts.series) series.expect(w.tau_end);
         if (w.parts.impacts) impacts.entries.reserve(impacts_expected(w));
-        for (const Interval& window : w.windows) windows.add(window.from, window.to);
-        if (w.parts.energy) energy.emplace(w.parameters, w.window.from, w.window.to);
+        for (const Interval& window : w.windows) windows.add(window);
+        if (w.parts.energy) energy.emplace(w.parameters, w.window);
         // The actual difference: adding the perturbation to the start rounds it.
         if (w.perturbation)
             compared.emplace(
@@ -143,9 +135,9 @@ struct AnalysisConclusion {
 
     void conclude() {
         windows_not_reached();
-        if (w.parts.series) series();
-        if (w.parts.series || w.perturbation) thinning();
-        lists();
+        if (w.parts.series || w.perturbation) series();
+        impacts();
+        sticks();
         if (needs_verdict(w)) judge_motion();
         if (w.parts.impacts || w.parts.section) nearly_grazing();
         transfers();
@@ -161,16 +153,14 @@ struct AnalysisConclusion {
 
     void warn(const Warning& warning) { a.warnings.push_back(warning); }
 
+    /// Of this run, and of the perturbed one.
     void series() {
-        o.series.finish(a.outcome);
-        a.series = std::move(o.series.series);
-    }
-
-    /// Warns if the series (and a perturbed one) is coarser than requested.
-    void thinning() {
         const double step = series_step(w), cycle = w.parameters.cycle();
         if (step > cycle / w.samples_per_cycle)
             warn(warning::SeriesThinned{cycle / step, w.samples_per_cycle, w.most_points});
+        if (!w.parts.series) return;
+        o.series.finish(a.outcome);
+        a.series = std::move(o.series.series);
     }
 
     void warn_if_cut(const char* name, long seen, std::size_t kept) {
@@ -184,8 +174,7 @@ struct AnalysisConclusion {
         return std::move(list.entries);
     }
 
-    void lists() {
-        impacts();
+    void sticks() {
         if (w.parts.impacts) a.touches = last_of(o.grazing, "touches");
         a.stick_count = o.sticks.seen;
         a.sticks = last_of(o.sticks, "sticks");
@@ -204,16 +193,6 @@ struct AnalysisConclusion {
         a.typical_speed = list.typical_speed;
     }
 
-    /// Finds the regime, which needs the growth of the deviations; then the exponents of all
-    /// windows, whose verdicts need the regime.
-    void judge_motion() {
-        const Growth growth = growth_of(o.lyapunov.product());
-        find_regime(growth);
-        a.exponents.emplace(judged(w.window, o.lyapunov.take(), growth));
-        if (w.parts.exponents) add_warnings(a.exponents->product, true, a.warnings);
-        further_windows();
-    }
-
     /// A window with the verdict on it.
     WindowExponents judged(
         const Interval& window, TransferProduct&& product, const Growth& growth) const {
@@ -221,7 +200,10 @@ struct AnalysisConclusion {
         return {window, std::move(product), growth, judgement};
     }
 
-    void find_regime(const Growth& growth) {
+    /// Finds the regime, which needs the growth of the deviations; then the exponents of all
+    /// windows, whose verdicts need the regime.
+    void judge_motion() {
+        const Growth growth = growth_of(o.lyapunov.product());
         a.regime = regime_of(
             w.parameters, w.start,
             {.rhythm = o.rhythm,
@@ -233,6 +215,14 @@ struct AnalysisConclusion {
              .settle_cycles = w.settle_cycles,
              .stop = interrupt.run},
             w.parts.before_capture);
+        a.exponents.emplace(judged(w.window, o.lyapunov.take(), growth));
+        if (w.parts.exponents) add_warnings(a.exponents->product, true, a.warnings);
+        a.windows.reserve(w.windows.size());
+        for (std::size_t i = 0; i < w.windows.size(); ++i) {
+            const Growth of_window = growth_of(o.windows.product(i));
+            a.windows.push_back(judged(w.windows[i], o.windows.take(i), of_window));
+            add_warnings(a.windows[i].product, false, a.warnings);
+        }
     }
 
     void windows_not_reached() {
@@ -247,22 +237,13 @@ struct AnalysisConclusion {
         if (missed.count > 0) warn(missed);
     }
 
-    void further_windows() {
-        a.windows.reserve(w.windows.size());
-        for (std::size_t i = 0; i < w.windows.size(); ++i) {
-            const Growth of_window = growth_of(o.windows.product(i));
-            a.windows.push_back(judged(w.windows[i], o.windows.take(i), of_window));
-            add_warnings(a.windows[i].product, false, a.warnings);
-        }
-    }
-
     /// Warns of nearly grazing impacts. Each makes the eigenvalues of every product that contains
     /// it inaccurate.
     void nearly_grazing() {
         long count = 0;
         const ImpactCollector::NearlyTangent* nearest = nullptr;
         for (const auto& i : o.impacts.nearly_tangent) {
-            if (i.tau < w.window.from || i.tau > w.window.to) continue;
+            if (!w.window.contains(i.tau)) continue;
             ++count;
             if (!nearest || i.speed < nearest->speed) nearest = &i;
         }
@@ -334,7 +315,7 @@ struct AnalysisConclusion {
                 .without = unattached_decay(p, w.start, a.reached.from)};
         if (!w.parts.unattached) return;
         e.peak_least = o.cycle_peaks.least();
-        e.unattached = unattached(p, w.start, a.reached.from, a.reached.to);
+        e.unattached = unattached(p, w.start, a.reached);
         e.rms_ratio = ratio(e.balance.rms, e.unattached->rms);
         e.peak_ratio = ratio(e.balance.peak, e.unattached->peak);
     }

@@ -90,10 +90,9 @@ bool repeat_impacts(
     const Parameters& p, const State& start, const Limits& limits, const ImpactRange& range,
     const std::function<void(const Impact&)>& take) {
     Repetition repetition(range, take);
-    Observer* const observers[] = {&repetition};
     Limits until = limits;
     until.stop = [&] { return repetition.complete() || (limits.stop && limits.stop()); };
-    simulate(p, start, until, observers);
+    simulate(p, start, until, {&repetition});
     return repetition.complete();
 }
 

@@ -85,13 +85,12 @@ void ComparedRun::finish(const Outcome& outcome) {
 
 void ComparedRun::look_ahead(const Outcome& outcome) {
     ComparedRun ahead(parameters_, 0, {});
-    Observer* const observers[] = {&ahead};
     simulate(
         parameters_, outcome.state,
         {.tau_end = outcome.tau + parameters_.cycle(),
          .max_impacts = most_ahead,
          .tau_start = outcome.tau},
-        observers);
+        {&ahead});
     auto from = ahead.contacts.begin();
     // A sticking phase that spans the end is recorded by both runs.
     const bool sticking =
@@ -245,11 +244,10 @@ double slope_through(const std::vector<double>& x, const std::vector<double>& y)
 /// lambda1 by qr from the first to the last impact in `tau`.
 double lambda1_over(
     const Parameters& p, const State& start, const Interval& tau, const Limits& limits) {
-    Lyapunov lyapunov(p, tau.from, tau.to, qr_alone);
-    Observer* const observers[] = {&lyapunov};
+    Lyapunov lyapunov(p, tau, qr_alone);
     Limits until = limits;
     until.tau_end = tau.to;
-    const Outcome outcome = simulate(p, start, until, observers);
+    const Outcome outcome = simulate(p, start, until, {&lyapunov});
     return outcome.reason == End::stopped ? nan : lyapunov.product().qr()[0];
 }
 
@@ -290,7 +288,7 @@ void keep_common(Series& s, const Series& reference) {
     const auto common =
         std::mismatch(s.tau.begin(), s.tau.end(), reference.tau.begin(), reference.tau.end());
     const auto size = static_cast<std::size_t>(common.first - s.tau.begin());
-    for (auto* column : {&s.tau, &s.x, &s.x_dot, &s.y, &s.y_dot, &s.x_ddot}) column->resize(size);
+    for (auto* column : s.columns()) column->resize(size);
 }
 
 }  // namespace
@@ -300,11 +298,10 @@ Perturbation perturbation_of(
     const Outcome& outcome, Limits limits, double step) {
     const State perturbed = displaced(start, difference);
     ComparedRun second(p, step, {});
-    Observer* const observers[] = {&second};
     limits.tau_end = outcome.tau;
     Perturbation r{};
     r.start = difference_of(perturbed, start);
-    r.outcome = outcome.tau > 0 ? simulate(p, perturbed, limits, observers)
+    r.outcome = outcome.tau > 0 ? simulate(p, perturbed, limits, {&second})
                                 : Outcome{outcome.reason, outcome.tau, perturbed, 0};
     // A run that ended early has no sample at its end, unless it is empty otherwise.
     if (r.outcome.tau == outcome.tau || second.series().tau.empty()) second.finish(r.outcome);

@@ -1,16 +1,13 @@
 // Trajectory difference (Fig. 2, eqs. (13) to (15)): a second run that starts slightly displaced,
-// and the linear theory's prediction of its distance.
+// and the linear theory's prediction of its distance, the Euclidean length of the difference of the
+// states (x', x, y', y).
 //
-// The distance is the Euclidean length of the difference of the states (x', x, y', y), taken
-// through impacts. Between the times of the two runs' k-th impacts the plain difference has the
-// size of the velocity jump and does not measure their divergence. There the run that struck first
-// is continued as if it had not struck: up to the second time the difference is delta Phi^- of Fig.
-// 2, afterwards delta Phi^+, and no sample is left out. The tangent vector is treated in the same
-// way.
-//
-// The k-th impacts of a chatter correspond as well, even if one run is several impacts ahead. If
-// the chatter ends in a sticking phase, the impacts that one run still has before it sticks belong
-// to the sticking phase: the plain difference is then as small as the deviation, and is used until
+// Between the times of the two runs' k-th impacts the plain difference has the size of the velocity
+// jump and does not measure their divergence. There the run that struck first is continued as if it
+// had not struck: up to the second time the difference is delta Phi^- of Fig. 2, afterwards delta
+// Phi^+. The tangent vector is treated in the same way. The k-th impacts of a chatter correspond
+// even if one run is several impacts ahead. If the chatter ends in a sticking phase, the impacts
+// that one run still has before it sticks belong to that phase: the plain difference is used until
 // both runs stick.
 #pragma once
 

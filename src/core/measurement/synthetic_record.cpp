@@ -13,8 +13,8 @@ namespace vines {
 
 TrueOscillator::TrueOscillator(const TrueMotion& m)
     : motion_(m),
-      free_(Flow::free(m.parameters)),
-      stuck_(Flow::sticking(m.parameters)) {}
+      free_(*Flow::shared_free(m.parameters)),
+      stuck_(*Flow::shared_sticking(m.parameters)) {}
 
 double TrueOscillator::x(double tau) const {
     const TrueStretch& s = stretch(tau);
@@ -79,7 +79,7 @@ TrueMotion true_motion(
     ImpactRecord impacts;
     StickRecord sticks;
     TrueStretches stretches;
-    Lyapunov lyapunov(p, begin, end, estimators);
+    Lyapunov lyapunov(p, {begin, end}, estimators);
     Observer* const observers[] = {&lyapunov, &impacts, &sticks, &stretches};
     constexpr long all = std::numeric_limits<long>::max();
     simulate(p, default_state(p), {.tau_end = end, .max_impacts = all}, observers);

@@ -13,9 +13,8 @@ namespace vines {
 
 namespace {
 
-// Width of a cell in units of b, also for velocities, far above the errors of orbits and far below
-// the distance of two attractors. States closer to a border than this part of a cell can be on
-// either side of it.
+// Width of a cell in units of b, also for velocities: far above the errors of orbits. States closer
+// to a border than this part of a cell can be on either side.
 constexpr double cell_width = 0x1p-20, near_border = 0x1p-7;
 // Newton's method from the middle of a cell moves less than this, in units of the motion.
 constexpr double reach_from_cell = 0.1;

@@ -27,15 +27,14 @@ enum class Objective {
     decay_time  ///< in which the energy of a free decay falls to a tenth, s
 };
 
-/// Extremes that a run records: those of impacts cost almost nothing, the others a quarter of the
-/// run.
+/// Those of impacts cost almost nothing, the others a quarter of the run.
 enum class ExtremesWanted { none, of_impacts, all };
 
-/// Observer of the extremes over [tau_start, tau_end].
+/// Observer of the extremes over a window.
 class ExtremesRecord : public Observer {
 public:
     ExtremesRecord(
-        const Parameters& parameters, double tau_start, double tau_end,
+        const Parameters& parameters, const Interval& window,
         ExtremesWanted wanted = ExtremesWanted::all);
 
     void on_stretch(const Stretch&) override;
@@ -54,7 +53,8 @@ private:
 
     const Parameters parameters_;
     const bool has_peaks_;
-    const double tau_start_, tau_end_, F_, sin_phi_, cos_phi_;
+    const Interval window_;
+    const double F_, sin_phi_, cos_phi_;
     Extremes extremes_;
     long impacts_ = 0;
 };

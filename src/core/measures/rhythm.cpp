@@ -9,9 +9,8 @@ namespace vines {
 
 namespace {
 
-// Tolerance of the interval, relative to half a cycle. It reproduces Fig. 9's synchronised parts
-// and the border of Types I and II: no such parts at b = 34 and 40 mm, some at 31 mm and below. The
-// border does not move between 10 and 20 %.
+// Tolerance of the interval, relative to half a cycle: reproduces Fig. 9's synchronised parts and
+// the border of Types I and II, which does not move between 10 and 20 %.
 constexpr double synchrony_tolerance = 0.15;
 constexpr int moving_cycles = 10;
 

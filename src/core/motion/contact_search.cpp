@@ -308,11 +308,26 @@ std::optional<Contact> next_contact(
 
 namespace {
 
-/// Number of cells of width h over which a value stays positive that changes by at most `rate` per
-/// unit of time.
-int cells_above_zero(double value, double rate, double h) {
-    const double cells = std::ceil(value / (rate * h)) - 1;
-    return cells > 0 ? static_cast<int>(std::min<double>(cells, Flow::cells)) : 0;
+/// The first s in (0, limit] at which a positive function falls to zero. value(k): the function at
+/// the left end of cell k; it changes by at most `rate` per unit of time. falling(k): coefficients
+/// of the negative function about that end. `zeros` derivatives vanish at s = 0, counting the 0th.
+template <class Value, class Coefficients>
+std::optional<double> first_zero(
+    const Flow& flow, int zeros, double limit, double rate, const Value& value,
+    const Coefficients& falling) {
+    assert(limit <= flow.reach());
+    const double h = flow.cell();
+    for (int k = 0, positive = 0; k < Flow::cells && k * h < limit; k += std::max(1, positive)) {
+        const int vanishing = k == 0 ? zeros : 0;
+        // Cells over which the function certainly stays positive.
+        const double cells = vanishing > 0 ? 0 : std::ceil(value(k) / (rate * h)) - 1;
+        positive = cells > 0 ? static_cast<int>(std::min<double>(cells, Flow::cells)) : 0;
+        if (positive > 0) continue;
+        std::optional<double> tangent;
+        if (const auto d = first_crossing(falling(k), vanishing, h, 0, tangent))
+            return k * h + *d <= limit ? std::optional(k * h + *d) : std::nullopt;
+    }
+    return {};
 }
 
 }  // namespace
@@ -320,54 +335,48 @@ int cells_above_zero(double value, double rate, double h) {
 std::optional<double> next_release(
     const Flow& flow, const Oscillation& start, int side, int zeros, double limit,
     const Polynomial& pull, double least) {
-    assert(side != 0 && (zeros == 0 || zeros == 1) && limit <= flow.reach());
+    assert(side != 0 && (zeros == 0 || zeros == 1));
     const double h = flow.cell(), time = std::min(flow.reach(), limit + h),
                  M3 = flow.bounds(start, time).x_dddot + pull.bound(1, time);
-    for (int k = 0, held = 0; k < Flow::cells && k * h < limit; k += std::max(1, held)) {
-        const Oscillation lo = k == 0 ? start : flow.at(start, k);
-        const bool vanishes = k == 0 && zeros > 0;
-        const double above = side * (flow.acceleration(lo) - pull.at(k * h)) - least;
-        held = vanishes ? 0 : cells_above_zero(above, M3, h);
-        if (held > 0) continue;
-        const Flow::TaylorSeries x = flow.series(lo);
-        // least - side (x'' - pull), negative while the ball is held.
+    const auto at = [&](int k) { return k == 0 ? start : flow.at(start, k); };
+    // side (x'' - pull) - least is positive while the ball is held.
+    const auto held = [&](int k) {
+        return side * (flow.acceleration(at(k)) - pull.at(k * h)) - least;
+    };
+    const auto falling = [&](int k) {
+        const Flow::TaylorSeries x = flow.series(at(k));
+        const Polynomial pulls = pull.about(k * h);
         std::array<double, Flow::degree - 1> f;
         for (int n = 0; n + 2 <= Flow::degree; ++n) f[n] = -side * (n + 1.0) * (n + 2.0) * x[n + 2];
-        const Polynomial pulls = pull.about(k * h);
         f[0] += least;
         for (int n = 0; n < pull.size; ++n) f[static_cast<std::size_t>(n)] += side * pulls[n];
-        std::optional<double> tangent;
-        if (auto d = first_crossing(f, k == 0 ? zeros : 0, h, 0, tangent))
-            return k * h + *d <= limit ? std::optional(k * h + *d) : std::nullopt;
-    }
-    return {};
+        return f;
+    };
+    return first_zero(flow, zeros, limit, M3, held, falling);
 }
 
 std::optional<double> next_equal_velocity(
     const Flow& flow, const FlightStart& start, int direction, int zeros, double limit) {
-    assert(direction != 0 && limit <= flow.reach());
+    assert(direction != 0);
     const Polynomial y = start.ball();
     const double h = flow.cell(), time = std::min(flow.reach(), limit + h),
                  M2 = flow.bounds(start.lo, time).x_ddot + y.bound(2, time);
-    for (int k = 0, sliding = 0; k < Flow::cells && k * h < limit; k += std::max(1, sliding)) {
-        const double speed = k > 0             ? flow.speed_at(start.lo, k) - y.rate(k * h)
-                             : start.side != 0 ? start.relative_speed
-                                               : start.lo.x_dot - y[1];
-        const int vanishing = k == 0 ? zeros : 0;
-        sliding = vanishing > 0 ? 0 : cells_above_zero(direction * speed, M2, h);
-        if (sliding > 0) continue;
+    const auto speed = [&](int k) {
+        return direction * (k > 0             ? flow.speed_at(start.lo, k) - y.rate(k * h)
+                            : start.side != 0 ? start.relative_speed
+                                              : start.lo.x_dot - y[1]);
+    };
+    const auto falling = [&](int k) {
         const Flow::TaylorSeries x = flow.series(k == 0 ? start.lo : flow.at(start.lo, k));
+        const Polynomial y_left = y.about(k * h);
         std::array<double, Flow::degree> f;
         for (int n = 0; n < Flow::degree; ++n) f[n] = -direction * (n + 1.0) * x[n + 1];
-        const Polynomial y_left = y.about(k * h);
         for (int n = 1; n < y.size; ++n)
             f[static_cast<std::size_t>(n) - 1] += direction * n * y_left[n];
-        if (k == 0) f[0] = -direction * speed;
-        std::optional<double> tangent;
-        if (auto d = first_crossing(f, vanishing, h, 0, tangent))
-            return k * h + *d <= limit ? std::optional(k * h + *d) : std::nullopt;
-    }
-    return {};
+        if (k == 0) f[0] = -speed(0);
+        return f;
+    };
+    return first_zero(flow, zeros, limit, M2, speed, falling);
 }
 
 }  // namespace vines

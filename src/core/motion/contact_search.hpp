@@ -1,25 +1,22 @@
 // The next contact of a free flight, with a guarantee that none is missed.
 //
-// g(s) = x(s) - y(s) leaves |g| < b at a contact. A sign test at the ends of steps misses contacts
-// (two can hide within a step). Therefore every cell of the flow's grid is either proven empty or
-// searched by first_crossing(), whose bisection is itself a proof. There are five rules; eta is the
-// rounding error of g on the grid.
+// g(s) = x(s) - y(s) leaves |g| < b at a contact. A sign test at the ends of steps misses two
+// contacts within a step. Therefore every cell of the flow's grid is either proven empty or
+// searched by first_crossing(). There are five rules; eta is the rounding error of g on the grid.
 //
-//   1. g differs from its chord over a cell of width h by at most M2 h^2/8, M2 >= |g''|, the bound
-//      of |x''| plus that of |y''|. The cell is empty if |g| < b - M2 h^2/8 - eta at both ends.
+//   1. g differs from its chord over a cell of width h by at most M2 h^2/8, M2 >= |g''|. The cell
+//      is empty if |g| < b - M2 h^2/8 - eta at both ends.
 //   2. If the flight has just left a wall, g = side b at s = 0 and the test of rule 1 always fails.
 //      Let phi(s) = (side g(s) - b)/s, the integral over t in (0,1) of side g'(ts). With M3 >=
-//      |g'''|, |phi''| <= M3/3 and phi differs from its chord by at most M3 h^2/24: there
-//      is no contact with this wall in (0, h] if phi(0) = side g'(0) and phi(h) are below
-//      -M3 h^2/24.
-//   3. Remaining cells are searched on the Taylor polynomial of g about the left end, which equals
-//      g up to rounding. Leading coefficients known to be zero (1 after an impact, 2 after an
-//      impact with R = 0, 3 at the release from sticking) are set to zero and divided out: the
-//      contact at s = 0 is identified by its side, not by comparing |g| with b, and the next
-//      contact of a chatter keeps full relative accuracy however close it is.
-//   4. first_crossing() bisects until an interval is empty, monotone, convex or concave by bounds
-//      on the polynomial; each such interval has at most one upward crossing, whose position is
-//      bracketed. Bisection ends at the latest when an interval reaches the resolution of double.
+//      |g'''|, |phi''| <= M3/3 and phi differs from its chord by at most M3 h^2/24: there is no
+//      contact with this wall in (0, h] if side g'(0) and phi(h) are below -M3 h^2/24.
+//   3. Remaining cells are searched on the Taylor polynomial of g about the left end. Leading
+//      coefficients known to be zero (1 after an impact, 2 after an impact with R = 0, 3 at the
+//      release from sticking) are divided out: the contact at s = 0 is identified by its side, and
+//      the next contact of a chatter keeps full relative accuracy however close it is.
+//   4. first_crossing() bisects until bounds on the polynomial show that an interval is empty, or
+//      that it is monotone, convex or concave there and thus has at most one upward crossing; or,
+//      at the latest, until the interval reaches the resolution of double.
 //   5. A flight that is pulled away from its wall keeps away from it for some time: with M4 >=
 //      |g''''|, side g falls up to 2 |g''(0)|/M3 where side g''(0) < 0, and after the release from
 //      sticking up to 3 |g'''(0)|/M4.

@@ -44,9 +44,9 @@ double atan(double x);
 /// sqrt(x^2 + y^2); error below 0.51 ulp unless subnormal.
 double hypot(double x, double y);
 
-/// Modulus of a complex number; std::abs calls the C library.
 /// exp(i angle).
 inline std::complex<double> phasor(double angle) { return {cos(angle), sin(angle)}; }
+/// Modulus of a complex number; std::abs calls the C library.
 inline double modulus(const std::complex<double>& z) { return hypot(z.real(), z.imag()); }
 
 }  // namespace vines::elementary

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cassert>
-#include <cmath>
 #include <numbers>
 
 namespace vines {
@@ -99,20 +98,15 @@ Flow::Flow(double stiffness, double damping, double forcing, double Omega)
         for (int n = 0; n < 2 * short_pairs; ++n)
             part->near.x_dot[n] = (n + 1) * part->series[n + 1];
     }
-    for (std::size_t k = 0; k < columns; ++k) {
-        for (std::size_t j = 0; j < 4; ++j) parts[j]->x[k] = (double)growth.motion[j][0];
-        time_[k] = static_cast<double>(k) * cell_;
-        if (k > 0 && k % block == 0) {
-            for (Response* part : parts) part->x_apart[k / block - 1] = part->x[k];
-            time_apart_[k / block - 1] = time_[k];
-        }
-        if (k <= cells) {
-            Row& row = rows_[k];
-            for (std::size_t j = 0; j < 4; ++j)
-                row.x[j] = parts[j]->x[k], row.x_dot[j] = (double)growth.motion[j][1];
-            row.cos = (double)growth.cos, row.sin = (double)growth.sin;
-        }
-        growth = advanced(growth, cell);
+    for (std::size_t k = 0; k < columns; ++k, growth = advanced(growth, cell)) {
+        Row row;
+        for (std::size_t j = 0; j < 4; ++j)
+            row.x[j] = (double)growth.motion[j][0], row.x_dot[j] = (double)growth.motion[j][1];
+        row.cos = (double)growth.cos, row.sin = (double)growth.sin;
+        const double time = static_cast<double>(k) * cell_;
+        grid.set(k, time, row.x);
+        if (k > 0 && k % block == 0) block_ends.set(k / block - 1, time, row.x);
+        if (k <= cells) rows_[k] = row;
     }
 }
 
@@ -129,26 +123,10 @@ Flow::Coefficients sticking_coefficients(const Parameters& p) {
     return {1 / mass, 2 * p.zeta() / mass, p.epsilon * p.A() / mass, p.Omega};
 }
 
-Flow of(const Flow::Coefficients& c) { return Flow(c[0], c[1], c[2], c[3]); }
-
 std::shared_ptr<const Flow> shared(const Flow::Coefficients& c) {
     thread_local SmallCache<Flow::Coefficients, Flow> flows;
-    return flows.get(c, [&c] { return of(c); });
+    return flows.get(c, [&c] { return Flow(c[0], c[1], c[2], c[3]); });
 }
-
-}  // namespace
-
-Flow Flow::free(const Parameters& p) { return of(free_coefficients(p)); }
-Flow Flow::sticking(const Parameters& p) { return of(sticking_coefficients(p)); }
-
-std::shared_ptr<const Flow> Flow::shared_free(const Parameters& p) {
-    return shared(free_coefficients(p));
-}
-std::shared_ptr<const Flow> Flow::shared_sticking(const Parameters& p) {
-    return shared(sticking_coefficients(p));
-}
-
-namespace {
 
 /// One Newton step keeps the phasor's length at 1 over millions of rotations.
 void keep_length(Oscillation& o) {
@@ -158,6 +136,13 @@ void keep_length(Oscillation& o) {
 }
 
 }  // namespace
+
+std::shared_ptr<const Flow> Flow::shared_free(const Parameters& p) {
+    return shared(free_coefficients(p));
+}
+std::shared_ptr<const Flow> Flow::shared_sticking(const Parameters& p) {
+    return shared(sticking_coefficients(p));
+}
 
 Oscillation Flow::at(const Oscillation& o, int k) const {
     assert(k >= 0 && k <= cells);

@@ -34,21 +34,15 @@ Polynomial sine(double amplitude, const Polynomial& theta) {
     return p;
 }
 
-/// Displacement of a base from rest at 0.
-Polynomial integrated_twice(const Polynomial& acceleration) {
-    Polynomial x;
-    for (int n = 0; n < acceleration.size && n + 2 < Polynomial::most; ++n)
-        x.add(n + 2, acceleration[n] / ((n + 1) * (n + 2)));
-    return x;
-}
-
 /// A base that is accelerated piece by piece.
 struct BaseMotion {
     long double x = 0, v = 0;
 
     /// Its displacement over the next h.
     Polynomial advance(const Polynomial& acceleration, double h) {
-        Polynomial p = integrated_twice(acceleration);
+        Polynomial p;
+        for (int n = 0; n < acceleration.size && n + 2 < Polynomial::most; ++n)
+            p.add(n + 2, acceleration[n] / ((n + 1) * (n + 2)));
         const double by_x = p.at(h), by_v = p.rate(h);
         p.add(0, static_cast<double>(x));
         p.add(1, static_cast<double>(v));

@@ -61,17 +61,9 @@ Oscillation SampledFlow::at(double s) {
         o.cos_theta - Omega * o.sin_theta * late};
 }
 
-namespace {
-
-constexpr double most_expected = 1e6;
-
-}  // namespace
-
 void SeriesRecord::expect(double tau_end) {
-    const auto moments = static_cast<std::size_t>(std::min(tau_end / step_, most_expected)) + 2;
-    for (auto* column :
-         {&series.tau, &series.x, &series.x_dot, &series.y, &series.y_dot, &series.x_ddot})
-        column->reserve(moments);
+    const auto samples = static_cast<std::size_t>(std::min(tau_end / step_, 1e6)) + 2;
+    for (auto* column : series.columns()) column->reserve(samples);
 }
 
 void SeriesRecord::add(double at, const State& state, double acceleration, double base) {
@@ -87,9 +79,7 @@ void SeriesRecord::add(double at, const State& state, double acceleration, doubl
 void SeriesRecord::on_stretch(const Stretch& stretch) {
     SampledFlow& oscillator = stretch.is_joint() ? sticking_ : free_;
     oscillator.begin(stretch.flow, stretch.start);
-    const auto base_at = [&](double s) {
-        return with_base_ ? stretch.forces->loading->base.at(s) : 0.0;
-    };
+    const auto base_at = [&](double s) { return with_base_ ? stretch.forces->base.at(s) : 0.0; };
     for (double at = next_ * step_; at < stretch.tau + stretch.duration; at = ++next_ * step_) {
         const double s = std::max(0.0, at - stretch.tau);
         const Oscillation o = oscillator.at(s);

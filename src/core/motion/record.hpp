@@ -2,6 +2,7 @@
 // grazing contacts.
 #pragma once
 
+#include <array>
 #include <limits>
 #include <optional>
 #include <vector>
@@ -57,24 +58,25 @@ private:
 /// Capacity of a record that keeps all entries.
 inline constexpr std::size_t everything = std::numeric_limits<std::size_t>::max() / 2;
 
-/// Trims a growing record to its last `most` entries whenever it holds half as many more: an entry
-/// moves about twice.
-template <class Entries>
-void keep_last(Entries& entries, std::size_t most) {
-    if (entries.size() >= most + most / 2 + 1)
-        entries.erase(entries.begin(), entries.end() - static_cast<std::ptrdiff_t>(most));
-}
-/// Trims to exactly the last `most` entries at the end of the run.
+/// Trims a record to its last `most` entries at the end of the run.
 template <class Entries>
 void trim_to_last(Entries& entries, std::size_t most) {
     if (entries.size() > most)
         entries.erase(entries.begin(), entries.end() - static_cast<std::ptrdiff_t>(most));
+}
+/// Trims a growing record whenever it holds half as many more: an entry moves about twice.
+template <class Entries>
+void keep_last(Entries& entries, std::size_t most) {
+    if (entries.size() > most + most / 2) trim_to_last(entries, most);
 }
 
 /// The sampled motion: columns of equal length. x and y in m, derivatives with respect to tau.
 struct Series {
     std::vector<double> tau, x, x_dot, y, y_dot, x_ddot;
     std::vector<double> x_relative;  ///< to the base; empty unless a load moves it
+
+    /// The columns that every series has.
+    auto columns() { return std::array{&tau, &x, &x_dot, &y, &y_dot, &x_ddot}; }
 };
 
 /// Samples the motion at tau = 0, step, 2 step, ... and at the end of the run.
@@ -101,16 +103,21 @@ private:
     SampledFlow free_, sticking_;
 };
 
-/// Takes the state once per forcing cycle, at tau = (k + phase/(2 pi)) 2 pi/Omega with k = first,
-/// first + 1, ...; there theta = phi + phase.
+/// Times at which a Stroboscope takes the state, up to `until`: tau = (k + phase/(2 pi)) 2 pi/Omega
+/// with k = first, first + 1, ...; there theta = phi + phase.
+struct StroboscopeTimes {
+    long first = 0;
+    double phase = 0, until = infinity;
+};
+
+/// Takes the state once per forcing cycle.
 class Stroboscope : public Observer {
 public:
-    explicit Stroboscope(
-        const Parameters& parameters, long first = 0, double phase = 0, double until = infinity)
-        : cycle_(parameters.cycle()),
-          after_(phase / parameters.Omega),
-          until_(until),
-          next_(first) {}
+    explicit Stroboscope(const Parameters& p, const StroboscopeTimes& times = {})
+        : cycle_(p.cycle()),
+          after_(times.phase / p.Omega),
+          until_(times.until),
+          next_(times.first) {}
     void on_stretch(const Stretch&) override;
 
     /// Time of sample k.
@@ -125,20 +132,14 @@ private:
     long next_;
 };
 
-/// Selects the last `most` states at whole cycles up to the time `until`.
-struct LastStates {
-    std::size_t most;
-    double until;
-};
-
-/// Stroboscopic states: all of them, or those selected by LastStates and up to half as many more.
+/// The last `most` stroboscopic states, and up to half as many more.
 class StroboscopicRecord : public Stroboscope {
 public:
-    explicit StroboscopicRecord(const Parameters& parameters, long first = 0, double phase = 0)
-        : Stroboscope(parameters, first, phase) {}
-    StroboscopicRecord(const Parameters& parameters, const LastStates& last)
-        : Stroboscope(parameters, 0, 0, last.until),
-          most_(last.most) {}
+    explicit StroboscopicRecord(
+        const Parameters& parameters, const StroboscopeTimes& times = {},
+        std::size_t most = everything)
+        : Stroboscope(parameters, times),
+          most_(most) {}
 
     /// Number k of the first state kept.
     long first() const { return next() - static_cast<long>(states.size()); }
@@ -150,7 +151,7 @@ private:
         states.push_back(state);
         keep_last(states, most_);
     }
-    const std::size_t most_ = everything;
+    const std::size_t most_;
 };
 
 /// The last `most` entries of a growing list, and up to half as many more. `seen` counts all.
@@ -183,21 +184,17 @@ struct SectionPoint {
     double since;  ///< NaN at the first impact of the run
 };
 
-/// The impacts in [tau_start, tau_end], each with the time since the previous impact, even if that
-/// is outside the window.
+/// The impacts in a window, each with the time since the previous impact, even if that is outside.
 class SectionRecord : public Observer, public LastOf<SectionPoint> {
 public:
-    SectionRecord(double tau_start, double tau_end, std::size_t most)
-        : LastOf(most),
-          tau_start_(tau_start),
-          tau_end_(tau_end) {}
+    SectionRecord(const Interval& window, std::size_t most) : LastOf(most), window_(window) {}
     void on_impact(const Impact& impact) override {
-        if (impact.tau >= tau_start_ && impact.tau <= tau_end_) add({impact, impact.tau - before_});
+        if (window_.contains(impact.tau)) add({impact, impact.tau - before_});
         before_ = impact.tau;
     }
 
 private:
-    const double tau_start_, tau_end_;
+    const Interval window_;
     double before_ = nan;
 };
 
@@ -235,16 +232,12 @@ struct CountedContact {
 
 class ContactRecord : public Observer {
 public:
-    struct Stick {
-        double tau_start, tau_end;
-    };
-
     void on_impact(const Impact& impact) override;
     void on_stick(const StickStart& start) override;
-    void on_release(double tau) override { sticks.back().tau_end = tau; }
+    void on_release(double tau) override { sticks.back().to = tau; }
 
     std::vector<CountedContact> contacts;
-    std::vector<Stick> sticks;
+    std::vector<Interval> sticks;
     long impacts = 0;
 };
 

@@ -13,15 +13,13 @@ namespace {
 // A spectral radius below this fraction of the norm is dominated by rounding.
 constexpr double least_radius = 1e-8;
 
-double parts_of(const Flow& flow, double duration) {
-    const double contraction = flow.fastest_decay() * duration;
-    return contraction > most_contraction ? std::ceil(contraction / most_contraction) : 1;
-}
-
 }  // namespace
 
 Leg leg_of(const Flow& flow, double duration, bool sticking, bool resting) {
-    const double parts = parts_of(flow, duration), part = duration / parts;
+    const double contraction = flow.fastest_decay() * duration,
+                 parts =
+                     contraction > most_contraction ? std::ceil(contraction / most_contraction) : 1,
+                 part = duration / parts;
     return {flow.transfer(part),      part,     -flow.damping() * part,
             static_cast<long>(parts), sticking, resting};
 }
@@ -68,8 +66,7 @@ namespace {
 /// Determinant over one part; the contraction is too small for the difference to lose digits.
 double determinant_of(const Transfer& a) { return a.a11 * a.a22 - a.a12 * a.a21; }
 
-/// In the coordinates (x', x, z', z) with z = x - y, c = x' - mu z' and x move as one body, z'
-/// vanishes and z stays.
+/// With z = x - y: c = x' - mu z' and x move as one body, z' vanishes and z stays.
 [[gnu::noinline]] Area carried_at_rest(const Area& w, const Leg& leg, double epsilon) {
     const auto& [a11, a12, a21, a22] = leg.oscillator;
     // The areas of c and x, c and z, x and z.
@@ -81,11 +78,10 @@ double determinant_of(const Transfer& a) { return a.a11 * a.a22 - a.a12 * a.a21;
     return out;
 }
 
-[[gnu::noinline]] Volume carried_at_rest(const Volume& volume, const Leg& leg, double epsilon) {
-    const Eigen::Vector4d& n = volume.normal;
+[[gnu::noinline]] Volume carried_at_rest(const Volume& n, const Leg& leg, double epsilon) {
     const double nu = 1 / (1 + epsilon),
                  size = determinant_of(leg.oscillator) * (epsilon * nu * n(0) - nu * n(2));
-    return {{size, 0, -size, 0}};
+    return {size, 0, -size, 0};
 }
 
 }  // namespace
@@ -95,8 +91,7 @@ Area carried(const Area& w, const Leg& leg, double epsilon) {
     const double det = determinant_of(leg.oscillator);
     Area out;
     if (leg.sticking) {
-        // Area of the deviations of the centre of mass, (nu x' + mu y') and (nu x + mu y): x' = y',
-        // x = y.
+        // Area of the deviations of the centre of mass: x' = y', x = y.
         const double nu = 1 / (1 + epsilon), mu = epsilon * nu;
         const double area = det * (nu * nu * w(0) + nu * mu * (w(2) - w(3)) + mu * mu * w(5));
         out << area, 0, area, -area, 0, area;
@@ -110,16 +105,15 @@ Area carried(const Area& w, const Leg& leg, double epsilon) {
     return out;
 }
 
-Volume carried(const Volume& volume, const Leg& leg, double epsilon) {
-    if (leg.sticking) return {Eigen::Vector4d::Zero()};
+Volume carried(const Volume& n, const Leg& leg, double epsilon) {
+    if (leg.sticking) return Volume::Zero();
+    if (leg.resting) return carried_at_rest(n, leg, epsilon);
     // det(J) J^-T n
     const auto& [a11, a12, a21, a22] = leg.oscillator;
-    const Eigen::Vector4d& n = volume.normal;
     const double det = determinant_of(leg.oscillator);
-    if (leg.resting) return carried_at_rest(volume, leg, epsilon);
     return {
-        {a22 * n(0) - a21 * n(1), a11 * n(1) - a12 * n(0), det * (n(2) - leg.duration * n(3)),
-         det * n(3)}};
+        a22 * n(0) - a21 * n(1), a11 * n(1) - a12 * n(0), det * (n(2) - leg.duration * n(3)),
+        det * n(3)};
 }
 
 namespace {
@@ -154,14 +148,13 @@ Area carried(const Area& w, const Saltation& M) {
     return out;
 }
 
-Volume carried(const Volume& volume, const Saltation& M) {
+Volume carried(const Volume& n, const Saltation& M) {
     // det(M) M^-T n.
     const auto [R, R_speed, jump_x, jump_x_dot, r_x, r_z, mixed] = relative(M);
-    const Eigen::Vector4d& n = volume.normal;
     const double along_x_dot = n(0) + n(2), along_x = n(1) + n(3), det = M.determinant();
     const double along_z_dot = R * (n(2) - jump_x_dot * along_x_dot),
                  along_z = mixed * along_x_dot + r_z * n(2) + R_speed * (n(3) - jump_x * along_x);
-    return {{det * along_x_dot + along_z_dot, det * along_x + along_z, -along_z_dot, -along_z}};
+    return {det * along_x_dot + along_z_dot, det * along_x + along_z, -along_z_dot, -along_z};
 }
 
 void Flag::pass(const Leg& leg, double epsilon) {
@@ -178,11 +171,11 @@ void Flag::strike(const Saltation& M) {
 }
 
 std::array<double, 3> Flag::squares() const {
-    return {deviation.squaredNorm(), area.squaredNorm(), volume.normal.squaredNorm()};
+    return {deviation.squaredNorm(), area.squaredNorm(), volume.squaredNorm()};
 }
 
 std::array<double, 2> Flag::separations() const {
-    const Eigen::Vector4d &d = deviation, &n = volume.normal;
+    const Eigen::Vector4d &d = deviation, &n = volume;
     const Area& w = area;
     const Eigen::Vector4d spanned(
         d(0) * w(3) - d(1) * w(1) + d(2) * w(0), d(0) * w(4) - d(1) * w(2) + d(3) * w(0),
@@ -209,6 +202,16 @@ double PowerProduct::Scaled<n>::log_radius() const {
     return radius > least_radius ? log_scale + elementary::log(radius) : nan;
 }
 
+template <class... By>
+void PowerProduct::transport(const By&... by) {
+    first_.rescale();
+    for (int k = 0; k < 6; ++k) second_.matrix.col(k) = carried(Area(second_.matrix.col(k)), by...);
+    second_.rescale();
+    if (rank_ < 3) return;
+    for (int k = 0; k < 4; ++k) third_.matrix.col(k) = carried(Volume(third_.matrix.col(k)), by...);
+    third_.rescale();
+}
+
 void PowerProduct::pass(const Leg& leg) {
     if (leg.sticking) rank_ = 2;
     if (leg.resting) rank_ = std::min(rank_, 3);
@@ -216,14 +219,7 @@ void PowerProduct::pass(const Leg& leg) {
         Frame first = first_.matrix;
         carry(first, leg, epsilon_);
         first_.matrix = first;
-        first_.rescale();
-        for (int k = 0; k < 6; ++k)
-            second_.matrix.col(k) = carried(Area(second_.matrix.col(k)), leg, epsilon_);
-        second_.rescale();
-        if (rank_ < 3) continue;
-        for (int k = 0; k < 4; ++k)
-            third_.matrix.col(k) = carried(Volume{third_.matrix.col(k)}, leg, epsilon_).normal;
-        third_.rescale();
+        transport(leg, epsilon_);
         log_det_ += leg.log_det;
     }
     if (leg.slip != 1) strike(slip_of(leg, epsilon_));
@@ -232,13 +228,7 @@ void PowerProduct::pass(const Leg& leg) {
 void PowerProduct::strike(const Saltation& M) {
     if (M.is_singular()) rank_ = std::min(rank_, 3);
     first_.matrix = M.times(first_.matrix);
-    first_.rescale();
-    for (int k = 0; k < 6; ++k) second_.matrix.col(k) = carried(Area(second_.matrix.col(k)), M);
-    second_.rescale();
-    if (rank_ < 3) return;
-    for (int k = 0; k < 4; ++k)
-        third_.matrix.col(k) = carried(Volume{third_.matrix.col(k)}, M).normal;
-    third_.rescale();
+    transport(M);
     log_det_ += elementary::log(std::abs(M.R)) + elementary::log(std::abs(M.R_speed));
 }
 
@@ -304,26 +294,22 @@ void TransferObserver::on_stretch(const Stretch& stretch) {
     const bool sticking = stretch.sticking_side != 0;
     const bool continues = !legs_.empty() && legs_.back().sticking == sticking &&
                            legs_.back().resting == stretch.rests_inside() && legs_.back().slip == 1;
-    if (!continues) {
-        legs_.push_back(leg_of(stretch));
-        return;
+    double duration = stretch.duration;
+    if (continues) {
+        duration += legs_.back().duration * static_cast<double>(legs_.back().parts);
+        legs_.pop_back();
     }
-    Leg& leg = legs_.back();
-    leg = leg_of(
-        stretch.flow, stretch.duration + leg.duration * static_cast<double>(leg.parts), sticking,
-        stretch.rests_inside());
+    legs_.push_back(leg_of(stretch.flow, duration, sticking, stretch.rests_inside()));
 }
 
 void TransferObserver::on_slip(const Slip& slip) {
     if (!begun_) return;
-    if (legs_.empty())
-        legs_.push_back(
-            {.oscillator = {}, .duration = 0, .log_det = 0, .parts = 1, .sticking = false});
+    if (legs_.empty()) legs_.push_back({{}, 0, 0, 1, false});
     legs_.back().slip *= slip.ratio;
 }
 
 void TransferObserver::on_impact(const Impact& impact) {
-    if (impact.tau < window_.from || impact.tau > window_.to) return;
+    if (!window_.contains(impact.tau)) return;
     if (begun_) on_transfer(impact, saltation(parameters_, impact), legs_);
     else on_first_impact(impact);
     begun_ = true;

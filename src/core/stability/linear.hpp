@@ -19,8 +19,7 @@ double spectral_radius(const Eigen::Matrix2d& matrix);
 double spectral_radius(const Eigen::Matrix4d& matrix);
 double spectral_radius(const Matrix6& matrix);
 
-/// Eigenvalues, and the inverse of the eigenvector matrix, which transforms a vector to eigenvector
-/// coordinates; it has non-finite entries if the eigenvector matrix is singular.
+/// Eigenvalues, and the inverse of the eigenvector matrix; not finite if that is singular.
 struct EigenBasis {
     Eigen::Vector4cd values;
     Eigen::Matrix4cd to_coordinates;

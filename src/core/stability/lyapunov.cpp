@@ -1,12 +1,8 @@
-// The three estimators of lyapunov.hpp.
-//
-// Qr carries a Flag (exterior.hpp): a length, an area, a volume and a determinant. Before they
-// leave the range of double, their logarithms are extracted. The logarithms of the four sizes are
-// the cumulative sums of T lambda_k; the difference of neighbouring sums is T lambda_k. Each sum
-// has an error estimate: the angles by which rounding has separated the three subspaces, the
-// accumulated rounding of steep impacts, and for the determinant the deviation from its exact
-// value. An exponent is reported only if its error is at most most_residual. RawProduct multiplies
-// the matrices as the paper did.
+// Qr carries a Flag (exterior.hpp). Before its four sizes leave the range of double, their
+// logarithms are extracted: the cumulative sums of T lambda_k. Each sum has an error estimate: the
+// angles by which rounding has separated the three subspaces, the accumulated rounding of steep
+// impacts (near grazing, or with a tiny R), and at rank 4 the deviation of the determinant from its
+// exact value (the sum rule). An exponent is reported only if its error is at most most_residual.
 #include "core/stability/lyapunov.hpp"
 
 #include <algorithm>
@@ -21,14 +17,12 @@ namespace vines {
 
 namespace {
 
-// Products of lengths, and squares of areas and volumes, stay within these bounds by extracting
-// their logarithms: a third of the exponent range of double, so that further factors do not leave
-// it.
+// Products of lengths, and squares of areas and volumes, stay within these bounds, a third of the
+// exponent range of double, by extracting their logarithms.
 constexpr double least_product = 1e-100, most_product = 1e100;
 constexpr double rounding = std::numeric_limits<double>::epsilon();
-// Typical rounding error per impact; over many impacts it is neither always the largest nor of one
-// sign. Among 1500 strongly damped systems, most with chatter, a full ulp makes the exponents of
-// ten systems NaN although they are accurate to 1e-7; a tenth of an ulp does so for one.
+// Typical rounding error per impact. Among 1500 strongly damped systems a full ulp makes the
+// exponents of ten NaN although they are accurate to 1e-7; a tenth of an ulp does so for one.
 constexpr double typical_rounding = 0.1 * rounding;
 // Sine of an angle that should be zero, far above the effect of rounding.
 constexpr double widest_separation = 1e-6;
@@ -81,8 +75,7 @@ Exponents per_time(const Exponents& logs, int rank, double T) {
     return lambda;
 }
 
-/// The same in descending order, NaN last: over a short window or under strong damping the
-/// deviations are not yet ordered.
+/// The same in descending order, NaN last: over a short window they are not yet ordered.
 Exponents descending(Exponents logs, int rank, double T) {
     for (int k = 1; k < rank; ++k)
         for (int j = k; j > 0 && (logs[j] > logs[j - 1] || std::isnan(logs[j - 1])); --j)
@@ -122,9 +115,8 @@ struct Qr {
     }
 
     /// Impact with large entries of M, or with a tiny R. x - y and x' - y' of a deviation are
-    /// accurate to an ulp of x and x', and areas and volumes likewise. M magnifies this error by
-    /// its entries; it counts relative to the sizes after the impact. Errors of different chatters
-    /// are independent.
+    /// accurate to an ulp of x and x', areas and volumes likewise; M magnifies this error by its
+    /// entries.
     void strike_magnified(const Saltation& M, double steepness) {
         rescale();
         const auto before = flag.squares();
@@ -151,7 +143,7 @@ struct Qr {
         };
         keep(squares[0], flag.deviation, extracted_logs[0]);
         keep(squares[1], flag.area, extracted_logs[1]);
-        keep(squares[2], flag.volume.normal, extracted_logs[2]);
+        keep(squares[2], flag.volume, extracted_logs[2]);
         auto take = [](double& product, double& log) {
             if (is_in_range(std::abs(product)) || product == 0) return;
             log += elementary::log(std::abs(product));
@@ -165,15 +157,13 @@ struct Qr {
         return extracted_logs[3] + elementary::log(std::abs(flag.determinant));
     }
 
-    /// ln r_kk of the triangular factor of the QR method: the logarithmic growth of the first
-    /// deviation, and the additional growth of area, volume and determinant.
+    /// ln r_kk of the triangular factor: growth of the first deviation, then additional growth.
     Exponents logs(int rank) const {
         const auto squares = flag.squares();
         Exponents logs{};
         double before = 0;
         for (int k = 0; k < rank; ++k) {
-            // The determinants of the impacts are kept apart: log_det_carried() is compared with
-            // the exact value for the flights.
+            // The impacts' determinants are kept apart for the comparison in errors().
             const double sum = k < 3 ? extracted_logs[k] + 0.5 * elementary::log(squares[k])
                                      : log_det_carried() + log_determinants +
                                            elementary::log(std::abs(determinant_product));
@@ -196,8 +186,7 @@ struct Qr {
             if (!(squares[k] > 0)) errors[k] = infinity;
         }
         for (int k = 1; k < std::min(rank, 3); ++k) {
-            // The angle does not show which of the two neighbours is inaccurate: both get its
-            // error.
+            // The angle does not show which of the two neighbours is inaccurate.
             const double separation =
                 separations[k - 1] <= widest_separation ? separations[k - 1] : infinity;
             errors[k - 1] = std::max(errors[k - 1], separation);
@@ -317,8 +306,7 @@ Exponents TransferProduct::qr() const {
     const double T = end_ - start_;
     Exponents logs = qr->logs(rank_);
     const auto errors = qr->errors(rank_, most_residual * T);
-    // The k-th exponent is the difference of two sums. If one is unknown, the order of all
-    // following exponents is unknown, too.
+    // A difference of two sums: if one is unknown, so is the order of all following exponents.
     for (int k = 0; k < rank_; ++k)
         if (!(errors[k] <= most_residual * T)) {
             std::fill(logs.begin() + k, logs.begin() + rank_, nan);
@@ -367,10 +355,6 @@ const TransferProduct& Lyapunov::product() {
     if (chatters_ && !(product_.sum_rule_residual() <= most_residual)) product_.end_sticking();
     chatters_ = false;
     return product_;
-}
-
-void WindowedExponents::add(double tau_start, double tau_end) {
-    windows_.emplace_back(parameters_, tau_start, tau_end, options_);
 }
 
 void WindowedExponents::on_stretch(const Stretch& stretch) {
