@@ -57,24 +57,8 @@ ExponentOptions window_estimators(const AnalysisRequest& w) {
 }
 
 struct AnalysisObservers {
-    explicit AnalysisObservers(const AnalysisRequest& w)
-        : series(series_step(w), w.parameters.load && w.parameters.load->moves_base()),
-          impacts(w.most_listed, w.most_kept),
-          section(w.window, w.most_points),
-          sticks(w.most_listed),
-          grazing(w.most_listed),
-          lyapunov(w.parameters, w.window, main_estimators(w)),
-          windows(w.parameters, window_estimators(w)),
-          transfers(w.parameters, w.window, w.most_points),
-          at_phase_zero(w.parameters, {.until = w.window.to}, kept_states),
-          at_section_phase(w.parameters, {.phase = w.section_phase}),
-          cycle_peaks(w.window, w.parameters.cycle()),
-          extremes(w.parameters, w.window, w.parts.extremes),
-          decay(w.parameters, w.window.from),
-          rhythm(w.parameters, w.window, w.parts.regime ? w.most_points : 0),
-          half_cycles(w.parameters, w.window, w.most_points) {
-        // Without a reservation, growing the lists takes longer than the simulation. Reserved
-        // memory that is never written takes no RAM.
+    explicit AnalysisObservers(const AnalysisRequest& request) : w(request) {
+        // Growing the lists takes longer than the simulation; unwritten memory takes no RAM.
         if (w.parts.series) series.expect(w.tau_end);
         if (w.parts.impacts) impacts.entries.reserve(impacts_expected(w));
         for (const Interval& window : w.windows) windows.add(window);
@@ -86,7 +70,7 @@ struct AnalysisObservers {
                 difference_of(displaced(w.start, *w.perturbation), w.start));
     }
 
-    std::vector<Observer*> wanted(const AnalysisRequest& w) {
+    std::vector<Observer*> wanted() {
         std::vector<Observer*> list = {&sticks, &grazing};
         auto observe = [&](bool wanted, auto&... observer) {
             if (wanted) (list.push_back(&observer), ...);
@@ -108,21 +92,23 @@ struct AnalysisObservers {
         return list;
     }
 
-    SeriesRecord series;
-    ImpactCollector impacts;
-    SectionRecord section;
-    StickRecord sticks;
-    GrazingRecord grazing;
-    Lyapunov lyapunov;
-    WindowedExponents windows;
-    TransferRecord transfers;
-    StroboscopicRecord at_phase_zero, at_section_phase;
+    const AnalysisRequest& w;
+    SeriesRecord series{series_step(w), w.parameters.load&& w.parameters.load->moves_base()};
+    ImpactCollector impacts{w.most_listed, w.most_kept};
+    SectionRecord section{w.window, w.most_points};
+    StickRecord sticks{w.most_listed};
+    GrazingRecord grazing{w.most_listed};
+    Lyapunov lyapunov{w.parameters, w.window, main_estimators(w)};
+    WindowedExponents windows{w.parameters, window_estimators(w)};
+    TransferRecord transfers{w.parameters, w.window, w.most_points};
+    StroboscopicRecord at_phase_zero{w.parameters, {.until = w.window.to}, kept_states};
+    StroboscopicRecord at_section_phase{w.parameters, {.phase = w.section_phase}};
     std::optional<Energy> energy;  // constructed on request only: its tables take time
-    CyclePeaks cycle_peaks;
-    ExtremesRecord extremes;
-    Decay decay;
-    Rhythm rhythm;
-    HalfCycles half_cycles;
+    CyclePeaks cycle_peaks{w.window, w.parameters.cycle()};
+    ExtremesRecord extremes{w.parameters, w.window, w.parts.extremes};
+    Decay decay{w.parameters, w.window.from};
+    Rhythm rhythm{w.parameters, w.window, w.parts.regime ? w.most_points : 0};
+    HalfCycles half_cycles{w.parameters, w.window, w.most_points};
     std::optional<ComparedRun> compared;
 };
 
@@ -200,8 +186,7 @@ struct AnalysisConclusion {
         return {window, std::move(product), growth, judgement};
     }
 
-    /// Finds the regime, which needs the growth of the deviations; then the exponents of all
-    /// windows, whose verdicts need the regime.
+    /// The regime needs the growth of the deviations, the verdicts on all windows need the regime.
     void judge_motion() {
         const Growth growth = growth_of(o.lyapunov.product());
         a.regime = regime_of(
@@ -237,8 +222,7 @@ struct AnalysisConclusion {
         if (missed.count > 0) warn(missed);
     }
 
-    /// Warns of nearly grazing impacts. Each makes the eigenvalues of every product that contains
-    /// it inaccurate.
+    /// Each makes the eigenvalues of every product that contains it inaccurate.
     void nearly_grazing() {
         long count = 0;
         const ImpactCollector::NearlyTangent* nearest = nullptr;
@@ -267,8 +251,7 @@ struct AnalysisConclusion {
         }
     }
 
-    /// Moduli of the eigenvalues of J, M and T. Those of T are expensive: when interrupt.late
-    /// returns true, the result is limited to the last impacts, whose moduli are complete.
+    /// Those of T are expensive: interrupt.late limits the result to the last impacts.
     void moduli(std::span<const ImpactTransfer> transfers) {
         constexpr std::size_t per_look = 256;
         TransferModuli& m = a.moduli.emplace();
@@ -320,8 +303,7 @@ struct AnalysisConclusion {
         e.peak_ratio = ratio(e.balance.peak, e.unattached->peak);
     }
 
-    /// A motion that settles on a periodic orbit is not stationary either, but its capture is
-    /// reported.
+    /// The capture by a periodic orbit, which is not stationary either, is reported.
     void stationarity() {
         if (a.regime && a.regime->orbit) return;
         const Parameters& p = w.parameters;
@@ -379,7 +361,7 @@ Analysis analyse(const AnalysisRequest& w, const Interrupt& interrupt) {
     a.outcome = simulate(
         w.parameters, w.start,
         {.tau_end = w.tau_end, .max_impacts = w.max_impacts, .stop = interrupt.run},
-        observers.wanted(w));
+        observers.wanted());
     const double tau = a.outcome.tau;
     a.reached = {std::min(w.window.from, tau), std::min(w.window.to, tau)};
     AnalysisConclusion{w, interrupt, observers, a}.conclude();

@@ -105,9 +105,8 @@ struct ManifoldResult {
     std::vector<ManifoldPoint> points;
 };
 
-// Warnings about a result, as data; api/warning_text.cpp has their sentences. Times are
-// dimensionless (tau). Where a list is cut, `seen` (or the named count) is its full length; `kept`
-// and `most` are the number of its last entries that remain.
+// Warnings about a result, as data; api/warning_text.cpp has their sentences. Where a list is cut,
+// `seen` is its full length, `kept` and `most` the number of its last entries that remain.
 namespace warning {
 
 /// The run ended, at `tau`, before `count` of its windows began, the first at tau_start.
@@ -192,8 +191,7 @@ using Warning = std::variant<
     warning::NotStationary, warning::NoManifold, warning::PerturbedRunCut,
     warning::NoDistanceSlope>;
 
-/// Appends the warnings about a product. If `histories` are requested: all; otherwise only the
-/// violation of the sum rule.
+/// Appends the warnings about a product; without `histories` only the violation of the sum rule.
 void add_warnings(const TransferProduct& product, bool histories, std::vector<Warning>& warnings);
 
 /// Result of analyse(). Parts that were not requested are empty, except that regime and exponents

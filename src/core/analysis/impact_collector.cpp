@@ -8,17 +8,14 @@ namespace vines {
 
 namespace {
 
-/// Threshold of |x''/(x'- - y'-)| above which an impact counts as nearly tangent: without the wall
-/// the ball would have turned back within 1/1800 of a unit of tau. The condition number of M is
-/// then about 14 (x''/(x'- - y'-))^2 at Table 1's R = .6: a relative error of one ulp in its
-/// argument becomes 1e-8 in its result.
+/// Threshold of kappa = |x''/(x'- - y'-)| above which an impact counts as nearly tangent. The
+/// condition number of M is about 14 kappa^2 at R = .6: an ulp becomes a relative error of 1e-8.
 constexpr double nearly_tangent_ratio = 1800;
 
 // Length of the longest list that the service makes; longer ones are reallocated.
 constexpr std::size_t most_reserved = 2000000;
 
-/// Impacts of a chatter (wall pressed: side x'' > 0) are slow as well, but neighbouring motions
-/// have them too.
+/// Impacts of a chatter are slow as well, but neighbouring motions have them too.
 bool is_nearly_tangent(const Impact& i) {
     return !(i.side * i.x_ddot_before > 0) &&
            std::abs(i.x_ddot_before) > nearly_tangent_ratio * std::abs(i.relative_speed_before);

@@ -43,9 +43,8 @@ private:
     LastOf<double> speeds_;
 };
 
-/// Passes the impacts in `range` to `take`, in order, by repeating a run. Returns false if
-/// limits.stop ended the repetition before the last of them. `limits` must be those of the run,
-/// except for `stop`.
+/// Passes the impacts in `range` to `take`, in order, by repeating the run with its limits. Returns
+/// false if limits.stop ended the repetition before the last of them.
 bool repeat_impacts(
     const Parameters& parameters, const State& start, const Limits& limits,
     const ImpactRange& range, const std::function<void(const Impact&)>& take);

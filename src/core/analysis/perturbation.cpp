@@ -107,8 +107,7 @@ namespace {
 /// Interval in which one run has had a contact that the other has not had yet.
 struct ContactGap {
     double from, to;
-    /// The impact that one run has had; null while one of them settles into sticking, where the
-    /// plain difference is used.
+    /// Null while one run settles into sticking, where the plain difference is used.
     const ComparedContact* impact;
     bool of_reference;  ///< the impact is the reference's
 };
@@ -153,9 +152,7 @@ private:
     }
 
     /// True if both are on one side and the later one is nearer to the first than to the impact
-    /// that follows the first; otherwise it corresponds to that one. In a chatter one run can be
-    /// several impacts ahead; only there can the next impact on the same side be near, for where
-    /// the wall does not press, the ball leaves it for part of a cycle.
+    /// that follows the first. In a chatter, where alone the wall presses, the order decides.
     bool correspond(int first, int later) const {
         if (at(first).side != at(later).side) return false;
         if (next_[first] + 1 == contacts_[first]->size()) return true;
@@ -251,8 +248,7 @@ double lambda1_over(
     return outcome.reason == End::stopped ? nan : lyapunov.product().qr()[0];
 }
 
-/// Finds the interval, from the start on, in which the distance agrees with the linear theory, and
-/// the growth there.
+/// Finds the interval in which the distance agrees with the linear theory, and its growth.
 void find_linear_stretch(
     const Parameters& p, const State& start, const std::vector<ComparedContact>& contacts,
     const std::vector<char>& comparable, const Limits& limits, Perturbation& r) {

@@ -20,8 +20,7 @@
 
 namespace vines {
 
-/// Largest relative difference between the distance and the tangent vector's length for which both
-/// count as agreeing with the linear theory.
+/// Largest difference of distance and tangent that agrees with the linear theory, relative.
 inline constexpr double linear_share = 0.1;
 /// Fewer impacts give the slope of single impacts, not of the motion.
 inline constexpr long fewest_linear_impacts = 3;
@@ -44,9 +43,8 @@ struct ComparedContact {
     State deviation = {};     ///< impact: the tangent vector before it, if carried
 };
 
-/// Records the contacts of a run and carries a tangent vector along it, by J (18), (19), by M (26),
-/// (27), or by the projection of a sticking phase. Samples the motion and the tangent vector's
-/// length at tau = 0, step, 2 step, ... and at the end of the run.
+/// Records the contacts of a run and carries a tangent vector along it. Samples the motion and the
+/// vector's length at tau = 0, step, 2 step, ... and at the end of the run.
 class ComparedRun : public Observer {
 public:
     /// `deviation`: the tangent vector at the start; zero if not needed. `step`: 0 for no samples.
@@ -60,8 +58,7 @@ public:
     void on_stick(const StickStart&) override;
     void on_release(double tau) override { contacts.back().release = tau; }
     void finish(const Outcome& outcome);
-    /// Records the contacts of one more cycle: an impact of the other run just before the end can
-    /// have its counterpart just after it.
+    /// Records one more cycle, where impacts of the other run can have their counterparts.
     void look_ahead(const Outcome& outcome);
 
     const Series& series() const { return series_.series; }
@@ -76,8 +73,7 @@ private:
     SeriesRecord series_;
 };
 
-/// Interval over which the distance follows the linear theory, from the reference's first impact
-/// on, and the growth of ln(distance) over it, per unit of tau.
+/// Interval over which the distance follows the linear theory, from the first impact on.
 struct LinearStretch {
     Interval tau;
     double slope;    ///< of ln(distance), by least squares
@@ -91,9 +87,8 @@ struct Perturbation {
     std::vector<GrazingEvent> impacts;
     /// At the times of the series: the distance as defined above, and the tangent vector's length.
     std::vector<double> distance, tangent;
-    /// Time from which the impacts of both runs no longer correspond (opposite walls, or an impact
-    /// that the other run never has) and the distance is the plain one. Empty if they correspond to
-    /// the end.
+    /// Time from which the impacts of both runs no longer correspond (opposite walls, or one
+    /// without a counterpart) and the distance is the plain one; empty if never.
     std::optional<double> parted;
     std::optional<LinearStretch> linear;
     /// End of the agreement with the linear theory, and the reference's impacts up to there.
@@ -101,10 +96,9 @@ struct Perturbation {
     long linear_impacts;
 };
 
-/// Compares the run from displaced(start, difference) with `reference`, a finished observer of the
-/// run from `start` that carried the difference as its tangent vector; `outcome` is that run's.
-/// Both starts must lie in the cavity. `limits` apply to the second run, which ends no later than
-/// the first.
+/// Compares the run from displaced(start, difference) with `reference`, which observed the run from
+/// `start` to `outcome` with that difference as tangent vector. `limits` apply to the second run,
+/// which ends no later.
 Perturbation perturbation_of(
     const Parameters& parameters, const State& start, const State& difference,
     ComparedRun& reference, const Outcome& outcome, Limits limits, double step);

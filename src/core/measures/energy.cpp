@@ -22,24 +22,12 @@ double energy_of(const Parameters& p, const State& s) {
            p.epsilon * p.gravity * s.y;
 }
 
-Energy::Law::Law(std::shared_ptr<const Flow> f)
-    : flow(std::move(f)),
-      quadrature(Quadrature::shared(*flow)),
-      antiderivative(Antiderivative::of(*flow)) {}
-
-Energy::Energy(const Parameters& p, const Interval& window)
-    : parameters_(p),
-      window_(window),
-      free_(Flow::shared_free(p)),
-      steps_(window, p.cycle()),
-      next_step_(steps_.end_of(0)) {}
-
 void Energy::on_stretch(const Stretch& stretch) {
     const auto [from, to] = stretch.within(window_);
     if (!(from < to)) return;
     if (!parameters_.has_straight_flights()) return add_curved(stretch, from, to);
     const bool is_stuck = stretch.sticking_side != 0;
-    if (is_stuck && !sticking_) sticking_.emplace(Flow::shared_sticking(parameters_));
+    if (is_stuck && !sticking_) sticking_ = Law{Flow::shared_sticking(parameters_)};
     const Law& law = is_stuck ? *sticking_ : free_;
     const Oscillation begin = from > 0 ? stretch.flow.after(stretch.start, from) : stretch.start;
     if (duration_ == 0)

@@ -53,7 +53,9 @@ private:
 /// Observer of the energy balance and the amplitude of x over a window.
 class Energy : public Observer {
 public:
-    Energy(const Parameters& parameters, const Interval& window);
+    Energy(const Parameters& parameters, const Interval& window)
+        : parameters_(parameters),
+          window_(window) {}
 
     void on_stretch(const Stretch&) override;
     void on_impact(const Impact&) override;
@@ -67,14 +69,12 @@ private:
     const Interval window_;
     /// Free or sticking motion with its integration rules.
     struct Law {
-        explicit Law(std::shared_ptr<const Flow> flow);
-
         std::shared_ptr<const Flow> flow;
-        std::shared_ptr<const Quadrature> quadrature;
+        std::shared_ptr<const Quadrature> quadrature = Quadrature::shared(*flow);
         /// Used instead of the quadrature once the window is longer than settled(): cheaper.
-        std::optional<Antiderivative> antiderivative;
+        std::optional<Antiderivative> antiderivative = Antiderivative::of(*flow);
     };
-    const Law free_;
+    const Law free_{Flow::shared_free(parameters_)};
     std::optional<Law> sticking_;  // set at the first sticking phase
     /// Integrals so far, without the antiderivative at the end of the last stretch.
     Integrals sum_ = Integrals::Zero();
@@ -90,9 +90,9 @@ private:
     struct Sums {
         double x_squared, x_dot_squared, impacts, friction;
     };
-    const WindowSteps steps_;
+    const WindowSteps steps_{window_, parameters_.cycle()};
     std::vector<Sums> at_steps_;
-    double next_step_;  ///< its end, in tau
+    double next_step_ = steps_.end_of(0);  ///< its end, in tau
 
     void add_curved(const Stretch& stretch, double from, double to);
     Integrals integrals() const;

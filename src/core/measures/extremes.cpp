@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "core/motion/elementary.hpp"
 #include "core/motion/load.hpp"
 
 namespace vines {
@@ -21,14 +20,6 @@ double scaled_peak(
 }
 
 }  // namespace
-
-ExtremesRecord::ExtremesRecord(const Parameters& p, const Interval& window, ExtremesWanted wanted)
-    : parameters_(p),
-      has_peaks_(wanted == ExtremesWanted::all),
-      window_(window),
-      F_(p.load ? 0 : p.epsilon * p.G),
-      sin_phi_(elementary::sin(p.phi())),
-      cos_phi_(elementary::cos(p.phi())) {}
 
 // With x_b = F sin(Omega tau), x - x_b follows the flow's equation with another harmonic forcing.
 ExtremesRecord::Relative ExtremesRecord::relative_to_base(const Flow& flow) const {

@@ -2,6 +2,7 @@
 // acceleration of the oscillator, its distance from the base, and the impacts' speed.
 #pragma once
 
+#include "core/motion/elementary.hpp"
 #include "core/motion/simulate.hpp"
 
 namespace vines {
@@ -35,7 +36,10 @@ class ExtremesRecord : public Observer {
 public:
     ExtremesRecord(
         const Parameters& parameters, const Interval& window,
-        ExtremesWanted wanted = ExtremesWanted::all);
+        ExtremesWanted wanted = ExtremesWanted::all)
+        : parameters_(parameters),
+          window_(window),
+          has_peaks_(wanted == ExtremesWanted::all) {}
 
     void on_stretch(const Stretch&) override;
     void on_impact(const Impact&) override;
@@ -52,9 +56,11 @@ private:
     Relative relative_to_base(const Flow& flow) const;
 
     const Parameters parameters_;
-    const bool has_peaks_;
     const Interval window_;
-    const double F_, sin_phi_, cos_phi_;
+    const bool has_peaks_;
+    const double F_ = parameters_.load ? 0 : parameters_.epsilon * parameters_.G,
+                 sin_phi_ = elementary::sin(parameters_.phi()),
+                 cos_phi_ = elementary::cos(parameters_.phi());
     Extremes extremes_;
     long impacts_ = 0;
 };

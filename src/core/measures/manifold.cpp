@@ -89,19 +89,12 @@ Manifold manifold_of(const Parameters& p, double V_max, std::size_t points) {
         .b_at_free_amplitude = free && R < 1 ? std::optional(manifold_b(R, *free)) : std::nullopt};
 }
 
-HalfCycles::HalfCycles(const Parameters& p, const Interval& window, std::size_t most)
-    : half_cycle_(std::numbers::pi / p.Omega),
-      tau_end_(window.to),
-      most_(most),
-      next_(static_cast<long>(std::ceil(window.from / half_cycle_)) + 1),
-      begun_((next_ - 1) * half_cycle_) {}
-
 void HalfCycles::on_stretch(const Stretch& stretch) {
     for (double from = std::max(0.0, begun_ - stretch.tau); from < stretch.duration;) {
         const double end = next_ * half_cycle_ - stretch.tau;
         pass(stretch, from, std::min(end, stretch.duration));
         if (end > stretch.duration) return;
-        if (next_ * half_cycle_ <= tau_end_ * (1 + window_rounding)) {
+        if (next_ * half_cycle_ <= window_.to * (1 + window_rounding)) {
             tau.push_back(next_ * half_cycle_);
             points.push_back({peak_, path_ / half_cycle_});
             keep_last(tau, most_);

@@ -57,7 +57,10 @@ Manifold manifold_of(const Parameters& parameters, double V_max, std::size_t poi
 /// forcing. Keeps the last `most` of them, and up to half as many more.
 class HalfCycles : public Observer {
 public:
-    HalfCycles(const Parameters& parameters, const Interval& window, std::size_t most = everything);
+    HalfCycles(const Parameters& p, const Interval& window, std::size_t most = everything)
+        : half_cycle_(std::numbers::pi / p.Omega),
+          window_(window),
+          most_(most) {}
     void on_stretch(const Stretch&) override;
 
     std::vector<double> tau;  ///< end of the half cycle
@@ -65,10 +68,12 @@ public:
 
 private:
     void pass(const Stretch& stretch, double from, double to);
-    const double half_cycle_, tau_end_;
+    const double half_cycle_;
+    const Interval window_;
     const std::size_t most_;
-    long next_;  // the current half cycle ends at next_ half_cycle_
-    double peak_ = 0, path_ = 0, begun_;
+    // The current half cycle ends at next_ half_cycle_.
+    long next_ = static_cast<long>(std::ceil(window_.from / half_cycle_)) + 1;
+    double peak_ = 0, path_ = 0, begun_ = (next_ - 1) * half_cycle_;
 };
 
 }  // namespace vines

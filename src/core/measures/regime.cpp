@@ -130,28 +130,22 @@ std::optional<PeriodicOrbit> orbit_of(
     return std::nullopt;
 }
 
-class OrbitComparison {
-public:
-    OrbitComparison(
-        const Parameters& p, const PeriodicOrbit& orbit, const State& scale, long k,
-        const State& state)
-        : along_(whole_cycle_states(p, orbit)),
-          scale_(scale),
-          period_(static_cast<long>(along_.size())),
-          phase_(static_cast<long>(phase_of(state, along_, scale)) - k % period_ + period_) {}
+/// Comparison of a run, whose state at cycle k0 is `state`, with an orbit's states at whole cycles.
+struct OrbitComparison {
+    std::vector<State> along;
+    const State& scale;
+    long k0;
+    const State& state;
+    long period = static_cast<long>(along.size());
+    long phase = static_cast<long>(phase_of(state, along, scale)) - k0 % period + period;
 
     /// Distance of the state at cycle k from the orbit's state at the same phase.
-    double distance_at(long k, const State& state) const {
-        return distance(state, along_[static_cast<std::size_t>((phase_ + k) % period_)], scale_);
+    double distance_at(long k, const State& at) const {
+        return distance(at, along[static_cast<std::size_t>((phase + k) % period)], scale);
     }
-    bool is_near(long k, const State& state, double within = captured_within) const {
-        return distance_at(k, state) < within;
+    bool is_near(long k, const State& at, double within = captured_within) const {
+        return distance_at(k, at) < within;
     }
-
-private:
-    const std::vector<State> along_;
-    const State scale_;
-    const long period_, phase_;
 };
 
 /// Finds the last of the first `before` whole cycles of a run that is not near the orbit.
@@ -217,7 +211,7 @@ std::optional<Arrival> arrival_at(
     const Parameters& p, const State& start, const PeriodicOrbit& orbit,
     std::span<const State> states, const State& scale, const RegimeEvidence& e) {
     const long first = e.stroboscopic.first(), end = first + static_cast<long>(states.size());
-    const OrbitComparison comparison(p, orbit, scale, end - 1, states.back());
+    const OrbitComparison comparison{whole_cycle_states(p, orbit), scale, end - 1, states.back()};
     long from = end;
     const auto extend = [&](double within) {
         while (from > first && comparison.is_near(from - 1, states[from - 1 - first], within))
@@ -299,7 +293,7 @@ void settle_later(
             r.followed += round;
             continue;
         }
-        const OrbitComparison comparison(p, *r.orbit, scale, round, s);
+        const OrbitComparison comparison{whole_cycle_states(p, *r.orbit), scale, round, s};
         long from = round;
         while (from > 0 && comparison.is_near(from - 1, on.states[from - 1])) --from;
         r.capture = Capture{e.stroboscopic.tau_of(end + done + from), r.orbit->exponents(p)};

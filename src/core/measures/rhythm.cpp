@@ -116,16 +116,6 @@ void CyclePositions::add(double cycles) {
     bytes_.push_back(static_cast<std::uint8_t>(step));
 }
 
-Rhythm::Rhythm(const Parameters& p, const Interval& window, std::size_t most_listed)
-    : ContactStream(p),
-      synchrony_(0.5 * p.cycle(), most_listed),
-      cycle_(p.cycle()),
-      window_(window),
-      most_listed_(most_listed),
-      steps_(window, p.cycle()),
-      steps_per_tau_(1 / steps_.duration()),
-      in_steps_(steps_.count()) {}
-
 void Rhythm::on_contact(const CountedContact& contact) {
     if (contact.tau < window_.from) before_ = contact;
     else if (contact.tau <= window_.to) count(contact);

@@ -101,7 +101,11 @@ struct ContactCounts {
 class Rhythm : public ContactStream {
 public:
     /// `most_listed`: maximum length of the lists that grow with the run; 0: no lists.
-    Rhythm(const Parameters& parameters, const Interval& window, std::size_t most_listed);
+    Rhythm(const Parameters& p, const Interval& window, std::size_t most_listed)
+        : ContactStream(p),
+          cycle_(p.cycle()),
+          window_(window),
+          most_listed_(most_listed) {}
 
     /// The counts in the part of the window that the run reached; call once, after the run. Cycles
     /// are counted from one before the first contact.
@@ -114,15 +118,15 @@ private:
     double z_error(const Interval& reached) const;
     void count_cycles(const Interval& reached, ContactCounts& counts) const;
 
-    Synchrony synchrony_;
     const double cycle_;
     const Interval window_;
     const std::size_t most_listed_;
+    Synchrony synchrony_{0.5 * cycle_, most_listed_};
     double first_ = 0, last_ = 0;
     std::optional<CountedContact> before_;  // the last contact before the window
-    const WindowSteps steps_;
-    const double steps_per_tau_;
-    std::vector<double> in_steps_;  // contacts in each step
+    const WindowSteps steps_{window_, cycle_};
+    const double steps_per_tau_ = 1 / steps_.duration();
+    std::vector<double> in_steps_ = std::vector<double>(steps_.count());  // contacts in each step
     CyclePositions positions_;
 };
 

@@ -12,40 +12,35 @@ namespace {
 
 constexpr double ulp = std::numeric_limits<double>::epsilon();
 
-// Halley's error is of third order: after a step below 1e-6 of the root the next one is below 1e-18
-// of it and not worth taking.
+// A step below 1e-6 of the root is the last: the next one would be below 1e-18.
 constexpr double last_step = 1e-6;
-// Last step in a cell, relative to h. The state is carried over it by its Taylor polynomial of
-// second order, whose remainder, (1e-7)^3 h^3/6 of x''', is below an ulp of x.
+// Last step in a cell, relative to h: the Taylor polynomial of second order suffices for it.
 constexpr double last_step_in_cell = 1e-7;
 
 /// Bisection on a polynomial, with a bound of its third derivative on [0, h].
-class CrossingSearch {
-public:
-    CrossingSearch(
-        std::span<const double> c, double h, double noise, std::optional<double>& tangent)
-        : c_(c),
-          h_(h),
-          noise_(noise),
-          tangent_(tangent) {
+struct CrossingSearch {
+    std::span<const double> c;
+    double h, noise;
+    std::optional<double>& tangent;
+    double third = 0;
+
+    std::optional<double> search() {
         double power = 1;
         for (std::size_t n = 3; n < c.size(); ++n, power *= h)
-            third_ += n * (n - 1.0) * (n - 2.0) * std::abs(c[n]) * power;
+            third += n * (n - 1.0) * (n - 2.0) * std::abs(c[n]) * power;
+        return in(0, h);
     }
 
-    std::optional<double> search() { return in(0, h_); }
-
-private:
     struct Value {
         double f, f1, f2;  // value, first derivative, half of the second
     };
 
     Value at(double d) const {
         Value v{0, 0, 0};
-        for (std::size_t n = c_.size(); n-- > 0;) {
+        for (std::size_t n = c.size(); n-- > 0;) {
             v.f2 = v.f2 * d + v.f1;
             v.f1 = v.f1 * d + v.f;
-            v.f = v.f * d + c_[n];
+            v.f = v.f * d + c[n];
         }
         return v;
     }
@@ -54,13 +49,13 @@ private:
     std::optional<double> in(double a, double e) {
         const double middle = 0.5 * (a + e), radius = 0.5 * (e - a);
         const Value m = at(middle);
-        if (m.f + radius * (std::abs(m.f1) + radius * (std::abs(m.f2) + radius * third_ / 6)) <
-            -noise_)
+        if (m.f + radius * (std::abs(m.f1) + radius * (std::abs(m.f2) + radius * third / 6)) <
+            -noise)
             return {};
 
-        const bool monotone = std::abs(m.f1) > radius * (2 * std::abs(m.f2) + radius * third_ / 2);
-        const bool one_curvature = 2 * std::abs(m.f2) > radius * third_;
-        const bool at_resolution = middle <= a || middle >= e || radius < ulp * h_;
+        const bool monotone = std::abs(m.f1) > radius * (2 * std::abs(m.f2) + radius * third / 2);
+        const bool one_curvature = 2 * std::abs(m.f2) > radius * third;
+        const bool at_resolution = middle <= a || middle >= e || radius < ulp * h;
         if (monotone || one_curvature || at_resolution) {
             const Value end = at(e);
             if (!at_resolution && !monotone && m.f2 < 0 && end.f1 < 0) return before_maximum(a, e);
@@ -85,7 +80,7 @@ private:
         }
         const double top = at(d).f;
         if (top >= 0) return root(a, at(a).f, d, top);
-        if (top >= -noise_) tangent_ = d;
+        if (top >= -noise) tangent = d;
         return {};
     }
 
@@ -107,10 +102,6 @@ private:
         }
         return d;
     }
-
-    std::span<const double> c_;
-    double h_, noise_, third_ = 0;
-    std::optional<double>& tangent_;
 };
 
 }  // namespace
@@ -123,7 +114,7 @@ std::optional<double> first_crossing(
     // Identically zero.
     if (std::all_of(c.begin(), c.end(), [](double v) { return v == 0; })) return {};
     if (c[0] >= 0) return 0;
-    return CrossingSearch(c, h, zeros > 0 ? 0 : noise, tangent).search();
+    return CrossingSearch{c, h, zeros > 0 ? 0 : noise, tangent}.search();
 }
 
 namespace {
@@ -166,8 +157,8 @@ struct CellSearch {
             f2 + d * (3 * f3 + d * (6 * f4 + d * 10 * f5)));
         d = std::clamp(d, 0.0, h);
 
-        // Two steps suffice unless the speed is so small that rounding moves the root by more than
-        // the limit; then in_cell() brackets it.
+        // Two steps suffice unless rounding moves the root of a slow flight; then in_cell() does
+        // it.
         SeriesValue v;
         double step;
         for (int i = 0;; ++i) {
@@ -258,8 +249,7 @@ struct CellSearch {
 
 }  // namespace
 
-// Five products and five sums, each within half an ulp of the largest term, the same again in the
-// table and the state, and a safety factor of three.
+// Five products and five sums, twice (in the table, too), and a safety factor of three.
 constexpr double grid_rounding = 16 * 0x1p-52;
 
 double position_rounding(const Flow::Bounds& bounds, double y, double b) {

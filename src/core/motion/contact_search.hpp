@@ -68,15 +68,13 @@ struct GrazingPoint {
     int side;
 };
 
-/// Halley's step towards the root of a function with value f, first derivative and half the second
-/// derivative. The error is of third order in the step.
+/// Halley's step towards the root of a function: an error of third order in the step.
 inline double halley(double f, double first, double half_second) {
     return -f * first / (first * first - f * half_second);
 }
 
-/// Halley's iteration for the next contact of a chatter ends at a step below this, relative to the
-/// flight time. The remaining error is of the order of the step's cube, 1e-24, because the errors
-/// of thousands of flights in a chatter accumulate.
+/// Last step of Halley's iteration in a chatter, relative to the flight time: the remaining error
+/// is of the order of its cube, 1e-24, because errors of thousands of flights accumulate.
 inline constexpr double last_chatter_step = 1e-8;
 
 /// Rounding error of x - y on the grid: |x - y| can exceed b by this without a contact.
@@ -87,11 +85,9 @@ std::optional<Contact> next_contact(
     const Flow& flow, const FlightStart& start, double b, double limit,
     std::vector<GrazingPoint>& grazing);
 
-/// The first s in (0, limit] at which side (x'' - pull) falls to `least`, where x'' is the
-/// acceleration of the joint motion; limit <= flow.reach(). At a wall, `side` presses the ball
-/// against it until then; inside the cavity friction holds the ball up to side (x'' - pull) =
-/// least < 0. `pull` is a function of the time. `zeros` is 1 if they are equal at the start,
-/// otherwise 0.
+/// The first s in (0, limit] at which side (x'' - pull) of the joint motion falls to `least`; limit
+/// <= flow.reach(). At a wall, `side` presses the ball against it until then; inside the cavity
+/// friction holds it up to least < 0. `zeros` is 1 if they are equal at the start, otherwise 0.
 std::optional<double> next_release(
     const Flow& flow, const Oscillation& start, int side, int zeros, double limit,
     const Polynomial& pull = {}, double least = 0);
@@ -101,16 +97,14 @@ std::optional<double> next_release(
 std::optional<double> next_equal_velocity(
     const Flow& flow, const FlightStart& start, int direction, int zeros, double limit);
 
-/// The first d in [0, h] at which the polynomial sum of c[n] d^n rises from below zero to zero or
-/// above. The first `zeros` coefficients are taken as zero and divided out, together with exact
-/// zeros that follow. `tangent` is set to the position of a maximum that is below zero by less than
-/// `noise`.
+/// The first d in [0, h] at which sum of c[n] d^n rises from below zero to zero. The first `zeros`
+/// coefficients are taken as zero and divided out, with exact zeros that follow. `tangent`:
+/// position of a maximum that is below zero by less than `noise`.
 std::optional<double> first_crossing(
     std::span<const double> c, int zeros, double h, double noise, std::optional<double>& tangent);
 
-/// The same contact as next_contact(), up to rounding, but faster for the flights that make up most
-/// of a run: away from one wall, across the cavity or back. It uses rules 1 to 4 and calls
-/// next_contact() in every case that they do not settle at once.
+/// The same contact as next_contact(), up to rounding, but faster for the most frequent flights;
+/// calls next_contact() for all others.
 std::optional<Contact> fast_contact(
     const Flow& flow, const FlightStart& start, double b, double limit,
     std::vector<GrazingPoint>& grazing);

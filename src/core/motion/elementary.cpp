@@ -4,18 +4,16 @@
 #include <array>
 #include <bit>
 
-// All functions use the same method. The argument is reduced to a table point, whose function value
-// is known to twice the precision of double, and a small remainder r. The result is an exact large
-// part plus a small part in ordinary doubles, at most 2^-7 of it, so that the few roundings of the
-// small part contribute less than 2^-6 ulp. Each series ends where the first omitted term is below
-// 2^-62 of the result. The compiler computes the tables.
+// The argument is reduced to a table point, whose function value is known to twice the precision of
+// double, and a small remainder. The result is an exact large part plus a small part in ordinary
+// doubles, at most 2^-7 of it, whose roundings contribute less than 2^-6 ulp. Each series ends
+// where the first omitted term is below 2^-62 of the result. The compiler computes the tables.
 
 namespace vines::elementary {
 
 namespace {
 
-// Double-double arithmetic: unevaluated sums of two doubles, about 106 bits. It uses only + - * /,
-// so that results are the same on every machine and can be computed at compile time.
+// Double-double arithmetic: unevaluated sums of two doubles, about 106 bits.
 
 /// high + low, |low| at most half an ulp of high.
 struct DoubleDouble {
@@ -34,8 +32,7 @@ constexpr DoubleDouble exact_sum(double a, double b) {
     return {high, (a - (high - of_b)) + (b - of_b)};
 }
 
-/// The leading 26 bits of a number (Veltkamp's split); the remainder has at most 26 bits. Products
-/// of such parts are exact.
+/// The leading 26 bits of a number (Veltkamp's split); products of head and remainder are exact.
 constexpr double head_of(double a) {
     const double shifted = a * 0x8000001p0;
     return shifted - (shifted - a);
@@ -221,8 +218,7 @@ constexpr int turn_steps = 64, right_angle = turn_steps / 4;
 constexpr double steps_per_radian = turn_steps / (2 * pi[0]);
 constexpr double angle_step[3] = {pi[0] / 32, pi[1] / 32, pi[2] / 32};
 
-/// Series of sin (first = 1) or cos (first = 0) up to pi/4: the term after the 14th is below
-/// 2^-107.
+/// Series of sin (first = 1) or cos (first = 0) up to pi/4, to 2^-107.
 constexpr DoubleDouble sine_series(const DoubleDouble& angle, int first) {
     const DoubleDouble minus_square = DoubleDouble{-1} * angle * angle;
     DoubleDouble sum = {1};
@@ -253,8 +249,7 @@ struct ReducedAngle {
     DoubleDouble rest;  // |rest| <= step/2 = 0.0491
 };
 
-/// For fewer than 1024 steps, error 2^-95: products with 26-bit parts are exact, and so is the
-/// first difference because x is close to n steps.
+/// For fewer than 1024 steps, error 2^-95: products with 26-bit parts are exact.
 inline ReducedAngle less_few_steps(double x, double n) {
     constexpr double first = head_of(angle_step[0]), second = angle_step[0] - first;
     const DoubleDouble near = exact_sum(x - n * first, -n * second);

@@ -31,9 +31,8 @@ double exp(double x);
 /// x^y for x >= 0, otherwise NaN; error below 0.51 + |y|/2^15 ulp.
 double pow(double x, double y);
 
-/// x in radians. Error below 0.51 ulp for |x| up to 2^31, plus 1e-30 up to 2^47. Beyond that, where
-/// neighbouring doubles are more than a thousandth of a revolution apart, x is reduced modulo the
-/// double next to 2 pi.
+/// x in radians. Error below 0.51 ulp for |x| up to 2^31, plus 1e-30 up to 2^47. Beyond that x is
+/// reduced modulo the double next to 2 pi.
 double sin(double x);
 double cos(double x);
 

@@ -11,9 +11,8 @@ namespace {
 
 bool signs_differ(double a, double b) { return (a < 0) != (b < 0); }
 
-/// x at the zero of x' in 0 < d < width from `left`; x' has opposite signs at the two ends and x''
-/// has one sign between them. Newton iteration with an acceleration accurate to 1e-5; the last step
-/// follows the parabola, whose relative error is 1e-18.
+/// x at the zero of x' in 0 < d < width; x' changes its sign there and x'' does not. Newton
+/// iteration; the last step follows the parabola, whose relative error is 1e-18.
 double extremum_value(const Flow& flow, const Oscillation& left, double width, double x_dot_end) {
     constexpr double last_step = 1e-5;
     const Flow::ShortSeries series = flow.short_series(left);
@@ -29,8 +28,7 @@ double extremum_value(const Flow& flow, const Oscillation& left, double width, d
     }
 }
 
-/// Visits the extrema of x in a cell or part of a cell, from `left` to `right`: at most one, or two
-/// if x'' changes sign in between.
+/// Visits the extrema of x from `left` to `right`: one at most, two if x'' changes its sign.
 template <class Visit>
 void visit_extrema(
     const Flow& flow, const Oscillation& left, double width, const Oscillation& right,
@@ -71,8 +69,7 @@ struct PeakSearch {
     double peak() {
         known = std::max(known, std::abs(o.x));
         if (bounds.x <= known) return known;
-        // x differs from its chord over a width w by at most M2 w^2/8. The search narrows down from
-        // blocks of cells to cells to the extremum inside a cell.
+        // By rule 1 of contact_search.hpp, from blocks of cells to cells to an extremum in a cell.
         const double width = Flow::block * h, more = bounds.x_ddot * (width * width / 8);
         double left = o.x;
         const int blocks = cells / Flow::block;
@@ -101,15 +98,15 @@ struct PeakSearch {
         if (!signs_differ(before, flow.speed_at(o, from + Flow::block))) return;
         for (int k = from + 1; k <= from + Flow::block; ++k) {
             const double now = flow.speed_at(o, k);
-            if (signs_differ(before, now)) return single_extremum(flow.roughly_at(o, k - 1), now);
+            if (signs_differ(before, now)) {
+                // The motion goes no further than with its present speed.
+                const Oscillation o_left = flow.roughly_at(o, k - 1);
+                if (std::abs(o_left.x) + std::abs(o_left.x_dot) * h > known)
+                    visit(extremum_value(flow, o_left, h, now));
+                return;
+            }
             before = now;
         }
-    }
-
-    /// A cell in which x' falls to zero: the motion goes no further than with its present speed.
-    void single_extremum(const Oscillation& left, double x_dot_end) {
-        if (std::abs(left.x) + std::abs(left.x_dot) * h > known)
-            visit(extremum_value(flow, left, h, x_dot_end));
     }
 
     void search_cells(int from, double left, int count) {

@@ -8,12 +8,10 @@ namespace vines {
 
 namespace {
 
-// 42 cells per period (2 pi/h) keep the empty-cell proof of contact_search.hpp sharp: its margin M2
-// h^2/8 is 0.3 % of the amplitude.
+// Keeps rule 1 of contact_search.hpp sharp: its margin M2 h^2/8 is 0.3 % of the amplitude.
 constexpr double cells_per_period = 42;
 
-// Taylor terms of the flow over a cell; its width times the fastest rate is 0.15, and the first
-// omitted term is below 1e-49.
+// Taylor terms of the flow over a cell; the first omitted one is below 1e-49.
 constexpr int cell_terms = 26;
 
 // Extended precision makes the tables accurate to the last ulp of double.
@@ -223,8 +221,7 @@ Transfer Flow::transfer(double s) const {
     for (; s >= reach(); s -= reach()) ++reaches;
     const int k = static_cast<int>(s / cell_);
     const double d = std::max(0.0, s - k * cell_);
-    // In a cell: if u is the unforced motion from (x', x) = (1, 0), that from (0, 1) is u' +
-    // damping u.
+    // In a cell: if u is the motion from (x', x) = (1, 0), u' + damping u is that from (0, 1).
     const auto [u, u_dot] = of_x_dot_.near.at(d);
     Transfer j = after({u_dot, -stiffness_ * u, u, u_dot + damping_ * u}, row(k));
     for (; reaches > 0; --reaches) j = after(j, row(cells));

@@ -199,8 +199,7 @@ public:
         return of_x_.series * o.x + of_x_dot_.series * o.x_dot + of_sin_.series * o.sin_theta +
                of_cos_.series * o.cos_theta;
     }
-    /// The same, shorter: coefficients of x and x' in pairs of an even and an odd power, for |d| <=
-    /// h. Remainders below 1e-18 of the motion.
+    /// The same, shorter, to 1e-18 of the motion: coefficients in pairs of even and odd powers.
     static constexpr int short_pairs = 6;
     using ShortCoefficients = Eigen::Array<double, 2 * short_pairs, 1>;
     struct ShortSeries {
@@ -241,8 +240,8 @@ public:
     /// The transfer matrix over any s >= 0, eq. (19).
     Transfer transfer(double s) const;
 
-    /// Upper bounds of |x|, |x''| and |x'''| over the reach, or over `time`, from the growth of the
-    /// energy: sqrt(stiffness x^2 + x'^2) grows no faster than |forcing|, for any damping >= 0.
+    /// Upper bounds over the reach, or over `time`, from the growth of the energy: sqrt(stiffness
+    /// x^2 + x'^2) grows no faster than |forcing|, for any damping >= 0.
     struct Bounds {
         double x, x_ddot, x_dddot;
     };
@@ -260,8 +259,7 @@ private:
     double stiffness_, damping_, forcing_, Omega_;
     double cell_;  // h
     double inverse_root_stiffness_, fastest_decay_;
-    // Taylor coefficients of x within a cell, as response to one part of the state with size 1. A
-    // motion is the sum of the responses to its four parts.
+    // Taylor coefficients of x within a cell, as response to one part of the state with size 1.
     struct Response {
         TaylorSeries series;
         ShortSeries near;
@@ -281,8 +279,7 @@ struct SeriesValue {
 };
 SeriesValue value_at(const Flow::TaylorSeries& series, double d);
 
-/// max(known, max |x|) over 0 <= s <= duration, in m. Where a bound on |x| shows that `known` is
-/// not exceeded, no maximum is searched for: in a long run that is most of the time.
+/// max(known, max |x|) over 0 <= s <= duration, m. In most of a long run a bound settles it.
 double peak_beyond(double known, const Flow& flow, Oscillation start, double duration);
 
 /// The same of the motion of a flow plus a polynomial.

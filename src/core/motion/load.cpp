@@ -12,9 +12,8 @@ namespace vines {
 
 namespace {
 
-/// Length of a piece of a formula in units of 1/Omega, or of tau if Omega < 1: the Taylor
-/// polynomials of force and response, with their 14 coefficients, are exact to 1e-17 of the
-/// amplitude, if the damping is not larger. The last piece is up to half longer.
+/// Length of a piece of a formula in units of 1/Omega, at most of tau: 14 Taylor coefficients are
+/// exact to 1e-17, if the damping is not larger. The last piece is up to half longer.
 constexpr double formula_step = 0.3, longest_formula_step = 1.5 * formula_step;
 
 /// Taylor polynomial of amplitude sin(theta): z = exp(i theta) has z' = i theta' z.
@@ -155,8 +154,7 @@ Load Load::noise(
         largest = std::max(largest, std::abs(second[n].real()));
     }
     load.add_piece(duration, {place + motion[0].real()});
-    // Ehlich and Zeller's bound of a trigonometric polynomial by its values at N points, and the
-    // error h^4/384 of a cubic.
+    // Ehlich and Zeller's bound by the values at N points, and the error h^4/384 of a cubic.
     largest /=
         elementary::cos(std::numbers::pi * static_cast<double>(last) / static_cast<double>(N));
     load.sampling_error_ = largest * h * h * h * h / 384;

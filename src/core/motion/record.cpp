@@ -126,8 +126,7 @@ void ContactRecord::on_stick(const StickStart& start) {
     fold_chatter(contacts, start);
 }
 
-// All impacts of a chatter are on one side, and its flights take less than half a cycle of the
-// faster of forcing and oscillator (Run::longest_bounce_).
+// All impacts of a chatter are on one side, its flights at most Run::longest_bounce_ long.
 ContactStream::ContactStream(const Parameters& p)
     : longest_bounce_((1 + bounce_margin) * p.faster_half_cycle()) {}
 

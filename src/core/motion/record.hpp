@@ -13,26 +13,22 @@
 
 namespace vines {
 
-/// The oscillator at equidistant times of a stretch: one table look-up in the flow, then eight
-/// multiplications per sample. The flow is a linear map of (x, x', sin theta, cos theta); its maps
-/// over 1, 2, 3, ... steps are stored in a table, each accurate to the last ulp, so that errors do
-/// not add up from sample to sample. A sample differs from Flow::after() by at most 16 ulp of the
-/// motion's size (Flow::Bounds::x): up to 4 from the sum of four products, the rest from rounding
-/// of times within the flow's reach, up to 19/max(1, Omega), half an ulp of which is 2e-15.
+/// The oscillator at equidistant times of a stretch: eight multiplications per sample. The flow is
+/// a linear map of (x, x', sin theta, cos theta); its maps over 1, 2, 3, ... steps are tabulated,
+/// each to the last ulp, so that errors do not add up. A sample differs from Flow::after() by at
+/// most 16 ulp of Flow::Bounds::x, mostly from rounding of times within the flow's reach.
 class SampledFlow {
 public:
     /// Time between samples, in tau.
     explicit SampledFlow(double step) : step_(step) {}
 
-    /// Sets the flow and the state at s = 0 for the following calls of at(). The flow must exist
-    /// until the next begin().
+    /// Sets the flow, which must exist until the next begin(), and the state at s = 0.
     void begin(const Flow& flow, const Oscillation& start);
     /// The state after s <= reach; s grows from call to call, by one step up to rounding of tau.
     Oscillation at(double s);
 
 private:
-    /// The map over j steps: responses of x and x' to the parts of the state, rotation of the
-    /// phasor.
+    /// The map over j steps: responses to the parts of the state, rotation of the phasor.
     struct Steps {
         double time;  ///< duration of j steps, rounded: the map is exact for it
         Oscillation x, x_dot;
@@ -241,8 +237,7 @@ public:
     long impacts = 0;
 };
 
-/// Reports the same contacts one at a time. It stores only impacts that can still belong to a
-/// chatter, because the sticking phase at its end makes them one contact.
+/// Reports the same contacts one at a time; stores only impacts that may belong to a chatter.
 class ContactStream : public Observer {
 public:
     explicit ContactStream(const Parameters& parameters);

@@ -14,16 +14,12 @@ namespace vines {
 
 namespace {
 
-// A chatter ends when its remaining duration is below this: the remaining impacts, of which there
-// are infinitely many, then differ from their limit by less than the accuracy of any result. The
-// relative speed is near 1e-12 of a typical one, far above the effect of rounding
-// (contact_search.hpp, rule 3).
+// A chatter ends when its remaining duration is below this, less than the accuracy of any result;
+// the relative speed is near 1e-12 of a typical one, far above the effect of rounding.
 constexpr double chatter_rest = 1e-9;
-// A ball that slides comes to rest within each bounce, which is then no longer than the rounding of
-// positions allows: the height of the last bounces is near 1e-14 of a typical distance.
+// A sliding ball rests within each bounce; the last ones are 1e-14 of a typical distance high.
 constexpr double sliding_chatter_rest = 1e-6;
-// The remaining duration is the sum of a geometric series for a constant acceleration, which
-// changes by less than this fraction.
+// Largest relative change of the acceleration for which that is a geometric series.
 constexpr double chatter_drift = 1e-4;
 
 // Events between two calls of the stop function; a flight without a contact in its reach is one.
@@ -62,8 +58,7 @@ public:
           relative_speed_(start.x_dot - start.y_dot) {
         const double theta = p.Omega * limits.tau_start + p.phi();
         lo_ = {start.x, start.x_dot, elementary::sin(theta), elementary::cos(theta)};
-        // Far from the oscillator's rest, where gravity holds it, positions round more than x and
-        // y say.
+        // Where gravity holds it, positions round more than x and y say.
         const double apart = start.x - start.y, sag = p.epsilon * std::abs(p.gravity),
                      rounding = position_rounding(free_->bounds(lo_), std::abs(start.y) + sag, p.b);
         if (side_ == 0 && sag > 0 && std::abs(apart) >= p.b - rounding) side_ = sign_of(apart);
@@ -168,8 +163,7 @@ private:
         return std::min({limit, until_next_interval(), p_.load->response_reach(flow.damping())});
     }
 
-    /// Reports a stretch to the observers and advances the clock over it. The caller sets the state
-    /// at its end.
+    /// Reports a stretch and advances the clock over it. The caller sets the state at its end.
     void pass(const Flow& flow, double duration, int sticking_side) {
         if (duration > 0)
             notify(
@@ -281,8 +275,7 @@ private:
         chatter_ = i.side == last_side_ && pressed ? chatter_ + 1 : 1;
         last_side_ = i.side;
         ++impacts_;
-        // Assigned as a whole, because the next step reads it as a whole: a read that spans several
-        // separate writes waits until they have reached the cache.
+        // As a whole: a read that spans several separate writes waits for the cache.
         lo_ = {i.x, i.x_dot_after, i.sin_theta, i.cos_theta};
         y_dot_ = i.y_dot_after;
         relative_speed_ = i.relative_speed_after;
@@ -290,8 +283,7 @@ private:
         leave_or_stick();
     }
 
-    /// At the wall side_ with a relative speed that is zero or points away from it: determines the
-    /// leading derivative of the gap.
+    /// At the wall with a relative speed that is zero or points away: sets the leading derivative.
     void leave_or_stick() {
         if (forces_) begin_sliding(relative_speed_ != 0 ? sign_of(relative_speed_) : -side_);
         const Oscillation o = of_flow();
@@ -316,9 +308,8 @@ private:
         }
     }
 
-    /// Duration of the remaining impacts after one that leaves the ball with the relative speed w
-    /// while it is pressed with the relative acceleration `press`; infinite if they do not come to
-    /// an end.
+    /// Duration of the impacts after one that leaves the ball with the relative speed w, pressed
+    /// with the relative acceleration `press`; infinite if they do not end.
     double rest_of_chatter(double w, double press, double R) const {
         // Friction brakes the ball on its way back as well.
         const double press_back = press - 2 * (1 + p_.epsilon) * p_.friction;
@@ -329,8 +320,8 @@ private:
         return w / press * (1 + 1 / slower) / (1 - R * slower);
     }
 
-    /// The sticking phase up to the release. The rest of the chatter counts as part of it: the
-    /// centre of mass obeys the same law. `zeros` as in next_release().
+    /// The sticking phase up to the release, with the rest of the chatter, since the centre of mass
+    /// obeys the same law. `zeros` as in next_release().
     void stick(double chatter_left, int zeros) {
         ++others_;
         // The velocity of the centre of mass.
@@ -358,8 +349,7 @@ private:
         slip_zeros_ = jumps_apart() ? 1 : 2;
     }
 
-    /// At the end of a joint motion the relative acceleration begins at zero, unless the load jumps
-    /// there.
+    /// Unless the load jumps, the relative acceleration begins at zero after a joint motion.
     bool jumps_apart() const {
         constexpr double rounding = 1e-12;
         if (!p_.load) return false;
@@ -368,8 +358,7 @@ private:
                rounding * (free_->bounds(o).x_ddot + std::abs(y_ddot()));
     }
 
-    /// Both masses as one, until the wall side_ or, inside the cavity, friction no longer holds the
-    /// ball.
+    /// Both masses as one, until wall or friction no longer hold the ball.
     void follow_joint_motion(int zeros) {
         begin_joint_motion();
         const double apart = side_ != 0 ? side_ * p_.b : lo_.x - y_;

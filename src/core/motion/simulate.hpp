@@ -112,9 +112,8 @@ struct Outcome {
     long impacts;
 };
 
-/// Runs a system that satisfies is_physical() from a state within the cavity, |x - y| <= b up to
-/// rounding. x and the velocities are not limited, so that a run can continue from the end of
-/// another one.
+/// Runs a system that satisfies is_physical() from |x - y| <= b up to rounding; x and the
+/// velocities are not limited, so that a run can continue another one.
 Outcome simulate(
     const Parameters& parameters, const State& start, const Limits& limits,
     std::span<Observer* const> observers);

@@ -246,39 +246,30 @@ Moduli eigenvalue_moduli(const Matrix4& m) {
     return moduli;
 }
 
-namespace {
-
-/// Moduli of J_i, or of T_i = M_i J_i, eq. (30), from the exterior powers.
-Moduli moduli_of(const ImpactTransfer& transfer, bool with_impact) {
-    PowerProduct product(transfer.epsilon);
-    for (const Leg& leg : transfer.legs) product.pass(leg);
-    if (with_impact) product.strike(transfer.M);
+Moduli ImpactTransfer::moduli(bool with_impact) const {
+    PowerProduct product(epsilon);
+    for (const Leg& leg : legs) product.pass(leg);
+    if (with_impact) product.strike(M);
     Moduli moduli = product.log_moduli();
     for (double& m : moduli) m = elementary::exp(m);
     return moduli;
 }
 
-}  // namespace
-
 Moduli ImpactTransfer::J_moduli() const {
-    Moduli moduli = {1, 1, 1, 1};
+    if (std::ranges::any_of(legs, [](const Leg& leg) { return leg.sticking || leg.slip != 1; }))
+        return moduli(false);
     // Two blocks, eq. (19). The ball's, [1 0; s 1], is a Jordan block, which a solver would split.
-    const bool blocks =
-        std::ranges::all_of(legs, [](const Leg& leg) { return !leg.sticking && leg.slip == 1; });
-    if (blocks) {
-        for (const Leg& leg : legs) {
-            const auto& [a11, a12, a21, a22] = leg.oscillator;
-            const double n = static_cast<double>(leg.parts), half_trace = 0.5 * std::abs(a11 + a22);
-            // half_trace^2 minus the determinant, without the ones that cancel in a short flight.
-            const double d = 0.25 * (a11 - a22) * (a11 - a22) + a12 * a21;
-            const double large =
-                d > 0 ? elementary::log(half_trace + std::sqrt(d)) : 0.5 * leg.log_det;
-            moduli[2] = elementary::exp(n * large);
-            moduli[3] = elementary::exp(n * (leg.log_det - large));
-        }
-        return moduli;
+    Moduli moduli = {1, 1, 1, 1};
+    for (const Leg& leg : legs) {
+        const auto& [a11, a12, a21, a22] = leg.oscillator;
+        const double n = static_cast<double>(leg.parts), half_trace = 0.5 * std::abs(a11 + a22);
+        // half_trace^2 minus the determinant, without the ones that cancel in a short flight.
+        const double d = 0.25 * (a11 - a22) * (a11 - a22) + a12 * a21;
+        const double large = d > 0 ? elementary::log(half_trace + std::sqrt(d)) : 0.5 * leg.log_det;
+        moduli[2] = elementary::exp(n * large);
+        moduli[3] = elementary::exp(n * (leg.log_det - large));
     }
-    return moduli_of(*this, false);
+    return moduli;
 }
 
 Moduli ImpactTransfer::M_moduli() const {
@@ -286,8 +277,6 @@ Moduli ImpactTransfer::M_moduli() const {
     std::ranges::sort(moduli, std::greater<>());
     return moduli;
 }
-
-Moduli ImpactTransfer::T_moduli() const { return moduli_of(*this, true); }
 
 void TransferObserver::on_stretch(const Stretch& stretch) {
     if (!begun_) return;

@@ -130,7 +130,10 @@ struct ImpactTransfer {
     /// Exactly 1, 1, R, R (section 4): M is triangular for the centre of mass and x - y.
     Moduli M_moduli() const;
     /// From the exterior powers: accurate for any damping and any entries of M.
-    Moduli T_moduli() const;
+    Moduli T_moduli() const { return moduli(true); }
+
+private:
+    Moduli moduli(bool with_impact) const;
 };
 
 /// Passes on the impacts in a window, from the second one on, each with its M and the legs since

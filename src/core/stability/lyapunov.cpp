@@ -54,13 +54,12 @@ public:
 private:
     bool wants_next() const { return capacity_ > 0 && seen_ % stride_ == 0; }
     void thin() {
-        std::size_t kept = 0;
-        for (std::size_t i = 0; i < history_.tau.size(); i += 2, ++kept) {
-            history_.tau[kept] = history_.tau[i];
-            history_.lambda[kept] = history_.lambda[i];
-        }
-        history_.tau.resize(kept);
-        history_.lambda.resize(kept);
+        const auto halve = [](auto& column) {
+            std::size_t kept = 0;
+            for (std::size_t i = 0; i < column.size(); i += 2) column[kept++] = column[i];
+            column.resize(kept);
+        };
+        halve(history_.tau), halve(history_.lambda);
         stride_ *= 2;
     }
 
@@ -237,19 +236,16 @@ double rounding_floor(double lambda1, double T) {
 
 /// The requested estimators and their histories.
 struct TransferProduct::Estimators {
-    std::optional<Qr> qr;
-    std::optional<PowerProduct> powers;
-    std::optional<RawProduct> raw;
     ThinnedHistory qr_history, powers_history, raw_history;
+    std::optional<Qr> qr = {};
+    std::optional<PowerProduct> powers = {};
+    std::optional<RawProduct> raw = {};
 };
 
 TransferProduct::TransferProduct(double epsilon, const ExponentOptions& o)
     : epsilon_(epsilon),
       options_(o),
       estimators_(new Estimators{
-          {},
-          {},
-          {},
           ThinnedHistory(std::max(o.history, shortest_history)),
           ThinnedHistory(std::min(o.history, most_eigenvalue_entries)),
           ThinnedHistory(o.history)}) {
@@ -266,7 +262,7 @@ void TransferProduct::start(double tau) {
 }
 
 void TransferProduct::append(std::span<const Leg> legs, const Saltation& M, double tau) {
-    auto& [qr, powers, raw, qr_history, powers_history, raw_history] = *estimators_;
+    auto& [qr_history, powers_history, raw_history, qr, powers, raw] = *estimators_;
     end_ = tau;
     ++impacts_;
     for (const Leg& leg : legs) {

@@ -85,13 +85,6 @@ private:
     double from_ = 0, length_ = 0;
 };
 
-std::optional<State> after_period(
-    const Parameters& p, const State& s, double tau, int cycles, const StopRequest& stop,
-    std::initializer_list<Observer*> observers) {
-    if (std::abs(s.x - s.y) > p.b) return std::nullopt;
-    return follow(p, s, tau, cycles * p.cycle(), stop, observers);
-}
-
 /// Newton's method, in coordinates scaled to order one.
 std::optional<State> solve_return(
     const Parameters& p, State s, double tau, int cycles, const State& scale, double reach,
@@ -101,7 +94,8 @@ std::optional<State> solve_return(
     double miss_before = infinity;
     for (int step = 0, worse = 0; step < most_steps; ++step) {
         Monodromy monodromy(p);
-        const auto back = after_period(p, s, tau, cycles, stop, {&monodromy});
+        if (std::abs(s.x - s.y) > p.b) return std::nullopt;
+        const auto back = follow(p, s, tau, cycles * p.cycle(), stop, {&monodromy});
         if (!back) return std::nullopt;
         const Eigen::Vector4d miss = (vector_of(*back) - vector_of(s)).cwiseQuotient(unit);
         const double size = miss.cwiseAbs().maxCoeff();
@@ -181,7 +175,7 @@ bool find_smallest_period(
         Monodromy monodromy(p);
         Powers powers(p);
         const auto back =
-            after_period(p, orbit.state, orbit.tau, divisor, stop, {&monodromy, &powers});
+            follow(p, orbit.state, orbit.tau, divisor * p.cycle(), stop, {&monodromy, &powers});
         if (!back) return false;
         orbit.closure = distance(*back, orbit.state, scale);
         if (divisor < cycles && orbit.closure > divisor_tolerance) continue;
