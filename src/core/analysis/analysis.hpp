@@ -6,7 +6,6 @@
 #include <variant>
 #include <vector>
 
-#include "core/analysis/impact_collector.hpp"
 #include "core/analysis/perturbation.hpp"
 #include "core/measures/energy.hpp"
 #include "core/measures/extremes.hpp"

@@ -37,10 +37,6 @@ State random_difference(std::uint64_t seed, double size) {
     }
 }
 
-State displaced(const State& s, const State& d) { return state_of(vector_of(s) + vector_of(d)); }
-State difference_of(const State& to, const State& from) {
-    return state_of(vector_of(to) - vector_of(from));
-}
 double length_of(const State& d) {
     return std::sqrt(d.x_dot * d.x_dot + d.x * d.x + d.y_dot * d.y_dot + d.y * d.y);
 }
@@ -206,22 +202,17 @@ std::vector<char> measure_distances(
         State own = state_at(reference.series(), i), other = state_at(result.series, i);
         double tangent = reference.tangent[i];
         const bool together = !result.parted || tau < *result.parted;
-        bool settling = false;
         while (gap != gaps.end() && gap->to <= tau) ++gap;
-        if (together && gap != gaps.end() && gap->from <= tau) {
-            settling = gap->impact == nullptr;
-            if (gap->impact) {
-                (gap->of_reference ? own : other) = continued(p, *flow, *gap->impact, tau);
-                if (gap->of_reference)
-                    tangent = carried_over(
-                                  *flow, false, tau - gap->impact->tau, p.epsilon,
-                                  vector_of(gap->impact->deviation))
-                                  .norm();
-            }
-        }
+        const bool in_gap = together && gap != gaps.end() && gap->from <= tau;
+        const ComparedContact* const impact = in_gap ? gap->impact : nullptr;
+        if (impact) (gap->of_reference ? own : other) = continued(p, *flow, *impact, tau);
+        if (impact && gap->of_reference)
+            tangent = carried_over(
+                          *flow, false, tau - impact->tau, p.epsilon, vector_of(impact->deviation))
+                          .norm();
         result.distance.push_back(length_of(difference_of(other, own)));
         result.tangent.push_back(tangent);
-        comparable.push_back(together && !settling);
+        comparable.push_back(together && (!in_gap || impact));
     }
     return comparable;
 }

@@ -27,8 +27,12 @@ inline constexpr long fewest_linear_impacts = 3;
 
 /// Random direction of length `size` in the space of (x', x, y', y); identical on every machine.
 State random_difference(std::uint64_t seed, double size);
-State displaced(const State& start, const State& difference);
-State difference_of(const State& to, const State& from);
+inline State displaced(const State& start, const State& difference) {
+    return state_of(vector_of(start) + vector_of(difference));
+}
+inline State difference_of(const State& to, const State& from) {
+    return state_of(vector_of(to) - vector_of(from));
+}
 double length_of(const State& difference);  ///< Euclidean length in (x', x, y', y)
 
 /// A contact as used to compare two runs: an impact, or the begin of a sticking phase.

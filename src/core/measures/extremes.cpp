@@ -60,10 +60,4 @@ void ExtremesRecord::on_impact(const Impact& i) {
     ++impacts_;
 }
 
-Extremes ExtremesRecord::result(const Interval& reached) const {
-    Extremes all = extremes_;
-    if (reached.length() > 0) all.impact_rate = static_cast<double>(impacts_) / reached.length();
-    return all;
-}
-
 }  // namespace vines

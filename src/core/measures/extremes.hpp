@@ -45,7 +45,12 @@ public:
     void on_impact(const Impact&) override;
 
     /// The extremes of the part of the window that the run reached.
-    Extremes result(const Interval& reached) const;
+    Extremes result(const Interval& reached) const {
+        Extremes all = extremes_;
+        if (reached.length() > 0)
+            all.impact_rate = static_cast<double>(impacts_) / reached.length();
+        return all;
+    }
 
 private:
     /// x - x_b of a harmonic base is `size` times a motion of the same flow, whose phasor is turned

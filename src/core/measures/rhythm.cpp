@@ -116,11 +116,6 @@ void CyclePositions::add(double cycles) {
     bytes_.push_back(static_cast<std::uint8_t>(step));
 }
 
-void Rhythm::on_contact(const CountedContact& contact) {
-    if (contact.tau < window_.from) before_ = contact;
-    else if (contact.tau <= window_.to) count(contact);
-}
-
 void Rhythm::count(const CountedContact& contact) {
     if (synchrony_.contacts == 0) first_ = contact.tau;
     last_ = contact.tau;

@@ -112,7 +112,10 @@ public:
     ContactCounts finish(const Interval& reached);
 
 private:
-    void on_contact(const CountedContact& contact) override;
+    void on_contact(const CountedContact& contact) override {
+        if (contact.tau < window_.from) before_ = contact;
+        else if (contact.tau <= window_.to) count(contact);
+    }
     void count(const CountedContact& contact);
     double z(const Interval& reached) const;
     double z_error(const Interval& reached) const;

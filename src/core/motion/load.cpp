@@ -49,8 +49,14 @@ struct BaseMotion {
         v += by_v;
         return p;
     }
-    Polynomial coasting() const { return {static_cast<double>(x), static_cast<double>(v)}; }
 };
+
+/// A base coasts or stays at the value `last`, a force ends.
+Polynomial after_end(LoadKind kind, const BaseMotion& motion, const Polynomial& last) {
+    if (kind == LoadKind::base_displacement) return last;
+    if (kind == LoadKind::force) return {0};
+    return {static_cast<double>(motion.x), static_cast<double>(motion.v)};
+}
 
 }  // namespace
 
@@ -63,10 +69,7 @@ Load::Load(LoadKind kind, const std::vector<double>& tau, const std::vector<doub
         const Polynomial chord{values[i], (values[i + 1] - values[i]) / h};
         add_piece(tau[i], kind == LoadKind::base_acceleration ? motion.advance(chord, h) : chord);
     }
-    add_piece(
-        tau.back(), kind == LoadKind::base_acceleration ? motion.coasting()
-                    : kind == LoadKind::force           ? Polynomial{0}
-                                                        : Polynomial{values.back()});
+    add_piece(tau.back(), after_end(kind, motion, {values.back()}));
 }
 
 Load::Load(std::vector<LoadHarmonic> harmonics)
@@ -94,10 +97,7 @@ Load::Load(
         if (next == duration) value = {value.at(next - tau)};
         tau = next;
     }
-    add_piece(
-        duration, kind == LoadKind::base_acceleration ? motion.coasting()
-                  : kind == LoadKind::force           ? Polynomial{0}
-                                                      : value);
+    add_piece(duration, after_end(kind, motion, value));
 }
 
 double Load::response_reach(double damping) const {

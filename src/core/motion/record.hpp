@@ -3,6 +3,7 @@
 #pragma once
 
 #include <array>
+#include <functional>
 #include <limits>
 #include <optional>
 #include <vector>
@@ -174,6 +175,46 @@ public:
     void on_impact(const Impact& impact) override { add(impact); }
 };
 
+/// A range of impacts by their numbers, counted from 0.
+struct ImpactRange {
+    long first = 0, count = 0;
+};
+
+/// Observer of the last `most_listed` impacts of a run. If there are more than `most_kept` of them,
+/// the list is dropped and only the quantities derived from all impacts are kept.
+class ImpactCollector : public Observer {
+public:
+    ImpactCollector(std::size_t most_listed, std::size_t most_kept);
+
+    void on_impact(const Impact& impact) override;
+    void finish();  ///< call once, after the run
+
+    ImpactRange listed() const;  ///< numbers of the listed impacts
+    bool kept() const { return kept_; }
+
+    std::vector<Impact> entries;  ///< all listed impacts, or empty if not kept()
+    double typical_speed = 1;     ///< median of the relative speeds; 1 without impacts
+    struct NearlyTangent {
+        long number;
+        double tau, speed;  ///< |x' - y'| before the impact
+    };
+    std::vector<NearlyTangent> nearly_tangent;
+
+private:
+    void conclude(long number, const Impact& impact);
+
+    const std::size_t most_listed_, most_kept_;
+    bool kept_ = true;
+    long seen_ = 0;
+    LastOf<double> speeds_;
+};
+
+/// Passes the impacts in `range` to `take`, in order, by repeating the run with its limits. Returns
+/// false if limits.stop ended the repetition before the last of them.
+bool repeat_impacts(
+    const Parameters& parameters, const State& start, const Limits& limits,
+    const ImpactRange& range, const std::function<void(const Impact&)>& take);
+
 /// An impact and the time since the previous impact.
 struct SectionPoint {
     Impact impact;
@@ -226,10 +267,22 @@ struct CountedContact {
     int side;
 };
 
+/// Keeps only the first impact of a chatter.
+inline void fold_chatter(std::vector<CountedContact>& contacts, const StickStart& start) {
+    if (start.impacts > 1)
+        contacts.resize(contacts.size() - static_cast<std::size_t>(start.impacts - 1));
+}
+
 class ContactRecord : public Observer {
 public:
-    void on_impact(const Impact& impact) override;
-    void on_stick(const StickStart& start) override;
+    void on_impact(const Impact& impact) override {
+        ++impacts;
+        contacts.push_back({impact.tau, impact.side});
+    }
+    void on_stick(const StickStart& start) override {
+        sticks.push_back({start.tau, start.tau});
+        fold_chatter(contacts, start);
+    }
     void on_release(double tau) override { sticks.back().to = tau; }
 
     std::vector<CountedContact> contacts;
@@ -240,10 +293,14 @@ public:
 /// Reports the same contacts one at a time; stores only impacts that may belong to a chatter.
 class ContactStream : public Observer {
 public:
-    explicit ContactStream(const Parameters& parameters);
+    /// Flights of a chatter take less than half a cycle (Run::longest_bounce_), up to rounding.
+    explicit ContactStream(const Parameters& p) : longest_bounce_(1.001 * p.faster_half_cycle()) {}
 
     void on_impact(const Impact& impact) override;
-    void on_stick(const StickStart& start) override;
+    void on_stick(const StickStart& start) override {
+        fold_chatter(held_, start);
+        flush_contacts();
+    }
 
 protected:
     virtual void on_contact(const CountedContact& contact) = 0;

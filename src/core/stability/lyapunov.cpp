@@ -256,11 +256,6 @@ TransferProduct::TransferProduct(double epsilon, const ExponentOptions& o)
 TransferProduct::~TransferProduct() = default;
 TransferProduct::TransferProduct(TransferProduct&&) noexcept = default;
 
-void TransferProduct::start(double tau) {
-    start_ = end_ = tau;
-    impacts_ = 1;
-}
-
 void TransferProduct::append(std::span<const Leg> legs, const Saltation& M, double tau) {
     auto& [qr_history, powers_history, raw_history, qr, powers, raw] = *estimators_;
     end_ = tau;
@@ -334,11 +329,6 @@ double TransferProduct::sum_rule_residual() const {
     return *std::ranges::max_element(errors) / (end_ - start_);
 }
 
-void Lyapunov::on_first_impact(const Impact& impact) {
-    product_.start(impact.tau);
-    side_ = impact.side;
-}
-
 void Lyapunov::on_transfer(const Impact& impact, const Saltation& M, std::span<const Leg> legs) {
     product_.append(legs, M, impact.tau);
     const bool is_steep = steepness_of(M) > steep;
@@ -351,14 +341,6 @@ const TransferProduct& Lyapunov::product() {
     if (chatters_ && !(product_.sum_rule_residual() <= most_residual)) product_.end_sticking();
     chatters_ = false;
     return product_;
-}
-
-void WindowedExponents::on_stretch(const Stretch& stretch) {
-    for (Lyapunov* w : open_) w->on_stretch(stretch);
-}
-
-void WindowedExponents::on_slip(const Slip& slip) {
-    for (Lyapunov* w : open_) w->on_slip(slip);
 }
 
 void WindowedExponents::on_impact(const Impact& impact) {

@@ -64,7 +64,7 @@ public:
     TransferProduct(TransferProduct&&) noexcept;
 
     /// Starts the window at the impact at tau, whose own matrices are not part of it.
-    void start(double tau);
+    void start(double tau) { start_ = end_ = tau, impacts_ = 1; }
     /// Appends the legs from the previous impact to the one at tau, and its M.
     void append(std::span<const Leg> legs, const Saltation& M, double tau);
     /// Projects the deviations onto those of the centre of mass, as a sticking phase does.
@@ -118,7 +118,10 @@ public:
     }
 
 private:
-    void on_first_impact(const Impact&) override;
+    void on_first_impact(const Impact& impact) override {
+        product_.start(impact.tau);
+        side_ = impact.side;
+    }
     void on_transfer(const Impact&, const Saltation& M, std::span<const Leg> legs) override;
 
     TransferProduct product_;
@@ -138,8 +141,12 @@ public:
     /// Adds a window; call it before the run. Products are numbered in the order of these calls.
     void add(const Interval& window) { windows_.emplace_back(parameters_, window, options_); }
 
-    void on_stretch(const Stretch&) override;
-    void on_slip(const Slip&) override;
+    void on_stretch(const Stretch& stretch) override {
+        for (Lyapunov* w : open_) w->on_stretch(stretch);
+    }
+    void on_slip(const Slip& slip) override {
+        for (Lyapunov* w : open_) w->on_slip(slip);
+    }
     void on_impact(const Impact&) override;
 
     std::size_t size() const { return windows_.size(); }

@@ -195,11 +195,8 @@ bool count_period(const Parameters& p, const StopRequest& stop, PeriodicOrbit& o
     const double period = orbit.cycles * p.cycle();
     if (!follow(p, orbit.state, orbit.tau, 3 * period, stop, {&contacts, &impacts})) return false;
     double from = contacts.sticks.empty() ? orbit.tau : contacts.sticks[0].to;
-    for (const CountedContact& c : contacts.contacts)
-        if (c.tau >= from) {
-            from = c.tau;
-            break;
-        }
+    const auto first = std::ranges::lower_bound(contacts.contacts, from, {}, &CountedContact::tau);
+    if (first != contacts.contacts.end()) from = first->tau;
     const double to = from + period * (1 - contact_rounding);
     const auto within = [&](double t) { return t >= from && t < to; };
     orbit.contacts = std::ranges::count_if(
