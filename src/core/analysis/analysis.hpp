@@ -30,8 +30,7 @@ struct Parts {
     bool manifold = false;
 };
 
-/// Input of analyse(). validate() must report no fault for parameters, start and perturbed start;
-/// the window begins before tau_end.
+/// Input of analyse(): validate() reports no fault; the window begins before tau_end.
 struct AnalysisRequest {
     Parameters parameters;
     State start;

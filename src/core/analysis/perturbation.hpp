@@ -100,9 +100,8 @@ struct Perturbation {
     long linear_impacts;
 };
 
-/// Compares the run from displaced(start, difference) with `reference`, which observed the run from
-/// `start` to `outcome` with that difference as tangent vector. `limits` apply to the second run,
-/// which ends no later.
+/// Compares the run from displaced(start, difference), within `limits`, with `reference`, which
+/// observed the run from `start` to `outcome` with that difference as tangent vector.
 Perturbation perturbation_of(
     const Parameters& parameters, const State& start, const State& difference,
     ComparedRun& reference, const Outcome& outcome, Limits limits, double step);

@@ -86,8 +86,7 @@ std::string formatted(const char* format, Values... values) {
 
 std::string orbit_name(const Parameters& p, const PeriodicOrbit& orbit, const StopRequest& stop) {
     if (orbit.contacts == 0) return "untouched";
-    // The order of the cycles depends on the start. Positions are continuous even if a whole cycle
-    // is the time of an impact.
+    // Their set does not depend on the start; positions are continuous even at an impact.
     std::set<std::array<std::int64_t, 2>> positions;
     for (const State& s : whole_cycle_states(p, orbit)) {
         const StateCell cell = canonical_cell(p, s, orbit.cycles, stop);

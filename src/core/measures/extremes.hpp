@@ -53,8 +53,7 @@ public:
     }
 
 private:
-    /// x - x_b of a harmonic base is `size` times a motion of the same flow, whose phasor is turned
-    /// by an angle with this cosine and sine.
+    /// x - x_b is `size` times a motion of the flow, its phasor turned by this cosine and sine.
     struct Relative {
         double size, cos, sin;
     };

@@ -53,8 +53,8 @@ private:
     CountedContact last_{};
 };
 
-/// Positions of the contacts in units of 1/128 forcing cycle, stored as differences: one byte per
-/// contact, and one more after a pause of a cycle.
+/// Positions of the contacts in 1/128 cycle, as differences of one byte, two after a pause of a
+/// cycle.
 class CyclePositions {
 public:
     static constexpr int parts = 128;

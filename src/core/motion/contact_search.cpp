@@ -130,8 +130,8 @@ struct CellSearch {
     const Polynomial& y;  // the ball's path
     std::vector<GrazingPoint>& grazing;
 
-    /// The most common case of rule 4: g' has no zero in cell k, and g ends beyond the wall
-    /// ahead, or at it: half a cycle is a multiple of h.
+    /// The most common case of rule 4: g is monotone in cell k and ends at or beyond the wall
+    /// ahead.
     std::optional<Contact> straight(int k, const Oscillation& lo, double next_relative) const {
         const Polynomial y_left = y.about(k * h);
         const double speed = lo.x_dot - y_left[1];
@@ -157,8 +157,7 @@ struct CellSearch {
             f2 + d * (3 * f3 + d * (6 * f4 + d * 10 * f5)));
         d = std::clamp(d, 0.0, h);
 
-        // Two steps suffice unless rounding moves the root of a slow flight; then in_cell() does
-        // it.
+        // Two steps suffice unless the flight is so slow that in_cell() has to bracket the root.
         SeriesValue v;
         double step;
         for (int i = 0;; ++i) {

@@ -185,8 +185,7 @@ struct FastSearch {
         if (!rises(f1, 2 * f2) || f0 >= 0) return SearchResult::undecided;
 
         // Root of the chord, corrected for curvature; one step on the quartic about the left end,
-        // with a fifth term so that it matches f(h), to about 1e-8 h; then a step on the full
-        // series.
+        // with a fifth term so that it matches f(h), to about 1e-8 h; then a step on the series.
         const double per_h = 1 / h, slope = (fh - f0) * per_h, inverse_slope = 1 / slope;
         const double f5 = ((((slope - f1) * per_h - f2) * per_h - f3) * per_h - f4) * per_h;
         double d = -f0 * inverse_slope;

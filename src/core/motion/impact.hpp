@@ -54,8 +54,7 @@ Impact impact_at(
 struct Saltation {
     double R;        ///< factor for x - y
     double R_speed;  ///< factor for x' - y': d(R w)/dw, R for a constant R
-    /// (1 + R) epsilon/(1 + epsilon) and (1 + R)/(1 + epsilon): velocities jump by these times
-    /// x' - y'.
+    /// (1 + R) epsilon/(1 + epsilon) and (1 + R)/(1 + epsilon): jumps of velocities over x' - y'.
     double jump_x, jump_y;
     double jump_x_dot, jump_y_dot;  ///< the same with R_speed, for deviations of the velocities
     double r_x, r_y;                ///< entries 0 and 2 of r; they contain x''/(x'- - y'-)

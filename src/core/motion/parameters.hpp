@@ -34,8 +34,7 @@ struct SiParameters {
     double Omega() const { return f / f0(); }  ///< exactly 1 for f = f0()
 };
 
-/// Restitution coefficient as a function of the speed w = |x' - y'| before the impact: linear
-/// between the points, constant outside.
+/// R as a function of the speed w = |x' - y'| before the impact: linear between the points.
 struct RestitutionTable {
     std::vector<double> speed;  ///< m per unit of tau, ascending, >= 0
     std::vector<double> R;      ///< of equal length, in [0, 1]

@@ -260,8 +260,7 @@ public:
     void on_grazing_contact(double tau, int side) override { add({tau, side}); }
 };
 
-/// A contact of ball and oscillator as regimes and periodic orbits count it: an impact, or a
-/// complete chatter that ends in sticking.
+/// A contact as regimes count it: an impact, or a complete chatter that ends in sticking.
 struct CountedContact {
     double tau;
     int side;

@@ -320,8 +320,8 @@ private:
         return w / press * (1 + 1 / slower) / (1 - R * slower);
     }
 
-    /// The sticking phase up to the release, with the rest of the chatter, since the centre of mass
-    /// obeys the same law. `zeros` as in next_release().
+    /// The sticking phase with the rest of the chatter, up to the release. `zeros`: see
+    /// next_release().
     void stick(double chatter_left, int zeros) {
         ++others_;
         // The velocity of the centre of mass.

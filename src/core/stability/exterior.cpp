@@ -122,8 +122,7 @@ namespace {
 /// -R z, x' gains -jump_x_dot z' + r_x z and x gains -jump_x z.
 struct Relative {
     double R, R_speed, jump_x, jump_x_dot, r_x, r_z;
-    /// R_speed r_x - jump_x_dot r_z, in which R_speed x''/(x'- - y'-) cancels: x'' enters linearly
-    /// everywhere
+    /// R_speed r_x - jump_x_dot r_z, without products of x'': it enters linearly everywhere.
     double mixed;
 };
 Relative relative(const Saltation& M) {

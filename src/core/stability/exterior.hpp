@@ -16,12 +16,11 @@
 
 namespace vines {
 
-/// Largest contraction exponent of one part of a leg, so that the product of two neighbouring
-/// lengths keeps 14 digits.
+/// Largest contraction exponent of one part of a leg: products of two lengths keep 14 digits.
 inline constexpr double most_contraction = 4;
 
-/// A free flight, or a phase with both masses as one (sticking at a wall, or resting inside the
-/// cavity), divided into equal parts that contract by at most e^-most_contraction each.
+/// A free flight, or a phase with both masses as one, divided into equal parts that contract by at
+/// most e^-most_contraction each.
 struct Leg {
     Transfer oscillator;  ///< per part: block (x', x) of J, eq. (19)
     double duration;      ///< per part
@@ -72,9 +71,8 @@ struct Flag {
     void pass(const Leg& leg, double epsilon);  ///< over one part
     void strike(const Saltation& M);
     std::array<double, 3> squares() const;  ///< squares of length, area and volume
-    /// Sines of the angles between the deviation and the plane of the area, and between that plane
-    /// and the space of the volume: they measure how far rounding has separated the three. NaN for
-    /// a zero size.
+    /// Sines of the angles between the deviation, the plane of the area and the space of the
+    /// volume: how far rounding has separated them. NaN for a zero size.
     std::array<double, 2> separations() const;
 };
 
@@ -82,9 +80,8 @@ struct Flag {
 using Moduli = std::array<double, 4>;
 Moduli eigenvalue_moduli(const Matrix4& m);
 
-/// A product of transfer matrices represented by its exterior powers, rescaled as it grows. It
-/// gives the moduli of all four eigenvalues at any ratio between them: the largest eigenvalue of
-/// the k-th power is the product of the k largest ones.
+/// A product of transfer matrices as exterior powers, rescaled as they grow: the largest eigenvalue
+/// of the k-th power is the product of the k largest ones, at any ratio between these.
 class PowerProduct {
 public:
     explicit PowerProduct(double epsilon) : epsilon_(epsilon) {}

@@ -113,9 +113,8 @@ struct Qr {
         if (++since_rescale == 4) rescale();
     }
 
-    /// Impact with large entries of M, or with a tiny R. x - y and x' - y' of a deviation are
-    /// accurate to an ulp of x and x', areas and volumes likewise; M magnifies this error by its
-    /// entries.
+    /// Impact with large entries of M, or with a tiny R: M magnifies errors of an ulp of x and x'
+    /// in the gaps x - y and x' - y' of deviations, areas and volumes.
     void strike_magnified(const Saltation& M, double steepness) {
         rescale();
         const auto before = flag.squares();
@@ -172,9 +171,8 @@ struct Qr {
         return logs;
     }
 
-    /// Errors of the four cumulative sums of logarithms (dimensionless). Length, area and volume:
-    /// the larger of the angles to their neighbours, and the rounding if that exceeds `most`;
-    /// infinity if unknown. Determinant: deviation of its logarithm from the exact value.
+    /// Errors of the four cumulative sums of logarithms, infinity if unknown: the larger of the
+    /// angles to the neighbours, the rounding if that exceeds `most`, the error of the determinant.
     std::array<double, 4> errors(int rank, double most) const {
         const auto squares = flag.squares();
         const auto separations = flag.separations();

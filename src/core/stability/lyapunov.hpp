@@ -75,8 +75,7 @@ public:
     double end_tau() const { return end_; }
     long impacts() const { return impacts_; }  ///< in the window, including the first
     int rank() const { return rank_; }
-    /// Largest error of qr, per unit of tau, by the checks of lyapunov.cpp. NaN without qr or with
-    /// fewer than two impacts.
+    /// Largest error of qr (lyapunov.cpp), per unit of tau; NaN without qr or with one impact.
     double sum_rule_residual() const;
     /// At the last impact, descending; NaN if unavailable. In qr(), NaN from the first exponent on
     /// whose error can exceed `most_residual`.

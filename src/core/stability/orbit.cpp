@@ -47,8 +47,7 @@ private:
     const Parameters p_;
 };
 
-/// Eigenvalues. The solver's error is an ulp of the largest: small ones take their moduli from the
-/// exterior powers.
+/// Eigenvalues; the exterior powers give the moduli of small ones.
 Eigenvalues multipliers_of(const Matrix4& monodromy, const PowerProduct& powers) {
     Eigenvalues values = eigenvalues_of(monodromy);
     const auto logs = powers.log_moduli();

@@ -27,9 +27,8 @@ inline constexpr double least_growth = 36.04;
 /// Minimum growth in the second half, 4 ln 2: one power of t more, for bounded variations.
 inline constexpr double least_late_growth = 2.77;
 
-/// Growth of deviations over a window, by qr. NaN if unavailable, standard errors with fewer than
-/// 32 entries in the history. Dimensionless except the exponents and their errors (per unit of
-/// tau).
+/// Growth of deviations over a window, by qr; NaN if unavailable, errors with fewer than 32 entries
+/// in the history. Dimensionless except the exponents and their errors (per unit of tau).
 struct Growth {
     double lambda1;
     double late_lambda2;       ///< of the second half of the window, in its standard errors
@@ -44,8 +43,7 @@ Growth growth_of(const TransferProduct& product);
 /// Returns chaotic or not_decided.
 Verdict verdict_by_exponents(const Growth& growth);
 
-/// True if deviations neither grow nor shrink by e^2.77 in the second half, as on a torus, and
-/// lambda2 is negative there.
+/// True if deviations neither grow nor shrink in the second half, as on a torus, and lambda2 < 0.
 bool can_be_quasi_periodic(const Growth& growth);
 
 /// Least growth, as a logarithm, that shows a chaotic transient.
@@ -53,9 +51,8 @@ inline constexpr double least_transient_growth = 20;
 /// Growth that departure from one unstable orbit, which ends at least_growth, does not reach.
 inline constexpr double least_growth_of_departures = 40;
 /// End of a part of a history in which deviations grow by more than e^40, by e^10 in each half of
-/// the time they take, or by more than e^20 and more than chance permits anywhere in the history;
-/// empty if none does. For motions that settle afterwards, whose mean growth shows nothing.
-/// `start`: start of the history's window.
+/// its time, or by more than e^20 and more than chance permits; empty if none does. Mean growth
+/// does not show a transient before the motion settles. `start`: of the history's window.
 std::optional<double> chaotic_transient_end(const ExponentHistory& history, double start);
 
 /// Increments of lambda1(tau) tau between the entries of a history without its first tenth. Their
