@@ -73,7 +73,7 @@ void bench_case(const Case& c) {
                 return run(record);
             },
             [&] {
-                Lyapunov lyapunov(p, 0, 1e9, qr_alone);
+                Lyapunov lyapunov(p, {0, 1e9}, qr_alone);
                 return run(lyapunov);
             },
             [&] { return per_impact(impacts, [&] { kept = states_at(p, *flow, known.entries); }); },
@@ -154,7 +154,7 @@ void bench_record() {
             return 1e-6 * per_impact(1, [&] {
                        p.load =
                            std::make_shared<const Load>(LoadKind::base_acceleration, tau, values);
-                       Lyapunov lyapunov(p, 0, 1e9, qr_alone);
+                       Lyapunov lyapunov(p, {0, 1e9}, qr_alone);
                        Observer* const observers[] = {&lyapunov};
                        simulate(p, default_state(p), {p.load->length(), 1000000, {}}, observers);
                    });

@@ -41,7 +41,7 @@ void run_motions(int threads, double cycles, bool exponents) {
         const double end = cycles * p.cycle();
         std::optional<Lyapunov> lyapunov;
         std::vector<Observer*> observers;
-        if (exponents) observers = {&lyapunov.emplace(p, 0, end, qr_alone)};
+        if (exponents) observers = {&lyapunov.emplace(p, Interval{0, end}, qr_alone)};
         simulate(p, default_state(p), {.tau_end = end, .max_impacts = 1000000}, observers);
     });
 }

@@ -39,7 +39,7 @@ std::optional<Window> window_of(const System& system, int most) {
     for (; most >= fewest_impacts(p); most = most * 2 / 3) {
         EventRecord record;
         Lyapunov lyapunov(
-            p, 0, longest, {.qr = true, .eigenvalues = true, .history = shortest_history});
+            p, {0, longest}, {.qr = true, .eigenvalues = true, .history = shortest_history});
         Observer* const observers[] = {&record, &lyapunov};
         simulate(p, start, {longest, most, {}}, observers);
         while (!record.events.empty() && record.events.back().kind != Event::impact)

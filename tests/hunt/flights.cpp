@@ -52,7 +52,7 @@ RandomFlight any_flight(std::mt19937_64& engine) {
     const double theta = uniform(engine, 0, 6.3);
     const double speed = std::abs(s.x_dot) + std::abs(s.y_dot) + 1e-12;
     return {
-        Flow::free(p),
+        *Flow::shared_free(p),
         p.b,
         {s.x, s.x_dot, std::sin(theta), std::cos(theta)},
         engine() % 2 ? 1 : -1,

@@ -33,7 +33,7 @@ double trajectory(double b) {
 
 double spectrum(double b) {
     const Parameters p = closed_form(b);
-    Lyapunov lyapunov(p, 0, 1e9, qr_alone);
+    Lyapunov lyapunov(p, {0, 1e9}, qr_alone);
     Observer* const observers[] = {&lyapunov};
     simulate(p, default_state(p), {1e9, impacts, {}}, observers);
     return static_cast<double>(lyapunov.product().impacts());

@@ -59,7 +59,7 @@ SymmetricMotion motion_at(const Parameters& p, const Flow& flow, double V) {
 /// Solves for V. The amplitude of the forced part is epsilon A / sqrt(D), which is a quadratic
 /// equation for V.
 std::optional<SymmetricMotion> fast_symmetric_motion(const Parameters& p) {
-    const Flow flow = Flow::free(p);
+    const Flow flow = *Flow::shared_free(p);
     const Transfer J = flow.transfer(half_cycle(p));
     const Eigen::Vector2d scale(1 / p.Omega, 1),
         constant = forced_part({p, 0}, J).cwiseProduct(scale),

@@ -1,6 +1,5 @@
-// An analysis is one run with a list of observers, in three steps: Observers constructs the
-// observers of the requested parts, simulate() passes the motion to them, and Conclusion turns
-// their records into the parts of Analysis and its warnings.
+// AnalysisObservers constructs the observers of the requested parts, simulate() passes the motion
+// to them, and AnalysisConclusion turns their records into the parts of Analysis and its warnings.
 #include "core/analysis/analysis.hpp"
 
 #include <algorithm>
@@ -26,19 +25,16 @@ void add_warnings(const TransferProduct& product, bool histories, std::vector<Wa
 
 namespace {
 
-/// Points on each branch of the manifold: a smooth curve on a screen.
-constexpr std::size_t manifold_points = 200;
+constexpr std::size_t manifold_points = 200;  // on each branch
 
 double series_step(const AnalysisRequest& w) {
     const double requested = w.parameters.cycle() / w.samples_per_cycle;
     return std::max(requested, w.tau_end / static_cast<double>(w.most_points - 1));
 }
 
-/// Upper estimate for most responses; sizes a reservation only.
-constexpr double many_impacts_per_cycle = 4;
-
+/// Upper estimate for most responses, four per cycle; sizes a reservation only.
 std::size_t impacts_expected(const AnalysisRequest& w) {
-    const double expected = many_impacts_per_cycle * (w.tau_end / w.parameters.cycle() + 1);
+    const double expected = 4 * (w.tau_end / w.parameters.cycle() + 1);
     return static_cast<std::size_t>(
         std::min({expected, static_cast<double>(w.max_impacts), static_cast<double>(w.most_kept)}));
 }
@@ -49,12 +45,8 @@ bool needs_verdict(const AnalysisRequest& w) {
 }
 
 ExponentOptions main_estimators(const AnalysisRequest& w) {
-    const ExponentOptions& e = w.estimators;
-    return {
-        .qr = true,
-        .eigenvalues = e.eigenvalues && w.parts.exponents,
-        .raw_product = e.raw_product && w.parts.exponents,
-        .history = e.history};
+    const auto& [qr, eigenvalues, raw_product, history] = w.estimators;
+    return {true, eigenvalues && w.parts.exponents, raw_product && w.parts.exponents, history};
 }
 
 ExponentOptions window_estimators(const AnalysisRequest& w) {
@@ -65,28 +57,12 @@ ExponentOptions window_estimators(const AnalysisRequest& w) {
 }
 
 struct AnalysisObservers {
-    explicit AnalysisObservers(const AnalysisRequest& w)
-        : series(series_step(w), w.parameters.load && w.parameters.load->moves_base()),
-          impacts(w.most_listed, w.most_kept),
-          section(w.window.from, w.window.to, w.most_points),
-          sticks(w.most_listed),
-          grazing(w.most_listed),
-          lyapunov(w.parameters, w.window.from, w.window.to, main_estimators(w)),
-          windows(w.parameters, window_estimators(w)),
-          transfers(w.parameters, w.window.from, w.window.to, w.most_points),
-          at_phase_zero(w.parameters, {.most = kept_states, .until = w.window.to}),
-          at_section_phase(w.parameters, 0, w.section_phase),
-          cycle_peaks(w.window.from, w.window.to, w.parameters.cycle()),
-          extremes(w.parameters, w.window.from, w.window.to, w.parts.extremes),
-          decay(w.parameters, w.window.from),
-          rhythm(w.parameters, w.window, w.parts.regime ? w.most_points : 0),
-          half_cycles(w.parameters, w.window.from, w.window.to, w.most_points) {
-        // Without a reservation, growing the lists takes longer than the simulation. Reserved
-        // memory that is never written takes no RAM.
+    explicit AnalysisObservers(const AnalysisRequest& request) : w(request) {
+        // Growing the lists takes longer than the simulation; unwritten memory takes no RAM.
         if (w.parts.series) series.expect(w.tau_end);
         if (w.parts.impacts) impacts.entries.reserve(impacts_expected(w));
-        for (const Interval& window : w.windows) windows.add(window.from, window.to);
-        if (w.parts.energy) energy.emplace(w.parameters, w.window.from, w.window.to);
+        for (const Interval& window : w.windows) windows.add(window);
+        if (w.parts.energy) energy.emplace(w.parameters, w.window);
         // The actual difference: adding the perturbation to the start rounds it.
         if (w.perturbation)
             compared.emplace(
@@ -94,7 +70,7 @@ struct AnalysisObservers {
                 difference_of(displaced(w.start, *w.perturbation), w.start));
     }
 
-    std::vector<Observer*> wanted(const AnalysisRequest& w) {
+    std::vector<Observer*> wanted() {
         std::vector<Observer*> list = {&sticks, &grazing};
         auto observe = [&](bool wanted, auto&... observer) {
             if (wanted) (list.push_back(&observer), ...);
@@ -116,21 +92,23 @@ struct AnalysisObservers {
         return list;
     }
 
-    SeriesRecord series;
-    ImpactCollector impacts;
-    SectionRecord section;
-    StickRecord sticks;
-    GrazingRecord grazing;
-    Lyapunov lyapunov;
-    WindowedExponents windows;
-    TransferRecord transfers;
-    StroboscopicRecord at_phase_zero, at_section_phase;
+    const AnalysisRequest& w;
+    SeriesRecord series{series_step(w), w.parameters.load&& w.parameters.load->moves_base()};
+    ImpactCollector impacts{w.most_listed, w.most_kept};
+    SectionRecord section{w.window, w.most_points};
+    StickRecord sticks{w.most_listed};
+    GrazingRecord grazing{w.most_listed};
+    Lyapunov lyapunov{w.parameters, w.window, main_estimators(w)};
+    WindowedExponents windows{w.parameters, window_estimators(w)};
+    TransferRecord transfers{w.parameters, w.window, w.most_points};
+    StroboscopicRecord at_phase_zero{w.parameters, {.until = w.window.to}, kept_states};
+    StroboscopicRecord at_section_phase{w.parameters, {.phase = w.section_phase}};
     std::optional<Energy> energy;  // constructed on request only: its tables take time
-    CyclePeaks cycle_peaks;
-    ExtremesRecord extremes;
-    Decay decay;
-    Rhythm rhythm;
-    HalfCycles half_cycles;
+    CyclePeaks cycle_peaks{w.window, w.parameters.cycle()};
+    ExtremesRecord extremes{w.parameters, w.window, w.parts.extremes};
+    Decay decay{w.parameters, w.window.from};
+    Rhythm rhythm{w.parameters, w.window, w.parts.regime ? w.most_points : 0};
+    HalfCycles half_cycles{w.parameters, w.window, w.most_points};
     std::optional<ComparedRun> compared;
 };
 
@@ -143,9 +121,9 @@ struct AnalysisConclusion {
 
     void conclude() {
         windows_not_reached();
-        if (w.parts.series) series();
-        if (w.parts.series || w.perturbation) thinning();
-        lists();
+        if (w.parts.series || w.perturbation) series();
+        impacts();
+        sticks();
         if (needs_verdict(w)) judge_motion();
         if (w.parts.impacts || w.parts.section) nearly_grazing();
         transfers();
@@ -161,16 +139,14 @@ struct AnalysisConclusion {
 
     void warn(const Warning& warning) { a.warnings.push_back(warning); }
 
+    /// Of this run, and of the perturbed one.
     void series() {
-        o.series.finish(a.outcome);
-        a.series = std::move(o.series.series);
-    }
-
-    /// Warns if the series (and a perturbed one) is coarser than requested.
-    void thinning() {
         const double step = series_step(w), cycle = w.parameters.cycle();
         if (step > cycle / w.samples_per_cycle)
             warn(warning::SeriesThinned{cycle / step, w.samples_per_cycle, w.most_points});
+        if (!w.parts.series) return;
+        o.series.finish(a.outcome);
+        a.series = std::move(o.series.series);
     }
 
     void warn_if_cut(const char* name, long seen, std::size_t kept) {
@@ -184,8 +160,7 @@ struct AnalysisConclusion {
         return std::move(list.entries);
     }
 
-    void lists() {
-        impacts();
+    void sticks() {
         if (w.parts.impacts) a.touches = last_of(o.grazing, "touches");
         a.stick_count = o.sticks.seen;
         a.sticks = last_of(o.sticks, "sticks");
@@ -204,16 +179,6 @@ struct AnalysisConclusion {
         a.typical_speed = list.typical_speed;
     }
 
-    /// Finds the regime, which needs the growth of the deviations; then the exponents of all
-    /// windows, whose verdicts need the regime.
-    void judge_motion() {
-        const Growth growth = growth_of(o.lyapunov.product());
-        find_regime(growth);
-        a.exponents.emplace(judged(w.window, o.lyapunov.take(), growth));
-        if (w.parts.exponents) add_warnings(a.exponents->product, true, a.warnings);
-        further_windows();
-    }
-
     /// A window with the verdict on it.
     WindowExponents judged(
         const Interval& window, TransferProduct&& product, const Growth& growth) const {
@@ -221,7 +186,9 @@ struct AnalysisConclusion {
         return {window, std::move(product), growth, judgement};
     }
 
-    void find_regime(const Growth& growth) {
+    /// The regime needs the growth of the deviations, the verdicts on all windows need the regime.
+    void judge_motion() {
+        const Growth growth = growth_of(o.lyapunov.product());
         a.regime = regime_of(
             w.parameters, w.start,
             {.rhythm = o.rhythm,
@@ -233,6 +200,14 @@ struct AnalysisConclusion {
              .settle_cycles = w.settle_cycles,
              .stop = interrupt.run},
             w.parts.before_capture);
+        a.exponents.emplace(judged(w.window, o.lyapunov.take(), growth));
+        if (w.parts.exponents) add_warnings(a.exponents->product, true, a.warnings);
+        a.windows.reserve(w.windows.size());
+        for (std::size_t i = 0; i < w.windows.size(); ++i) {
+            const Growth of_window = growth_of(o.windows.product(i));
+            a.windows.push_back(judged(w.windows[i], o.windows.take(i), of_window));
+            add_warnings(a.windows[i].product, false, a.warnings);
+        }
     }
 
     void windows_not_reached() {
@@ -247,22 +222,12 @@ struct AnalysisConclusion {
         if (missed.count > 0) warn(missed);
     }
 
-    void further_windows() {
-        a.windows.reserve(w.windows.size());
-        for (std::size_t i = 0; i < w.windows.size(); ++i) {
-            const Growth of_window = growth_of(o.windows.product(i));
-            a.windows.push_back(judged(w.windows[i], o.windows.take(i), of_window));
-            add_warnings(a.windows[i].product, false, a.warnings);
-        }
-    }
-
-    /// Warns of nearly grazing impacts. Each makes the eigenvalues of every product that contains
-    /// it inaccurate.
+    /// Each makes the eigenvalues of every product that contains it inaccurate.
     void nearly_grazing() {
         long count = 0;
         const ImpactCollector::NearlyTangent* nearest = nullptr;
         for (const auto& i : o.impacts.nearly_tangent) {
-            if (i.tau < w.window.from || i.tau > w.window.to) continue;
+            if (!w.window.contains(i.tau)) continue;
             ++count;
             if (!nearest || i.speed < nearest->speed) nearest = &i;
         }
@@ -286,8 +251,7 @@ struct AnalysisConclusion {
         }
     }
 
-    /// Moduli of the eigenvalues of J, M and T. Those of T are expensive: when interrupt.late
-    /// returns true, the result is limited to the last impacts, whose moduli are complete.
+    /// Those of T are expensive: interrupt.late limits the result to the last impacts.
     void moduli(std::span<const ImpactTransfer> transfers) {
         constexpr std::size_t per_look = 256;
         TransferModuli& m = a.moduli.emplace();
@@ -334,13 +298,12 @@ struct AnalysisConclusion {
                 .without = unattached_decay(p, w.start, a.reached.from)};
         if (!w.parts.unattached) return;
         e.peak_least = o.cycle_peaks.least();
-        e.unattached = unattached(p, w.start, a.reached.from, a.reached.to);
+        e.unattached = unattached(p, w.start, a.reached);
         e.rms_ratio = ratio(e.balance.rms, e.unattached->rms);
         e.peak_ratio = ratio(e.balance.peak, e.unattached->peak);
     }
 
-    /// A motion that settles on a periodic orbit is not stationary either, but its capture is
-    /// reported.
+    /// The capture by a periodic orbit, which is not stationary either, is reported.
     void stationarity() {
         if (a.regime && a.regime->orbit) return;
         const Parameters& p = w.parameters;
@@ -398,7 +361,7 @@ Analysis analyse(const AnalysisRequest& w, const Interrupt& interrupt) {
     a.outcome = simulate(
         w.parameters, w.start,
         {.tau_end = w.tau_end, .max_impacts = w.max_impacts, .stop = interrupt.run},
-        observers.wanted(w));
+        observers.wanted());
     const double tau = a.outcome.tau;
     a.reached = {std::min(w.window.from, tau), std::min(w.window.to, tau)};
     AnalysisConclusion{w, interrupt, observers, a}.conclude();

@@ -1,14 +1,11 @@
-// analyse(): one run of the system and everything requested of it.
-//
-// One pass over the motion feeds the observers of all requested parts; then each part is concluded
-// once, in the order of the result. Callers never connect observers to simulate() themselves.
+// analyse(): one run of the system and everything requested of it. One pass over the motion feeds
+// the observers of all requested parts; then each part is concluded, in the order of the result.
 #pragma once
 
 #include <optional>
 #include <variant>
 #include <vector>
 
-#include "core/analysis/impact_collector.hpp"
 #include "core/analysis/perturbation.hpp"
 #include "core/measures/energy.hpp"
 #include "core/measures/extremes.hpp"
@@ -17,8 +14,7 @@
 
 namespace vines {
 
-/// Parts of a result that are computed on request. The end of the run and the number of sticking
-/// phases cost nothing and are always computed.
+/// Parts of a result that are computed on request.
 struct Parts {
     bool series = false;
     bool impacts = false;    ///< list of impacts, with grazing contacts
@@ -34,8 +30,7 @@ struct Parts {
     bool manifold = false;
 };
 
-/// Input of analyse(). Requires: validate() reports no fault for parameters, start and perturbed
-/// start; the window begins before tau_end.
+/// Input of analyse(): validate() reports no fault; the window begins before tau_end.
 struct AnalysisRequest {
     Parameters parameters;
     State start;
@@ -47,22 +42,19 @@ struct AnalysisRequest {
     ExponentOptions estimators = {};
     /// Initial difference of a second run that is compared with this one.
     std::optional<State> perturbation = {};
-    /// Cycles for which a chaotic run is continued, to find out whether an orbit captures it.
-    double settle_cycles = 0;
+    double settle_cycles = 0;       ///< for which a chaotic run is continued, see RegimeEvidence
     double samples_per_cycle = 32;  ///< of the series, also of the perturbed one
     double section_phase = 0;       ///< stroboscopic section: rad after each whole cycle
     /// Maximum length of the series, which is thinned; other lists keep their last entries.
     std::size_t most_points = everything;
-    /// Maximum length of the lists of impacts, sticks, touches.
-    std::size_t most_listed = everything;
+    std::size_t most_listed = everything;  ///< of the lists of impacts, sticks, touches
     /// Longest list of impacts kept in memory; a longer one is described by unkept_impacts.
     std::size_t most_kept = everything;
 };
 
 /// Callbacks that end the work early, polled every few events. Empty: never.
 struct Interrupt {
-    /// Ends the run; the result describes the part that was reached.
-    StopRequest run = {};
+    StopRequest run = {};   ///< ends the run; the result describes the part that was reached
     StopRequest late = {};  ///< ends long computations after the run
 };
 
@@ -104,17 +96,15 @@ struct EnergyResult {
     std::optional<Decays> decay;  ///< free decay only
 };
 
-/// Half cycles as points (C, V) for the slow invariant manifold: peak of |x|, mean speed of the
-/// ball.
+/// Half cycles (HalfCycles) and the slow invariant manifold.
 struct ManifoldResult {
     std::optional<Manifold> manifold;  ///< empty without one constant R of both walls
     std::vector<double> tau;           ///< end of each half cycle
     std::vector<ManifoldPoint> points;
 };
 
-// Warnings about a result, as data. The presentation layer turns them into sentences. Times are
-// dimensionless (tau). Where a list is cut, `seen` (or the named count) is its full length; `kept`
-// and `most` are the number of its last entries that remain.
+// Warnings about a result, as data; api/warning_text.cpp has their sentences. Where a list is cut,
+// `seen` is its full length, `kept` and `most` the number of its last entries that remain.
 namespace warning {
 
 /// The run ended, at `tau`, before `count` of its windows began, the first at tau_start.
@@ -122,13 +112,11 @@ struct WindowNotReached {
     double tau, tau_start;
     std::size_t count;
 };
-/// The series was thinned to most_points (`most`): it has samples_per_cycle, `asked` is the
-/// requested density.
+/// The series was thinned to `most` points: it has samples_per_cycle instead of `asked`.
 struct SeriesThinned {
     double samples_per_cycle, asked;
     std::size_t most;
 };
-/// A list was cut to its last entries.
 struct ListCut {
     const char* name;  ///< impacts, touches, sticks, perturbed impacts
     long seen;
@@ -136,55 +124,46 @@ struct ListCut {
 };
 struct GrazingContact {};       ///< at least one grazing contact occurred
 struct RawProductOverflows {};  ///< the unscaled product of transfer matrices overflowed
-/// The exponents by qr violate the sum rule or a related check by `residual` > most_residual, per
-/// unit of tau (TransferProduct::sum_rule_residual()).
+/// TransferProduct::sum_rule_residual() exceeds most_residual.
 struct SumRuleMissed {
     double tau_start, tau_end, residual;
 };
 struct NoExponents {};  ///< fewer than two impacts in the window
-/// The product of transfer matrices is singular. `rank`: the remaining rank, 2 after a sticking
-/// phase, 3 after an impact with R = 0.
 struct RankLost {
-    int rank;
+    int rank;  ///< of the product of transfer matrices
 };
-/// Impacts close to grazing, where the saltation matrix M is ill-conditioned. `tau` and
-/// `speed_ratio` describe the slowest one: its time, and its relative speed divided by the median
-/// of all impacts.
+/// Impacts close to grazing, where the saltation matrix M is ill-conditioned.
 struct NearlyTangent {
     long count;
-    double tau, speed_ratio;
+    double tau, speed_ratio;  ///< of the slowest one: its relative speed over the median
 };
-/// Transfer matrices are given for the last `most` of `seen` impacts only.
+/// Transfer matrices are those of the last `most` of `seen` impacts.
 struct TransfersCut {
     std::size_t most;
     long seen;
 };
-/// The time limit was reached: eigenvalue moduli are given for the last `kept` impacts only.
+/// Interrupt::late: eigenvalue moduli are those of the last `kept` impacts.
 struct ModuliCut {
     std::size_t kept;
 };
-/// The Poincare sections at impacts and at whole cycles were cut to their last `most` points;
-/// `impacts` and `cycles` are the full counts.
+/// The sections were cut to their last `most` points; `impacts` and `cycles` are the full counts.
 struct SectionsCut {
     std::size_t most;
     long impacts;
     std::size_t cycles;
 };
-/// The list of stretches (synchronised parts of the run) was cut to its last `most` entries.
 struct StretchesCut {
-    std::size_t seen, most;
+    std::size_t seen, most;  ///< synchronised parts of the run
 };
 struct OrbitSearchStopped {};  ///< the search for a periodic orbit was interrupted
-/// A chaotic transient captured by an orbit: lambda1 before and after; the time of capture, and
-/// whether the run includes it.
+/// A chaotic transient was captured by an orbit.
 struct CapturedTransient {
-    double before, after;
-    std::optional<double> tau;
-    bool in_run;
+    double before, after;       ///< lambda1
+    std::optional<double> tau;  ///< of the capture
+    bool in_run;                ///< the run includes it
 };
-/// The means of a window differ between its halves by more than chance permits, so that standard
-/// errors do not cover: lambda1, x_rms, or both. `conservative`: without dissipation (zeta = 0,
-/// R = 1) the energy drifts for ever.
+/// The means of a window, lambda1 or x_rms, differ between its halves by more than chance permits,
+/// so that standard errors do not cover. `conservative`: without dissipation the energy drifts.
 struct NotStationary {
     bool lambda1, x_rms, conservative;
 };
@@ -194,10 +173,9 @@ struct PerturbedRunCut {
     double tau;
     bool stopped;  ///< interrupted
 };
-/// The distance follows the linear theory, up to tau = linear_until, over too few impacts to have a
-/// slope. `impacts`: their number.
+/// The distance follows the linear theory over too few impacts to have a slope.
 struct NoDistanceSlope {
-    double linear_until;
+    double linear_until;  ///< tau
     long impacts;
 };
 
@@ -211,13 +189,11 @@ using Warning = std::variant<
     warning::NotStationary, warning::NoManifold, warning::PerturbedRunCut,
     warning::NoDistanceSlope>;
 
-/// Appends the warnings about a product. If `histories` are requested: all; otherwise only the
-/// violation of the sum rule.
+/// Appends the warnings about a product; without `histories` only the violation of the sum rule.
 void add_warnings(const TransferProduct& product, bool histories, std::vector<Warning>& warnings);
 
-/// Result of analyse(). Parts that were not requested are empty, with these exceptions: regime and
-/// exponents always come together, also with windows; a section comes with the impacts, but without
-/// touches.
+/// Result of analyse(). Parts that were not requested are empty, except that regime and exponents
+/// come together, also with windows, and a section with the impacts, but without touches.
 struct Analysis {
     Outcome outcome;
     Interval reached;  ///< the part of the window that the run reached

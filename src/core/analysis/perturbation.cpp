@@ -37,10 +37,6 @@ State random_difference(std::uint64_t seed, double size) {
     }
 }
 
-State displaced(const State& s, const State& d) { return state_of(vector_of(s) + vector_of(d)); }
-State difference_of(const State& to, const State& from) {
-    return state_of(vector_of(to) - vector_of(from));
-}
 double length_of(const State& d) {
     return std::sqrt(d.x_dot * d.x_dot + d.x * d.x + d.y_dot * d.y_dot + d.y * d.y);
 }
@@ -85,13 +81,12 @@ void ComparedRun::finish(const Outcome& outcome) {
 
 void ComparedRun::look_ahead(const Outcome& outcome) {
     ComparedRun ahead(parameters_, 0, {});
-    Observer* const observers[] = {&ahead};
     simulate(
         parameters_, outcome.state,
         {.tau_end = outcome.tau + parameters_.cycle(),
          .max_impacts = most_ahead,
          .tau_start = outcome.tau},
-        observers);
+        {&ahead});
     auto from = ahead.contacts.begin();
     // A sticking phase that spans the end is recorded by both runs.
     const bool sticking =
@@ -108,8 +103,7 @@ namespace {
 /// Interval in which one run has had a contact that the other has not had yet.
 struct ContactGap {
     double from, to;
-    /// The impact that one run has had; null while one of them settles into sticking, where the
-    /// plain difference is used.
+    /// Null while one run settles into sticking, where the plain difference is used.
     const ComparedContact* impact;
     bool of_reference;  ///< the impact is the reference's
 };
@@ -154,9 +148,7 @@ private:
     }
 
     /// True if both are on one side and the later one is nearer to the first than to the impact
-    /// that follows the first; otherwise it corresponds to that one. In a chatter one run can be
-    /// several impacts ahead; only there can the next impact on the same side be near, for where
-    /// the wall does not press, the ball leaves it for part of a cycle.
+    /// that follows the first. In a chatter, where alone the wall presses, the order decides.
     bool correspond(int first, int later) const {
         if (at(first).side != at(later).side) return false;
         if (next_[first] + 1 == contacts_[first]->size()) return true;
@@ -210,22 +202,17 @@ std::vector<char> measure_distances(
         State own = state_at(reference.series(), i), other = state_at(result.series, i);
         double tangent = reference.tangent[i];
         const bool together = !result.parted || tau < *result.parted;
-        bool settling = false;
         while (gap != gaps.end() && gap->to <= tau) ++gap;
-        if (together && gap != gaps.end() && gap->from <= tau) {
-            settling = gap->impact == nullptr;
-            if (gap->impact) {
-                (gap->of_reference ? own : other) = continued(p, *flow, *gap->impact, tau);
-                if (gap->of_reference)
-                    tangent = carried_over(
-                                  *flow, false, tau - gap->impact->tau, p.epsilon,
-                                  vector_of(gap->impact->deviation))
-                                  .norm();
-            }
-        }
+        const bool in_gap = together && gap != gaps.end() && gap->from <= tau;
+        const ComparedContact* const impact = in_gap ? gap->impact : nullptr;
+        if (impact) (gap->of_reference ? own : other) = continued(p, *flow, *impact, tau);
+        if (impact && gap->of_reference)
+            tangent = carried_over(
+                          *flow, false, tau - impact->tau, p.epsilon, vector_of(impact->deviation))
+                          .norm();
         result.distance.push_back(length_of(difference_of(other, own)));
         result.tangent.push_back(tangent);
-        comparable.push_back(together && !settling);
+        comparable.push_back(together && (!in_gap || impact));
     }
     return comparable;
 }
@@ -245,16 +232,14 @@ double slope_through(const std::vector<double>& x, const std::vector<double>& y)
 /// lambda1 by qr from the first to the last impact in `tau`.
 double lambda1_over(
     const Parameters& p, const State& start, const Interval& tau, const Limits& limits) {
-    Lyapunov lyapunov(p, tau.from, tau.to, qr_alone);
-    Observer* const observers[] = {&lyapunov};
+    Lyapunov lyapunov(p, tau, qr_alone);
     Limits until = limits;
     until.tau_end = tau.to;
-    const Outcome outcome = simulate(p, start, until, observers);
+    const Outcome outcome = simulate(p, start, until, {&lyapunov});
     return outcome.reason == End::stopped ? nan : lyapunov.product().qr()[0];
 }
 
-/// Finds the interval, from the start on, in which the distance agrees with the linear theory, and
-/// the growth there.
+/// Finds the interval in which the distance agrees with the linear theory, and its growth.
 void find_linear_stretch(
     const Parameters& p, const State& start, const std::vector<ComparedContact>& contacts,
     const std::vector<char>& comparable, const Limits& limits, Perturbation& r) {
@@ -290,7 +275,7 @@ void keep_common(Series& s, const Series& reference) {
     const auto common =
         std::mismatch(s.tau.begin(), s.tau.end(), reference.tau.begin(), reference.tau.end());
     const auto size = static_cast<std::size_t>(common.first - s.tau.begin());
-    for (auto* column : {&s.tau, &s.x, &s.x_dot, &s.y, &s.y_dot, &s.x_ddot}) column->resize(size);
+    for (auto* column : s.columns()) column->resize(size);
 }
 
 }  // namespace
@@ -300,11 +285,10 @@ Perturbation perturbation_of(
     const Outcome& outcome, Limits limits, double step) {
     const State perturbed = displaced(start, difference);
     ComparedRun second(p, step, {});
-    Observer* const observers[] = {&second};
     limits.tau_end = outcome.tau;
     Perturbation r{};
     r.start = difference_of(perturbed, start);
-    r.outcome = outcome.tau > 0 ? simulate(p, perturbed, limits, observers)
+    r.outcome = outcome.tau > 0 ? simulate(p, perturbed, limits, {&second})
                                 : Outcome{outcome.reason, outcome.tau, perturbed, 0};
     // A run that ended early has no sample at its end, unless it is empty otherwise.
     if (r.outcome.tau == outcome.tau || second.series().tau.empty()) second.finish(r.outcome);

@@ -1,16 +1,13 @@
 // Trajectory difference (Fig. 2, eqs. (13) to (15)): a second run that starts slightly displaced,
-// and the linear theory's prediction of its distance.
+// and the linear theory's prediction of its distance, the Euclidean length of the difference of the
+// states (x', x, y', y).
 //
-// The distance is the Euclidean length of the difference of the states (x', x, y', y), taken
-// through impacts. Between the times of the two runs' k-th impacts the plain difference has the
-// size of the velocity jump and does not measure their divergence. There the run that struck first
-// is continued as if it had not struck: up to the second time the difference is delta Phi^- of Fig.
-// 2, afterwards delta Phi^+, and no sample is left out. The tangent vector is treated in the same
-// way.
-//
-// The k-th impacts of a chatter correspond as well, even if one run is several impacts ahead. If
-// the chatter ends in a sticking phase, the impacts that one run still has before it sticks belong
-// to the sticking phase: the plain difference is then as small as the deviation, and is used until
+// Between the times of the two runs' k-th impacts the plain difference has the size of the velocity
+// jump and does not measure their divergence. There the run that struck first is continued as if it
+// had not struck: up to the second time the difference is delta Phi^- of Fig. 2, afterwards delta
+// Phi^+. The tangent vector is treated in the same way. The k-th impacts of a chatter correspond
+// even if one run is several impacts ahead. If the chatter ends in a sticking phase, the impacts
+// that one run still has before it sticks belong to that phase: the plain difference is used until
 // both runs stick.
 #pragma once
 
@@ -23,16 +20,19 @@
 
 namespace vines {
 
-/// Largest relative difference between the distance and the tangent vector's length for which both
-/// count as agreeing with the linear theory.
+/// Largest difference of distance and tangent that agrees with the linear theory, relative.
 inline constexpr double linear_share = 0.1;
 /// Fewer impacts give the slope of single impacts, not of the motion.
 inline constexpr long fewest_linear_impacts = 3;
 
 /// Random direction of length `size` in the space of (x', x, y', y); identical on every machine.
 State random_difference(std::uint64_t seed, double size);
-State displaced(const State& start, const State& difference);
-State difference_of(const State& to, const State& from);
+inline State displaced(const State& start, const State& difference) {
+    return state_of(vector_of(start) + vector_of(difference));
+}
+inline State difference_of(const State& to, const State& from) {
+    return state_of(vector_of(to) - vector_of(from));
+}
 double length_of(const State& difference);  ///< Euclidean length in (x', x, y', y)
 
 /// A contact as used to compare two runs: an impact, or the begin of a sticking phase.
@@ -47,9 +47,8 @@ struct ComparedContact {
     State deviation = {};     ///< impact: the tangent vector before it, if carried
 };
 
-/// Records the contacts of a run and carries a tangent vector along it, by J (18), (19), by M (26),
-/// (27), or by the projection of a sticking phase. Samples the motion and the tangent vector's
-/// length at tau = 0, step, 2 step, ... and at the end of the run.
+/// Records the contacts of a run and carries a tangent vector along it. Samples the motion and the
+/// vector's length at tau = 0, step, 2 step, ... and at the end of the run.
 class ComparedRun : public Observer {
 public:
     /// `deviation`: the tangent vector at the start; zero if not needed. `step`: 0 for no samples.
@@ -63,8 +62,7 @@ public:
     void on_stick(const StickStart&) override;
     void on_release(double tau) override { contacts.back().release = tau; }
     void finish(const Outcome& outcome);
-    /// Records the contacts of one more cycle: an impact of the other run just before the end can
-    /// have its counterpart just after it.
+    /// Records one more cycle, where impacts of the other run can have their counterparts.
     void look_ahead(const Outcome& outcome);
 
     const Series& series() const { return series_.series; }
@@ -79,8 +77,7 @@ private:
     SeriesRecord series_;
 };
 
-/// Interval over which the distance follows the linear theory, from the reference's first impact
-/// on, and the growth of ln(distance) over it, per unit of tau.
+/// Interval over which the distance follows the linear theory, from the first impact on.
 struct LinearStretch {
     Interval tau;
     double slope;    ///< of ln(distance), by least squares
@@ -94,9 +91,8 @@ struct Perturbation {
     std::vector<GrazingEvent> impacts;
     /// At the times of the series: the distance as defined above, and the tangent vector's length.
     std::vector<double> distance, tangent;
-    /// Time from which the impacts of both runs no longer correspond (opposite walls, or an impact
-    /// that the other run never has) and the distance is the plain one. Empty if they correspond to
-    /// the end.
+    /// Time from which the impacts of both runs no longer correspond (opposite walls, or one
+    /// without a counterpart) and the distance is the plain one; empty if never.
     std::optional<double> parted;
     std::optional<LinearStretch> linear;
     /// End of the agreement with the linear theory, and the reference's impacts up to there.
@@ -104,10 +100,8 @@ struct Perturbation {
     long linear_impacts;
 };
 
-/// Compares the run from displaced(start, difference) with `reference`, a finished observer of the
-/// run from `start` that carried the difference as its tangent vector; `outcome` is that run's.
-/// Both starts must lie in the cavity. `limits` apply to the second run, which ends no later than
-/// the first.
+/// Compares the run from displaced(start, difference), within `limits`, with `reference`, which
+/// observed the run from `start` to `outcome` with that difference as tangent vector.
 Perturbation perturbation_of(
     const Parameters& parameters, const State& start, const State& difference,
     ComparedRun& reference, const Outcome& outcome, Limits limits, double step);

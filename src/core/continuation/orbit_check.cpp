@@ -133,7 +133,7 @@ OrbitCheck ImpactEquations::check(const Unknowns& z, const std::vector<double>& 
     double tau = std::fmod((z(0) - p.phi()) / p.Omega, p.cycle());
     if (tau < 0) tau += p.cycle();
     // The last impact belongs to the period, however tau is rounded.
-    Energy energy(p, tau, tau + period + same_contact);
+    Energy energy(p, {tau, tau + period + same_contact});
     replay(*this, p, all, tau, energy);
     const EnergyBalance balance = energy.balance({tau, tau + period});
     check.measures = {

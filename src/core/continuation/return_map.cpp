@@ -54,7 +54,7 @@ OrbitCheck ReturnEquations::check(const Unknowns& z, const std::vector<double>&)
     const State start = state(z);
     const double tau = section_ * p.cycle(), period = sequence().cycles() * p.cycle();
     Events events;
-    Energy energy(p, tau, tau + period);
+    Energy energy(p, {tau, tau + period});
     follow(p, start, tau, period, {}, {&events, &energy});
     const ImpactSequence found = events.sequence(sequence());
     OrbitCheck check;

@@ -210,7 +210,7 @@ std::optional<ForwardRun> forward_run(
     if (known == found.impacts.end()) return std::nullopt;
     const IdentifiedImpact& first = *known;
     ImpactRecord impacts;
-    Lyapunov lyapunov(system.own, 0, infinity, qr_alone);
+    Lyapunov lyapunov(system.own, {0, infinity}, qr_alone);
     Observer* const observers[] = {&impacts, &lyapunov};
     system.run(
         first.tau,

@@ -67,7 +67,7 @@ TrueMotion true_motion(
     ImpactRecord impacts;
     StickRecord sticks;
     TrueStretches stretches;
-    Lyapunov lyapunov(p, begin, end, estimators);
+    Lyapunov lyapunov(p, {begin, end}, estimators);
     Observer* const observers[] = {&lyapunov, &impacts, &sticks, &stretches};
     constexpr long all = std::numeric_limits<long>::max();
     simulate(p, default_state(p), {.tau_end = end, .max_impacts = all}, observers);

@@ -36,7 +36,8 @@ TrueMotion true_motion(
 /// The oscillator's motion from the first stretch on.
 struct TrueOscillator {
     const TrueMotion& motion;
-    const Flow free = Flow::free(motion.parameters), stuck = Flow::sticking(motion.parameters);
+    const Flow free = *Flow::shared_free(motion.parameters),
+               stuck = *Flow::shared_sticking(motion.parameters);
 
     double begin() const { return motion.stretches.front().tau; }
     OscillatorMotion at(double tau) const;

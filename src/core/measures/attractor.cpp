@@ -13,9 +13,8 @@ namespace vines {
 
 namespace {
 
-// Width of a cell in units of b, also for velocities, far above the errors of orbits and far below
-// the distance of two attractors. States closer to a border than this part of a cell can be on
-// either side of it.
+// Width of a cell in units of b, also for velocities: far above the errors of orbits. States closer
+// to a border than this part of a cell can be on either side.
 constexpr double cell_width = 0x1p-20, near_border = 0x1p-7;
 // Newton's method from the middle of a cell moves less than this, in units of the motion.
 constexpr double reach_from_cell = 0.1;
@@ -78,10 +77,16 @@ void digest(std::uint64_t& hash, std::int64_t value) {
         hash = (hash ^ (static_cast<std::uint64_t>(value) >> 8 * byte & 0xff)) * 0x100000001b3;
 }
 
+template <class... Values>
+std::string formatted(const char* format, Values... values) {
+    std::array<char, 32> text{};
+    std::snprintf(text.data(), text.size(), format, values...);
+    return text.data();
+}
+
 std::string orbit_name(const Parameters& p, const PeriodicOrbit& orbit, const StopRequest& stop) {
     if (orbit.contacts == 0) return "untouched";
-    // The order of the cycles depends on the start. Positions are continuous even if a whole cycle
-    // is the time of an impact.
+    // Their set does not depend on the start; positions are continuous even at an impact.
     std::set<std::array<std::int64_t, 2>> positions;
     for (const State& s : whole_cycle_states(p, orbit)) {
         const StateCell cell = canonical_cell(p, s, orbit.cycles, stop);
@@ -89,24 +94,13 @@ std::string orbit_name(const Parameters& p, const PeriodicOrbit& orbit, const St
     }
     std::uint64_t hash = 0xcbf29ce484222325;
     for (const auto& [x, y] : positions) digest(hash, x), digest(hash, y);
-    std::array<char, 32> text{};
-    std::snprintf(
-        text.data(), text.size(), "p%d-%08" PRIx32, orbit.cycles,
-        static_cast<std::uint32_t>(hash ^ hash >> 32));
-    return text.data();
-}
-
-/// A number with a few decimals, in a name.
-std::string rounded_text(const char* format, double value) {
-    std::array<char, 32> text{};
-    std::snprintf(text.data(), text.size(), format, value);
-    return text.data();
+    return formatted("p%d-%08" PRIx32, orbit.cycles, static_cast<std::uint32_t>(hash ^ hash >> 32));
 }
 
 }  // namespace
 
 AttractorName name_of(const Parameters& p, const PeriodicOrbit& orbit, const StopRequest& stop) {
-    AttractorName name{orbit_name(p, orbit, stop), std::nullopt};
+    AttractorName name{orbit_name(p, orbit, stop)};
     if (!p.is_symmetric()) return name;
     const auto half = follow(p, orbit.state, orbit.tau, 0.5 * p.cycle(), stop);
     if (!half) return name;
@@ -121,10 +115,10 @@ AttractorName name_of(
     if (r.orbit) return name_of(p, *r.orbit, stop);
     if (r.forced && r.untouched && r.untouched->for_ever) return {"untouched", "untouched"};
     if (r.quasi_periodic)
-        return {"quasi_periodic" + rounded_text("-%.3f", r.quasi_periodic->rotation_number), {}};
+        return {"quasi_periodic" + formatted("-%.3f", r.quasi_periodic->rotation_number)};
     if (verdict == Verdict::chaotic)
-        return {"chaotic" + rounded_text("-z%.1f", r.z) + rounded_text("-x%.1f", x_rms / p.b), {}};
-    return {"not_decided", std::nullopt};
+        return {"chaotic" + formatted("-z%.1f", r.z) + formatted("-x%.1f", x_rms / p.b)};
+    return {};
 }
 
 }  // namespace vines

@@ -1,13 +1,6 @@
 // Names of the motions to which runs lead: equal strings for equal motions, from whatever start,
-// on whatever machine they were computed.
-//
-// The name of a periodic orbit is a digest of its positions at whole cycles, rounded to a grid.
-// Wherever the borders of its cells lie, rounding errors of two computations of one orbit could
-// put it into two cells. Each cell therefore leads to a cell: Newton's method from the state in its
-// middle finds the orbit again, and the result lies in some cell. This map depends on the cell
-// alone. All computations of an orbit near a border start from the same few cells (those on both
-// sides), and the map leads from them into a set of cells which it permutes; the smallest of that
-// set is the name. Computations that also consider cells farther off reach the same set.
+// on whatever machine. The name of a periodic orbit is a digest of the cells in which it lies at
+// whole cycles; docs/numerics.md, "Names of orbits", shows why rounding errors do not change it.
 #pragma once
 
 #include <optional>
@@ -22,8 +15,7 @@ struct AttractorName {
     /// quasi_periodic-<rotation number>; chaotic-z<contacts per cycle>-x<rms of x over b>;
     /// not_decided. The numbers of motions without an orbit are rounded means over a finite run.
     std::string motion = "not_decided";
-    /// Name of the mirror image -x(tau + half a cycle), -y of an orbit, equal to `motion` if that
-    /// is symmetric. Empty if the system has no mirror symmetry, and for motions without an orbit.
+    /// Name of the mirror image -x(tau + half a cycle), -y of an orbit, in a symmetric system.
     std::optional<std::string> mirror = {};
 };
 

@@ -22,26 +22,12 @@ double energy_of(const Parameters& p, const State& s) {
            p.epsilon * p.gravity * s.y;
 }
 
-Energy::Law::Law(std::shared_ptr<const Flow> f)
-    : flow(std::move(f)),
-      quadrature(Quadrature::shared(*flow)),
-      antiderivative(Antiderivative::of(*flow)) {}
-
-Energy::Energy(const Parameters& p, double tau_start, double tau_end)
-    : parameters_(p),
-      tau_start_(tau_start),
-      tau_end_(tau_end),
-      free_(Flow::shared_free(p)),
-      steps_({tau_start, tau_end}, p.cycle()),
-      next_step_(steps_.end_of(0)) {}
-
 void Energy::on_stretch(const Stretch& stretch) {
-    const double from = std::max(0.0, tau_start_ - stretch.tau),
-                 to = std::min(stretch.duration, tau_end_ - stretch.tau);
+    const auto [from, to] = stretch.within(window_);
     if (!(from < to)) return;
     if (!parameters_.has_straight_flights()) return add_curved(stretch, from, to);
     const bool is_stuck = stretch.sticking_side != 0;
-    if (is_stuck && !sticking_) sticking_.emplace(Flow::shared_sticking(parameters_));
+    if (is_stuck && !sticking_) sticking_ = Law{Flow::shared_sticking(parameters_)};
     const Law& law = is_stuck ? *sticking_ : free_;
     const Oscillation begin = from > 0 ? stretch.flow.after(stretch.start, from) : stretch.start;
     if (duration_ == 0)
@@ -62,25 +48,23 @@ void Energy::on_stretch(const Stretch& stretch) {
     duration_ += to - from;
 }
 
-/// The same where gravity or friction act on the ball: integrals by Gauss's rule with eight points,
-/// exact to rounding over two cells of the flow.
+/// The same under gravity, friction or a load, by Gauss's rule: exact to rounding over two cells.
 void Energy::add_curved(const Stretch& stretch, double from, double to) {
     constexpr double points[] = {
         0.1834346424956498, 0.5255324099163290, 0.7966664774136267, 0.9602898564975363};
     constexpr double weights[] = {
         0.3626837833783620, 0.3137066458778873, 0.2223810344533745, 0.1012285362903763};
     const double widest = 2 * stretch.flow.cell();
-    const auto& loading = stretch.forces->loading;
-    const Polynomial base = loading ? loading->base : Polynomial{};
+    const Forces& forces = *stretch.forces;
     const auto add = [&](double begin, double end) {
         const double half = 0.5 * (end - begin), middle = begin + half;
         for (int k = 0; k < 8; ++k) {
             const double s = middle + (k % 2 == 0 ? half : -half) * points[k / 2];
             const Oscillation o = stretch.flow.after(stretch.start, s);
             const State at = stretch.at(s, o);
-            const double weight = half * weights[k / 2], x = at.x - base.at(s);
+            const double weight = half * weights[k / 2], x = at.x - forces.base.at(s);
             sum_(x_squared) += weight * x * x;
-            if (loading) work_ += weight * at.x_dot * loading->force.at(s);
+            work_ += weight * at.x_dot * forces.load.at(s);
             sum_(x_dot_squared) += weight * at.x_dot * at.x_dot;
             sum_(x_dot_sin) += weight * at.x_dot * o.sin_theta;
         }
@@ -106,13 +90,12 @@ void Energy::add_curved(const Stretch& stretch, double from, double to) {
         s = next;
     }
     peak_ = peak_beyond(
-        peak_, stretch.flow, stretch.start, sum(stretch.forces->shift, base, -1), from, to);
+        peak_, stretch.flow, stretch.start, sum(forces.shift, forces.base, -1), from, to);
     end_ = stretch.at(to);
     duration_ += to - from;
 }
 
-/// Appends the sums at the ends of steps within the part of duration `duration` that begins at tau;
-/// sum_ does not yet contain the part.
+/// Appends the sums at the ends of steps within a part, which sum_ does not yet contain.
 void Energy::add_steps(const Law& law, const Oscillation& begin, double tau, double duration) {
     do {
         const double part = std::clamp(next_step_ - tau, 0.0, duration);
@@ -126,12 +109,11 @@ void Energy::add_steps(const Law& law, const Oscillation& begin, double tau, dou
 }
 
 void CyclePeaks::on_stretch(const Stretch& stretch) {
-    const double from = std::max(0.0, tau_start_ - stretch.tau);
-    double duration = std::min(stretch.duration, tau_end_ - stretch.tau) - from,
-           tau = stretch.tau + from;
+    const auto [from, to] = stretch.within(window_);
+    double duration = to - from, tau = stretch.tau + from;
     if (!(duration > 0)) return;
     const Flow& flow = stretch.flow;
-    const Polynomial shift = stretch.forces ? stretch.forces->shift : Polynomial{};
+    const Polynomial shift = stretch.shift();
     Oscillation o = from > 0 ? flow.after(stretch.start, from) : stretch.start;
     while (true) {
         const double part = std::min(duration, end_ - tau), s = tau - stretch.tau;
@@ -150,11 +132,10 @@ void CyclePeaks::on_stretch(const Stretch& stretch) {
 }
 
 void Energy::on_impact(const Impact& i) {
-    if (i.tau > tau_end_) return;
+    if (i.tau > window_.to) return;
     const Oscillation after = {i.x, i.x_dot_after, i.sin_theta, i.cos_theta};
-    // This impact, and the rounding of a stretch that ended slightly late, belong to the time
-    // before the window.
-    if (i.tau <= tau_start_) {
+    // Rounding can end the stretch before it slightly late.
+    if (i.tau <= window_.from) {
         sum_.setZero();
         duration_ = peak_ = friction_ = work_ = 0;
         at_steps_.clear();
@@ -181,7 +162,7 @@ Integrals Energy::integrals() const {
     return sum;
 }
 
-EnergyBalance Energy::balance(const Interval& window) const {
+EnergyBalance Energy::balance(const Interval& reached) const {
     const Parameters& p = parameters_;
     const Integrals sum = integrals();
     const Oscillation o = end();
@@ -207,7 +188,7 @@ EnergyBalance Energy::balance(const Interval& window) const {
     }
     const double observed = steps_.duration() * static_cast<double>(at_steps_.size());
     return {
-        .window = window,
+        .window = reached,
         .input = p.is_forced() ? input : 0,
         .damper = damper,
         .impacts = impacts_,
@@ -248,24 +229,23 @@ std::optional<State> free_steady_state(const Parameters& p) {
         .x = *amplitude * elementary::sin(theta)};
 }
 
-Unattached unattached(const Parameters& p, const State& start, double tau_start, double tau_end) {
+Unattached unattached(const Parameters& p, const State& start, const Interval& window) {
     if (p.load) {
         Parameters alone = p;
         alone.gravity = alone.friction = 0;
         alone.b = std::numeric_limits<double>::max();
-        Energy energy(alone, tau_start, tau_end);
-        Observer* const observers[] = {&energy};
+        Energy energy(alone, window);
         simulate(
             alone, {start.x_dot, start.x, 0, 0},
-            {.tau_end = tau_end, .max_impacts = std::numeric_limits<long>::max()}, observers);
-        const EnergyBalance balance = energy.balance({tau_start, tau_end});
+            {.tau_end = window.to, .max_impacts = std::numeric_limits<long>::max()}, {&energy});
+        const EnergyBalance balance = energy.balance(window);
         return {balance.rms, balance.peak, std::nullopt};
     }
     const auto table = Flow::shared_free(p);
     const Flow& flow = *table;
     const Oscillation o{start.x, start.x_dot, elementary::sin(p.phi()), elementary::cos(p.phi())};
-    const Oscillation begin = flow.after(o, tau_start);
-    const double duration = tau_end - tau_start;
+    const Oscillation begin = flow.after(o, window.from);
+    const double duration = window.length();
     return {
         duration > 0
             ? std::sqrt(Quadrature::shared(flow)->over(begin, duration)(x_squared) / duration)

@@ -1,7 +1,5 @@
 // Energy balance (forcing, damper, impacts, stored energy) and amplitudes of the linear oscillator.
-//
-// Energies are divided by m1 omega0^2, in m^2 (time is dimensionless): E = x'^2/2 + x^2/2 + epsilon
-// (y'^2/2 - gravity y).
+// Energies are divided by m1 omega0^2, in m^2: E = x'^2/2 + x^2/2 + epsilon (y'^2/2 - gravity y).
 #pragma once
 
 #include <memory>
@@ -20,8 +18,7 @@ struct EnergyBalance {
     Interval window;  ///< the part that the run reached
     double input;     ///< integral of epsilon A sin(theta) x' dtau, or of the load times x'
     double damper;    ///< integral of 2 zeta x'^2 dtau
-    /// Dissipated by impacts: epsilon (1 - R^2) v^2/(2 (1 + epsilon)) each, with v = x' - y' before
-    /// the impact and R of its wall.
+    /// Sum of epsilon (1 - R^2) v^2/(2 (1 + epsilon)), v = x' - y' before the impact.
     double impacts;
     double friction;  ///< epsilon friction times the path along which the ball slides
     double stored;    ///< at the end minus at the start
@@ -30,57 +27,56 @@ struct EnergyBalance {
     /// Fraction of the dissipation that is due to impacts; empty without dissipation.
     std::optional<double> share_impacts;
     double rms, peak;  ///< of x, of |x|, m; relative to the base if a load moves it
-    /// Standard errors of rms and share_impacts as estimates for an infinite run (mean_error.hpp);
-    /// NaN for windows of fewer than 32 cycles.
+    /// Standard errors (mean_error.hpp); NaN for windows of fewer than 32 cycles.
     double rms_error, share_impacts_error;
     double difference_of_halves;  ///< of the mean of x^2 (mean_error.hpp)
 };
 
 /// Smallest of the maxima of |x| in each forcing cycle of a window. A cycle needs no search once a
-/// value of |x| in it exceeds the smallest maximum so far; the states at the events usually do.
+/// value of |x| in it, usually at an event, exceeds the smallest maximum so far.
 class CyclePeaks : public Observer {
 public:
-    CyclePeaks(double tau_start, double tau_end, double cycle)
-        : tau_start_(tau_start),
-          tau_end_(tau_end),
+    CyclePeaks(const Interval& window, double cycle)
+        : window_(window),
           cycle_(cycle),
-          end_(tau_start + cycle) {}
+          end_(window.from + cycle) {}
 
     void on_stretch(const Stretch&) override;
     double least() const { return least_; }  ///< m; infinity without a whole cycle
 
 private:
-    const double tau_start_, tau_end_, cycle_;
+    const Interval window_;
+    const double cycle_;
     double end_, peak_ = 0, least_ = infinity;
 };
 
-/// Observer of the energy balance and the amplitude of x over [tau_start, tau_end].
+/// Observer of the energy balance and the amplitude of x over a window.
 class Energy : public Observer {
 public:
-    Energy(const Parameters& parameters, double tau_start, double tau_end);
+    Energy(const Parameters& parameters, const Interval& window)
+        : parameters_(parameters),
+          window_(window) {}
 
     void on_stretch(const Stretch&) override;
     void on_impact(const Impact&) override;
 
     double duration() const { return duration_; }
-    EnergyBalance balance(const Interval& window) const;
+    /// `reached`: the part of the window that the run reached.
+    EnergyBalance balance(const Interval& reached) const;
 
 private:
     const Parameters parameters_;
-    const double tau_start_, tau_end_;
+    const Interval window_;
     /// Free or sticking motion with its integration rules.
     struct Law {
-        explicit Law(std::shared_ptr<const Flow> flow);
-
         std::shared_ptr<const Flow> flow;
-        std::shared_ptr<const Quadrature> quadrature;
+        std::shared_ptr<const Quadrature> quadrature = Quadrature::shared(*flow);
         /// Used instead of the quadrature once the window is longer than settled(): cheaper.
-        std::optional<Antiderivative> antiderivative;
+        std::optional<Antiderivative> antiderivative = Antiderivative::of(*flow);
     };
-    const Law free_;
+    const Law free_{Flow::shared_free(parameters_)};
     std::optional<Law> sticking_;  // set at the first sticking phase
-    /// Integrals so far. While the antiderivative is used, its value at the end of the last stretch
-    /// is missing; integrals() adds it.
+    /// Integrals so far, without the antiderivative at the end of the last stretch.
     Integrals sum_ = Integrals::Zero();
     struct Last {
         Oscillation begin;
@@ -90,14 +86,13 @@ private:
     Last last_{};
     double duration_ = 0, peak_ = 0, impacts_ = 0, friction_ = 0, work_ = 0, start_ = 0;
     State end_{};  // unless flights are straight
-    /// Integrals of x^2 and x'^2 and the dissipation of impacts and friction, from the window's
-    /// start to the end of each step.
+    /// Integrals and dissipation from the window's start to the end of each step.
     struct Sums {
         double x_squared, x_dot_squared, impacts, friction;
     };
-    const WindowSteps steps_;
+    const WindowSteps steps_{window_, parameters_.cycle()};
     std::vector<Sums> at_steps_;
-    double next_step_;  ///< its end, in tau
+    double next_step_ = steps_.end_of(0);  ///< its end, in tau
 
     void add_curved(const Stretch& stretch, double from, double to);
     Integrals integrals() const;
@@ -111,22 +106,19 @@ std::optional<double> ratio(double numerator, double denominator);
 /// Energy E of a state, m^2.
 double energy_of(const Parameters& parameters, const State& state);
 
-/// Amplitudes of the linear oscillator without absorber, with the same forcing and start, over
-/// [tau_start, tau_end].
+/// Amplitudes of the linear oscillator without absorber, with the same forcing and start.
 struct Unattached {
-    double rms, peak;  ///< of x over the interval, m
+    double rms, peak;  ///< of x over a window, m
     /// epsilon A/sqrt((1 - Omega^2)^2 + 4 zeta^2 Omega^2), steady, m; empty at undamped resonance.
     std::optional<double> amplitude;
 };
-Unattached unattached(
-    const Parameters& parameters, const State& start, double tau_start, double tau_end);
+Unattached unattached(const Parameters& parameters, const State& start, const Interval& window);
 /// Unattached::amplitude for these parameters.
 std::optional<double> free_amplitude(const Parameters& parameters);
 /// Steady motion without absorber at tau = 0: x and x', y = y' = 0; empty at undamped resonance.
 std::optional<State> free_steady_state(const Parameters& parameters);
 
-/// Times at which the energy of a free decay (G = 0) first falls to a half and to a tenth of its
-/// value at the window's start; empty if the motion does not get there.
+/// First times at which a free decay has a half and a tenth of its initial energy.
 struct DecayTimes {
     std::optional<double> half, tenth;
 };

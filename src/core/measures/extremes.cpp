@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "core/motion/elementary.hpp"
 #include "core/motion/load.hpp"
 
 namespace vines {
@@ -22,18 +21,7 @@ double scaled_peak(
 
 }  // namespace
 
-ExtremesRecord::ExtremesRecord(
-    const Parameters& p, double tau_start, double tau_end, ExtremesWanted wanted)
-    : parameters_(p),
-      has_peaks_(wanted == ExtremesWanted::all),
-      tau_start_(tau_start),
-      tau_end_(tau_end),
-      F_(p.load ? 0 : p.epsilon * p.G),
-      sin_phi_(elementary::sin(p.phi())),
-      cos_phi_(elementary::cos(p.phi())) {}
-
-// With x_b = F sin(Omega tau), x - x_b follows the flow's equation with the forcing
-// forcing sin(theta) - (x_b'' + damping x_b' + stiffness x_b), which is harmonic.
+// With x_b = F sin(Omega tau), x - x_b follows the flow's equation with another harmonic forcing.
 ExtremesRecord::Relative ExtremesRecord::relative_to_base(const Flow& flow) const {
     const auto [stiffness, damping, forcing, Omega] = flow.coefficients();
     if (F_ == 0 || forcing == 0) return {1, 1, 0};
@@ -44,10 +32,9 @@ ExtremesRecord::Relative ExtremesRecord::relative_to_base(const Flow& flow) cons
 }
 
 void ExtremesRecord::on_stretch(const Stretch& s) {
-    const double from = std::max(0.0, tau_start_ - s.tau),
-                 to = std::min(s.duration, tau_end_ - s.tau);
+    const auto [from, to] = s.within(window_);
     if (!has_peaks_ || !(from < to)) return;
-    const Polynomial shift = s.forces ? s.forces->shift : Polynomial{};
+    const Polynomial shift = s.shift(), base = s.forces ? s.forces->base : Polynomial{};
     const Oscillation& o = s.start;
     // x''/-Omega^2 follows the same equation as x.
     const double Omega = s.flow.coefficients()[3], size = Omega * Omega;
@@ -58,7 +45,6 @@ void ExtremesRecord::on_stretch(const Stretch& s) {
     const Relative r = relative_to_base(s.flow);
     const double base_sin = o.sin_theta * cos_phi_ - o.cos_theta * sin_phi_,
                  base_cos = o.cos_theta * cos_phi_ + o.sin_theta * sin_phi_;
-    const Polynomial base = s.forces && s.forces->loading ? s.forces->loading->base : Polynomial{};
     extremes_.x_relative = scaled_peak(
         extremes_.x_relative, r.size, s.flow,
         {(o.x - F_ * base_sin) / r.size, (o.x_dot - F_ * Omega * base_cos) / r.size,
@@ -67,19 +53,11 @@ void ExtremesRecord::on_stretch(const Stretch& s) {
 }
 
 void ExtremesRecord::on_impact(const Impact& i) {
-    if (i.tau < tau_start_ || i.tau > tau_end_) return;
-    const double w = std::abs(i.relative_speed_before);
-    const double epsilon = parameters_.epsilon;
+    if (!window_.contains(i.tau)) return;
+    const double w = std::abs(i.relative_speed_before), epsilon = parameters_.epsilon;
     extremes_.impact_speed = std::max(extremes_.impact_speed, w);
     extremes_.impulse = std::max(extremes_.impulse, epsilon / (1 + epsilon) * w * (1 + i.R));
     ++impacts_;
-}
-
-Extremes ExtremesRecord::result(const Interval& reached) const {
-    Extremes all = extremes_;
-    if (const double length = reached.to - reached.from; length > 0)
-        all.impact_rate = static_cast<double>(impacts_) / length;
-    return all;
 }
 
 }  // namespace vines

@@ -2,6 +2,7 @@
 // acceleration of the oscillator, its distance from the base, and the impacts' speed.
 #pragma once
 
+#include "core/motion/elementary.hpp"
 #include "core/motion/simulate.hpp"
 
 namespace vines {
@@ -27,34 +28,43 @@ enum class Objective {
     decay_time  ///< in which the energy of a free decay falls to a tenth, s
 };
 
-/// Extremes that a run records: those of impacts cost almost nothing, the others a quarter of the
-/// run.
+/// Those of impacts cost almost nothing, the others a quarter of the run.
 enum class ExtremesWanted { none, of_impacts, all };
 
-/// Observer of the extremes over [tau_start, tau_end].
+/// Observer of the extremes over a window.
 class ExtremesRecord : public Observer {
 public:
     ExtremesRecord(
-        const Parameters& parameters, double tau_start, double tau_end,
-        ExtremesWanted wanted = ExtremesWanted::all);
+        const Parameters& parameters, const Interval& window,
+        ExtremesWanted wanted = ExtremesWanted::all)
+        : parameters_(parameters),
+          window_(window),
+          has_peaks_(wanted == ExtremesWanted::all) {}
 
     void on_stretch(const Stretch&) override;
     void on_impact(const Impact&) override;
 
     /// The extremes of the part of the window that the run reached.
-    Extremes result(const Interval& reached) const;
+    Extremes result(const Interval& reached) const {
+        Extremes all = extremes_;
+        if (reached.length() > 0)
+            all.impact_rate = static_cast<double>(impacts_) / reached.length();
+        return all;
+    }
 
 private:
-    /// x - x_b of a harmonic base is `size` times a motion of the same flow, whose phasor is turned
-    /// by an angle with this cosine and sine.
+    /// x - x_b is `size` times a motion of the flow, its phasor turned by this cosine and sine.
     struct Relative {
         double size, cos, sin;
     };
     Relative relative_to_base(const Flow& flow) const;
 
     const Parameters parameters_;
+    const Interval window_;
     const bool has_peaks_;
-    const double tau_start_, tau_end_, F_, sin_phi_, cos_phi_;
+    const double F_ = parameters_.load ? 0 : parameters_.epsilon * parameters_.G,
+                 sin_phi_ = elementary::sin(parameters_.phi()),
+                 cos_phi_ = elementary::cos(parameters_.phi());
     Extremes extremes_;
     long impacts_ = 0;
 };

@@ -44,8 +44,7 @@ ManifoldPoint manifold_second_contact(double R, double Omega, double b) {
     double below = 0, u = std::min(quarter_turn, std::sqrt(3 * R));
     for (double middle = u / 2; middle > below && middle < u; middle = below + (u - below) / 2)
         (elementary::sin(middle) < (1 + R) * middle * elementary::cos(middle) ? below : u) = middle;
-    // The minimum itself, (1 - k cos t)/sin t, written without cancellation; with R = 0 the ball
-    // stays on the wall from t = 0 on.
+    // (1 - k cos t)/sin t, written without cancellation.
     const double sin_u = elementary::sin(u),
                  q = u > 0 ? (R / (1 + R) + k_of(R) * sin_u * sin_u) / (sin_u * elementary::cos(u))
                            : 0;
@@ -90,19 +89,12 @@ Manifold manifold_of(const Parameters& p, double V_max, std::size_t points) {
         .b_at_free_amplitude = free && R < 1 ? std::optional(manifold_b(R, *free)) : std::nullopt};
 }
 
-HalfCycles::HalfCycles(const Parameters& p, double tau_start, double tau_end, std::size_t most)
-    : half_cycle_(std::numbers::pi / p.Omega),
-      tau_end_(tau_end),
-      most_(most),
-      next_(static_cast<long>(std::ceil(tau_start / half_cycle_)) + 1),
-      begun_((next_ - 1) * half_cycle_) {}
-
 void HalfCycles::on_stretch(const Stretch& stretch) {
     for (double from = std::max(0.0, begun_ - stretch.tau); from < stretch.duration;) {
         const double end = next_ * half_cycle_ - stretch.tau;
         pass(stretch, from, std::min(end, stretch.duration));
         if (end > stretch.duration) return;
-        if (next_ * half_cycle_ <= tau_end_ * (1 + window_rounding)) {
+        if (next_ * half_cycle_ <= window_.to * (1 + window_rounding)) {
             tau.push_back(next_ * half_cycle_);
             points.push_back({peak_, path_ / half_cycle_});
             keep_last(tau, most_);

@@ -1,22 +1,18 @@
-// Slow invariant manifold: two symmetric impacts per forcing cycle in the limit epsilon -> 0.
+// Slow invariant manifold: two symmetric impacts per forcing cycle in the limit epsilon -> 0 (see
+// docs/physics.md). With the ball's speed V, W = V/Omega and k = (1 - R)/(1 + R),
 //
-// The oscillator then moves as x = C sin(Omega tau + ...), and the ball flies with speed V from
-// wall to wall in one half period pi/Omega. The flight gives 2 (b - x_i) = V pi/Omega at the
-// impact, the restitution x'_i = k V with k = (1 - R)/(1 + R). With W = V/Omega,
+//     C^2 = (pi W/2 - b)^2 + k^2 W^2.
 //
-//     C^2 = (pi W/2 - b)^2 + k^2 W^2,
-//
-// which for Omega = 1 is the manifold of Gourc et al. (2015). Linearised, half a cycle followed by
-// the reflection (x, y) -> (-x, -y) has determinant R^2 and trace 2 R + (1 + R)^2 (pi b/(2 W) -
-// pi^2/4). An eigenvalue is 1 at the fold and -1, where the impacts lose their symmetry, at W =
-// (pi/2) b/(pi^2/4 - 1), for every R. The manifold is stable between the two.
+// Linearised, half a cycle followed by the reflection (x, y) -> (-x, -y) has determinant R^2 and
+// trace 2 R + (1 + R)^2 (pi b/(2 W) - pi^2/4). An eigenvalue is 1 at the fold and -1, where the
+// impacts lose their symmetry, at W = (pi/2) b/(pi^2/4 - 1), for every R. The manifold is stable
+// between the two.
 //
 // It exists as long as the flight meets no wall before its end. With t = Omega tau since the impact
-// and q = -x_i/W = pi/2 - b/W, the ball stays off the wall that it has left while q (1 - cos t) < t
-// - k sin t, and off the other one while q (1 - cos t) < t + k sin t, which follows from the first.
-// The limit is therefore q = min of (t - k sin t)/(1 - cos t) over 0 < t < pi. Its derivative
-// vanishes where tan(t/2) = (1 + R) t/2, which has one root, since tan(u)/u rises from 1 without
-// bound. Up to R = .0867 this second contact comes before the loss of symmetry.
+// and q = pi/2 - b/W, the ball stays off the wall that it has left while q (1 - cos t) < t - k sin
+// t, and then also off the other one. The limit q = min of (t - k sin t)/(1 - cos t) over 0 < t <
+// pi has its minimum where tan(t/2) = (1 + R) t/2, which has one root. Up to R = .0867 this second
+// contact comes before the loss of symmetry.
 #pragma once
 
 #include <cstddef>
@@ -38,8 +34,7 @@ double manifold_C(double R, double Omega, double b, double V);
 ManifoldPoint manifold_fold(double R, double Omega, double b);
 /// The point at which the symmetric impacts become unstable to asymmetric ones.
 ManifoldPoint manifold_symmetry_breaking(double R, double Omega, double b);
-/// The point at which the ball meets the wall that it comes from a second time before it reaches
-/// the other. Beyond it two symmetric impacts per cycle do not exist. Every R has such a point.
+/// Beyond it the ball meets a wall twice before it reaches the other.
 ManifoldPoint manifold_second_contact(double R, double Omega, double b);
 /// The b whose fold lies at amplitude C, m; 0 for R = 1, where every fold is at C = 0.
 double manifold_b(double R, double C);
@@ -58,13 +53,14 @@ struct Manifold {
 /// V_max (0: twice the speed of the symmetry breaking) or to the end of the motion's existence.
 Manifold manifold_of(const Parameters& parameters, double V_max, std::size_t points);
 
-/// Observer of a run's counterparts of (C, V): in each half cycle of the forcing the largest |x|
-/// and the mean of |y'|. Keeps the last `most` of them, and up to half as many more.
+/// Observer of a run's counterparts of (C, V): largest |x| and mean |y'| in each half cycle of the
+/// forcing. Keeps the last `most` of them, and up to half as many more.
 class HalfCycles : public Observer {
 public:
-    HalfCycles(
-        const Parameters& parameters, double tau_start, double tau_end,
-        std::size_t most = everything);
+    HalfCycles(const Parameters& p, const Interval& window, std::size_t most = everything)
+        : half_cycle_(std::numbers::pi / p.Omega),
+          window_(window),
+          most_(most) {}
     void on_stretch(const Stretch&) override;
 
     std::vector<double> tau;  ///< end of the half cycle
@@ -72,10 +68,12 @@ public:
 
 private:
     void pass(const Stretch& stretch, double from, double to);
-    const double half_cycle_, tau_end_;
+    const double half_cycle_;
+    const Interval window_;
     const std::size_t most_;
-    long next_;  // the current half cycle ends at next_ half_cycle_
-    double peak_ = 0, path_ = 0, begun_;
+    // The current half cycle ends at next_ half_cycle_.
+    long next_ = static_cast<long>(std::ceil(window_.from / half_cycle_)) + 1;
+    double peak_ = 0, path_ = 0, begun_ = (next_ - 1) * half_cycle_;
 };
 
 }  // namespace vines

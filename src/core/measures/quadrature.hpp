@@ -1,9 +1,7 @@
-// Integrals of x^2, x'^2 and x' sin(theta) over the motion of the linear oscillator between events.
-// They give the rms of x, the dissipation of the damper and the work of the forcing.
-//
-// Two methods without truncation error. Quadrature sums Gauss's rule over the flow's grid, from
-// tables. Antiderivative uses a closed form, F(end) - F(begin) + c s, which is cheaper for long
-// windows; its rounding error is relative to F, which has the size of the motion without absorber.
+// Integrals of x^2, x'^2 and x' sin(theta) over the motion of the linear oscillator between events,
+// for the rms of x, the dissipation of the damper and the work of the forcing. Quadrature sums
+// Gauss's rule over the flow's grid, from tables. Antiderivative uses a closed form, which is
+// cheaper for long windows; its rounding error is relative to the motion without absorber.
 #pragma once
 
 #include <memory>
@@ -26,13 +24,11 @@ enum Integrand { x_squared, x_dot_squared, x_dot_sin };
 /// where z^T Q z is the integrand. The third term is the constant c, since sin^2 + cos^2 = 1.
 class Antiderivative {
 public:
-    /// Empty if ill-conditioned, that is, if z^T P z is much larger than its changes: with almost
-    /// no damping, in particular near resonance. Cached per thread.
+    /// Empty if ill-conditioned: with almost no damping, or near resonance. Cached per thread.
     static std::optional<Antiderivative> of(const Flow& flow);
 
     /// Shortest window, in tau, for which F(z) - F(z0) loses no digits by cancellation: from rest
-    /// the integrals start as high powers of time, while F has the size of the steady motion from
-    /// the start. Quadrature is accurate for shorter windows.
+    /// the integrals start as high powers of time, while F has the size of the steady motion.
     double settled() const { return settled_; }
     /// F at this state, one value per integrand.
     Integrals at(const Oscillation& o) const;
@@ -49,8 +45,7 @@ private:
     double settled_;
 };
 
-/// Integration by Gauss's rule on each cell of the flow's grid. The cumulative sums of the cells'
-/// quadratic forms are tabulated.
+/// Gauss's rule on each cell of the flow's grid, as a table of cumulative quadratic forms.
 class Quadrature {
 public:
     explicit Quadrature(const Flow& flow);

@@ -11,11 +11,10 @@ namespace vines {
 
 namespace {
 
-// Distance, in units of the states' scale, below which two states can be a return; Newton's method
-// decides. A run that is chaotic by its exponents comes that close by chance all the time.
+// Distance, in units of the scale, below which two states can be a return. A chaotic run comes
+// within `near_return` by chance all the time.
 constexpr double near_return = 0.1, near_return_if_chaotic = 1e-3;
-// Limits of the attempts: the first return is tried whatever its period, the others while their
-// periods add up to at most this many cycles.
+// Limits of the attempts: number, and sum of the periods after the first.
 constexpr int most_attempts = 8;
 constexpr std::size_t most_attempted_cycles = 1024;
 constexpr double irregular_margin = 0.02;  // z of an irregular response is a mean over a run
@@ -25,8 +24,7 @@ constexpr int follow_rounds[] = {150, 300, 600, 1200};
 constexpr double past_last_cycle = 1e-12;
 // A run counts as captured while it stays this close to the orbit.
 constexpr double captured_within = 0.1;
-// A run this close to the orbit follows it: chaos that is confined to the orbit's neighbourhood is
-// searched up to there.
+// Chaos that is confined to the orbit's neighbourhood is searched up to this distance.
 constexpr double settled_within = 1e-3;
 // Cycles for which a run that ends near the orbit is followed, and those between two looks.
 constexpr int longest_departure = 4096, cycles_of_look = 64;
@@ -56,8 +54,7 @@ std::span<const State> in_window(const RegimeEvidence& e, std::span<const State>
 /// A possible period: the power of ten of its miss, and its cycles.
 using Return = std::pair<int, std::size_t>;
 
-/// Possible periods: the closest returns first; among about equally close ones, such as all
-/// multiples of a period, the shortest first.
+/// Possible periods: the closest returns first, among about equally close ones the shortest.
 std::vector<Return> returns(std::span<const State> states, const State& scale, double near) {
     constexpr double rounding = 1e-10;  // closer returns all count as equally close
     std::vector<Return> found;
@@ -76,8 +73,7 @@ std::vector<Return> returns(std::span<const State> states, const State& scale, d
     return found;
 }
 
-/// Attracting periodic orbit near the last state. `tried` is set if a return came close, so that an
-/// orbit is possible.
+/// Attracting periodic orbit near the last state. `tried` is set if a return came close.
 std::optional<PeriodicOrbit> orbit_at_end(
     const Parameters& p, std::span<const State> states, const State& scale, double near,
     const StopRequest& stop, bool& tried) {
@@ -105,8 +101,7 @@ std::size_t phase_of(const State& s, std::span<const State> along, const State& 
 }
 
 /// Attracting periodic orbit at the end of a run. A run can end while it slowly leaves an unstable
-/// orbit for a stable one nearby that Newton's method does not reach from there: then the motion is
-/// continued, and an orbit found later counts if the run's end was already near it.
+/// orbit for a stable one that Newton's method does not reach from there: then it is continued.
 std::optional<PeriodicOrbit> orbit_of(
     const Parameters& p, std::span<const State> states, const State& scale,
     const RegimeEvidence& e) {
@@ -135,32 +130,25 @@ std::optional<PeriodicOrbit> orbit_of(
     return std::nullopt;
 }
 
-class OrbitComparison {
-public:
-    OrbitComparison(
-        const Parameters& p, const PeriodicOrbit& orbit, const State& scale, long k,
-        const State& state)
-        : along_(whole_cycle_states(p, orbit)),
-          scale_(scale),
-          period_(static_cast<long>(along_.size())),
-          phase_(static_cast<long>(phase_of(state, along_, scale)) - k % period_ + period_) {}
+/// Comparison of a run, whose state at cycle k0 is `state`, with an orbit's states at whole cycles.
+struct OrbitComparison {
+    std::vector<State> along;
+    const State& scale;
+    long k0;
+    const State& state;
+    long period = static_cast<long>(along.size());
+    long phase = static_cast<long>(phase_of(state, along, scale)) - k0 % period + period;
 
     /// Distance of the state at cycle k from the orbit's state at the same phase.
-    double distance_at(long k, const State& state) const {
-        return distance(state, along_[static_cast<std::size_t>((phase_ + k) % period_)], scale_);
+    double distance_at(long k, const State& at) const {
+        return distance(at, along[static_cast<std::size_t>((phase + k) % period)], scale);
     }
-    bool is_near(long k, const State& state, double within = captured_within) const {
-        return distance_at(k, state) < within;
+    bool is_near(long k, const State& at, double within = captured_within) const {
+        return distance_at(k, at) < within;
     }
-
-private:
-    const std::vector<State> along_;
-    const State scale_;
-    const long period_, phase_;
 };
 
-/// Finds the last of the first whole cycles of a run that is not near the orbit that attracts its
-/// end. Once on the orbit, the run stays there.
+/// Finds the last of the first `before` whole cycles of a run that is not near the orbit.
 class OrbitArrival : public Stroboscope {
 public:
     OrbitArrival(const Parameters& p, const OrbitComparison& comparison, long before)
@@ -197,7 +185,7 @@ Approach approach_of(
     double growth = 0, least = 0;
     for (int done = 0; done < longest_departure; done += cycles_of_look) {
         StroboscopicRecord on(p);
-        Lyapunov lyapunov(p, 0, look, {.qr = true});
+        Lyapunov lyapunov(p, {0, look}, {.qr = true});
         if (!follow(p, s, 0, look * (1 + past_last_cycle), stop, {&on, &lyapunov})) return approach;
         const TransferProduct& product = lyapunov.product();
         if (product.impacts() > 1)
@@ -214,8 +202,7 @@ Approach approach_of(
     return approach;
 }
 
-/// Times of the first whole cycles from which on the run stays near the orbit, and follows it (not
-/// earlier than the first kept state); empty if never.
+/// First whole cycles from which on the run stays near the orbit, and follows it; empty if never.
 struct Arrival {
     std::optional<double> captured, settled;
 };
@@ -224,7 +211,7 @@ std::optional<Arrival> arrival_at(
     const Parameters& p, const State& start, const PeriodicOrbit& orbit,
     std::span<const State> states, const State& scale, const RegimeEvidence& e) {
     const long first = e.stroboscopic.first(), end = first + static_cast<long>(states.size());
-    const OrbitComparison comparison(p, orbit, scale, end - 1, states.back());
+    const OrbitComparison comparison{whole_cycle_states(p, orbit), scale, end - 1, states.back()};
     long from = end;
     const auto extend = [&](double within) {
         while (from > first && comparison.is_near(from - 1, states[from - 1 - first], within))
@@ -239,16 +226,14 @@ std::optional<Arrival> arrival_at(
         if (approach == Approach::not_known) return std::nullopt;
         if (approach == Approach::later || from == end) return Arrival{};
     }
-    // The first kept state is already near: a second run examines the states before it. If that run
-    // is interrupted, the time of the first kept state stands.
+    // A second run examines the earlier states. If it is interrupted, the first kept state stands.
     if (from == first && first > 0) {
         OrbitArrival last(p, comparison, first);
-        Observer* const observers[] = {&last};
         const Limits limits{
             .tau_end = e.stroboscopic.tau_of(first),
             .max_impacts = std::numeric_limits<long>::max(),
             .stop = [&] { return last.arrived || (e.stop && e.stop()); }};
-        const End end_of_run = simulate(p, start, limits, observers).reason;
+        const End end_of_run = simulate(p, start, limits, {&last}).reason;
         if (last.arrived || end_of_run == End::tau_end)
             arrival.captured = e.stroboscopic.tau_of(last.cycle + 1);
     }
@@ -258,9 +243,8 @@ std::optional<Arrival> arrival_at(
 /// Product of the transfer matrices from the start to `until`; empty if time ran out.
 std::optional<TransferProduct> product_until(
     const Parameters& p, const State& start, double until, const RegimeEvidence& e) {
-    Lyapunov lyapunov(p, 0, until, {.qr = true, .history = transient_history});
-    Observer* const observers[] = {&lyapunov};
-    if (simulate(p, start, {until, std::numeric_limits<long>::max(), e.stop}, observers).reason !=
+    Lyapunov lyapunov(p, {0, until}, {.qr = true, .history = transient_history});
+    if (simulate(p, start, {until, std::numeric_limits<long>::max(), e.stop}, {&lyapunov}).reason !=
         End::tau_end)
         return std::nullopt;
     return lyapunov.take();
@@ -297,12 +281,11 @@ void settle_later(
     for (long done = 0, round; done < cycles; done += round) {
         round = std::min(cycles_of_round, cycles - done);
         StroboscopicRecord on(p);
-        Observer* const observers[] = {&on};
         const Limits limits{
             .tau_end = static_cast<double>(round) * p.cycle() * (1 + past_last_cycle),
             .max_impacts = round * most_impacts_per_cycle,
             .stop = e.stop};
-        if (simulate(p, s, limits, observers).reason != End::tau_end) return;
+        if (simulate(p, s, limits, {&on}).reason != End::tau_end) return;
         s = on.states.back();
         bool tried = false;
         r.orbit = orbit_at_end(p, on.states, scale, near_return_if_chaotic, e.stop, tried);
@@ -310,7 +293,7 @@ void settle_later(
             r.followed += round;
             continue;
         }
-        const OrbitComparison comparison(p, *r.orbit, scale, round, s);
+        const OrbitComparison comparison{whole_cycle_states(p, *r.orbit), scale, round, s};
         long from = round;
         while (from > 0 && comparison.is_near(from - 1, on.states[from - 1])) --from;
         r.capture = Capture{e.stroboscopic.tau_of(end + done + from), r.orbit->exponents(p)};
@@ -322,7 +305,7 @@ void settle_later(
 /// joint motion stays below `friction`. The energy of the joint motion's deviation u from its
 /// steady one, (u'^2 + stiffness u^2)/2, falls, and |u''| <= stiffness |u| + damping |u'|.
 bool held_for_ever(const Parameters& p, const State& at_whole_cycle) {
-    const auto [k, d, f, Omega] = Flow::sticking(p).coefficients();
+    const auto [k, d, f, Omega] = Flow::shared_sticking(p)->coefficients();
     const double detuning = k - Omega * Omega, D = elementary::hypot(detuning, d * Omega);
     if (D == 0) return false;
     const double X = f / D, theta = p.phi() - elementary::atan2(d * Omega, detuning),
@@ -341,7 +324,7 @@ Regime::Untouched untouched_end(
         at_whole_cycle.y_dot, held, std::nullopt};
     if (end.for_ever) return end;
     const Limits limits{.tau_end = longest_flight * p.cycle(), .max_impacts = 1, .stop = stop};
-    const Outcome outcome = simulate(p, at_whole_cycle, limits, {});
+    const Outcome outcome = simulate(p, at_whole_cycle, limits);
     if (outcome.impacts > 0) end.next_contact = tau + outcome.tau;
     return end;
 }
@@ -361,8 +344,7 @@ RegimeType type_of(const Regime& r) {
 
 }  // namespace
 
-// The oscillator's deviation from its steady motion cannot grow: its energy x^2 + x'^2 falls, since
-// all forces but the spring's are dissipative.
+// The energy x^2 + x'^2 of the deviation from the steady motion cannot grow.
 bool is_never_touched(const Parameters& p, const State& s) {
     const auto steady = free_steady_state(p);
     if (!steady || !p.has_straight_flights() || s.y_dot != 0) return false;

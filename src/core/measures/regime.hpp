@@ -1,11 +1,8 @@
 // Response regimes I to VI (section 4 of the paper), their evidence, and the verdict chaotic or
-// regular.
-//
-// A response is periodic if an attracting periodic orbit is found near the end of the run: close
-// returns of the state at whole cycles are refined by Newton's method. Then the type follows from
-// the orbit's contacts per cycle and its symmetry. Other responses are classified by contacts per
-// cycle and by the longest synchronised stretch (rhythm.hpp); one whose section is a smooth closed
-// curve (torus.hpp) is quasi-periodic.
+// regular. A response is periodic if an attracting orbit (stability/orbit.hpp) is found near the
+// end of the run: its contacts per cycle and its symmetry give the type. Other responses are
+// classified by contacts per cycle and by the longest synchronised stretch (rhythm.hpp); one whose
+// section is a smooth closed curve (torus.hpp) is quasi-periodic.
 #pragma once
 
 #include <optional>
@@ -18,24 +15,20 @@
 
 namespace vines {
 
-/// Response types. none: no impact at all, or no forcing. I: sparse, not periodic. II: strongly
-/// modulated, not periodic, stretches of two impacts per cycle. III: two symmetric impacts per
-/// cycle, periodic. IV: two asymmetric ones, periodic. V: any other periodic response. VI: any
-/// other response that is not periodic.
+/// Response types. none: no impact, or no forcing. Not periodic: I sparse, II with stretches of two
+/// impacts per cycle, VI others. Periodic: III two symmetric impacts per cycle, IV two asymmetric
+/// ones, V others.
 enum class RegimeType { none, I, II, III, IV, V, VI };
 
 /// Capture of a run by the periodic orbit that attracts it.
 struct Capture {
-    /// Time from which the run stays near the orbit without chaos (or later, if the search ran out
-    /// of time); after the run's end if the run was continued (RegimeEvidence::settle_cycles).
-    /// Empty if the run ends on its way to the orbit.
+    /// Time from which the run stays near the orbit without chaos (later if time ran out); after
+    /// the run's end if the run was continued. Empty if the run ends on its way to the orbit.
     std::optional<double> tau;
     Exponents after;  ///< from the Floquet multipliers
-    /// Exponents by qr from the first impact to tau or to the end; NaN with too few impacts, or if
-    /// not examined.
+    /// By qr from the first impact to tau or to the end; NaN if too few impacts or not examined.
     Exponents before = no_exponents;
-    /// True if chaos before the capture is shown: by verdict_by_exponents() or
-    /// chaotic_transient_end(). False if it is not shown. Empty: not examined.
+    /// Chaos before is shown, by its exponents or a part of their history.
     std::optional<bool> chaotic_before = {};
 };
 
@@ -104,8 +97,7 @@ enum class VerdictReason {
     next_contact,    ///< not decided: no impacts in the window, but not for ever
     /// Not decided: the window holds both a chaotic transient and the orbit that captured it.
     transient,
-    /// Not decided: an orbit captured the motion, but time ran out before the part before the
-    /// capture could be examined.
+    /// Not decided: time ran out before the part before a capture could be examined.
     not_known_before,
     no_error,          ///< not decided: too few impacts for a standard error
     within_error,      ///< not decided: lambda1 lies within its error

@@ -9,9 +9,8 @@ namespace vines {
 
 namespace {
 
-// Tolerance of the interval, relative to half a cycle. It reproduces Fig. 9's synchronised parts
-// and the border of Types I and II: no such parts at b = 34 and 40 mm, some at 31 mm and below. The
-// border does not move between 10 and 20 %.
+// Tolerance of the interval, relative to half a cycle: reproduces Fig. 9's synchronised parts and
+// the border of Types I and II, which does not move between 10 and 20 %.
 constexpr double synchrony_tolerance = 0.15;
 constexpr int moving_cycles = 10;
 
@@ -115,21 +114,6 @@ void CyclePositions::add(double cycles) {
     for (; step > low_bits; step >>= bits)
         bytes_.push_back(static_cast<std::uint8_t>((step & low_bits) | (low_bits + 1)));
     bytes_.push_back(static_cast<std::uint8_t>(step));
-}
-
-Rhythm::Rhythm(const Parameters& p, const Interval& window, std::size_t most_listed)
-    : ContactStream(p),
-      synchrony_(0.5 * p.cycle(), most_listed),
-      cycle_(p.cycle()),
-      window_(window),
-      most_listed_(most_listed),
-      steps_(window, p.cycle()),
-      steps_per_tau_(1 / steps_.duration()),
-      in_steps_(steps_.count()) {}
-
-void Rhythm::on_contact(const CountedContact& contact) {
-    if (contact.tau < window_.from) before_ = contact;
-    else if (contact.tau <= window_.to) count(contact);
 }
 
 void Rhythm::count(const CountedContact& contact) {

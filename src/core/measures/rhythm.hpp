@@ -1,9 +1,7 @@
-// Rhythm of the contacts: contacts per cycle, and stretches synchronised with the forcing.
-//
-// All numbers are counted during the run; no list of contacts is kept. A contact is an impact, or a
-// whole chatter that ends in sticking. A stretch is synchronised if its contacts alternate sides at
-// intervals within 15 % of half a forcing period; stretches that are too short to be more than
-// chance do not count.
+// Rhythm of the contacts: contacts per cycle, and stretches synchronised with the forcing, counted
+// during the run without a list of contacts. A stretch is synchronised if its contacts alternate
+// sides at intervals within 15 % of half a forcing period; stretches that are too short to be more
+// than chance do not count.
 #pragma once
 
 #include <cstdint>
@@ -55,8 +53,8 @@ private:
     CountedContact last_{};
 };
 
-/// Positions of the contacts in units of 1/128 forcing cycle, stored as differences: one byte per
-/// contact, and one more after a pause of a cycle.
+/// Positions of the contacts in 1/128 cycle, as differences of one byte, two after a pause of a
+/// cycle.
 class CyclePositions {
 public:
     static constexpr int parts = 128;
@@ -79,8 +77,7 @@ public:
     }
 
 private:
-    // A difference is written in groups of seven bits, the lowest first; all but its last byte have
-    // the eighth bit set.
+    // Seven bits per byte, the lowest first; all but the last byte have the eighth bit set.
     static constexpr int bits = 7, low_bits = 127;
     std::vector<std::uint8_t> bytes_;
     std::int64_t last_ = 0;
@@ -90,8 +87,7 @@ private:
 struct ContactCounts {
     long contacts = 0;
     double z_overall = 0;  ///< contacts per cycle, from the first to the last contact
-    /// Standard error of z_overall as an estimate for an infinite run (mean_error.hpp); NaN for
-    /// windows of fewer than 32 cycles.
+    /// Standard error (mean_error.hpp); NaN for windows of fewer than 32 cycles.
     double z_error = nan;
     std::vector<double> moving_tau, moving_z;  ///< contacts per cycle, over 10 cycles around tau
     std::vector<double> cycles_with;           ///< fraction of cycles with 0, 1, 2, ... contacts
@@ -105,29 +101,35 @@ struct ContactCounts {
 class Rhythm : public ContactStream {
 public:
     /// `most_listed`: maximum length of the lists that grow with the run; 0: no lists.
-    Rhythm(const Parameters& parameters, const Interval& window, std::size_t most_listed);
+    Rhythm(const Parameters& p, const Interval& window, std::size_t most_listed)
+        : ContactStream(p),
+          cycle_(p.cycle()),
+          window_(window),
+          most_listed_(most_listed) {}
 
     /// The counts in the part of the window that the run reached; call once, after the run. Cycles
-    /// are counted from one before the first contact; the moving z is thinned to most_listed
-    /// entries.
+    /// are counted from one before the first contact.
     ContactCounts finish(const Interval& reached);
 
 private:
-    void on_contact(const CountedContact& contact) override;
+    void on_contact(const CountedContact& contact) override {
+        if (contact.tau < window_.from) before_ = contact;
+        else if (contact.tau <= window_.to) count(contact);
+    }
     void count(const CountedContact& contact);
     double z(const Interval& reached) const;
     double z_error(const Interval& reached) const;
     void count_cycles(const Interval& reached, ContactCounts& counts) const;
 
-    Synchrony synchrony_;
     const double cycle_;
     const Interval window_;
     const std::size_t most_listed_;
+    Synchrony synchrony_{0.5 * cycle_, most_listed_};
     double first_ = 0, last_ = 0;
     std::optional<CountedContact> before_;  // the last contact before the window
-    const WindowSteps steps_;
-    const double steps_per_tau_;
-    std::vector<double> in_steps_;  // contacts in each step
+    const WindowSteps steps_{window_, cycle_};
+    const double steps_per_tau_ = 1 / steps_.duration();
+    std::vector<double> in_steps_ = std::vector<double>(steps_.count());  // contacts in each step
     CyclePositions positions_;
 };
 

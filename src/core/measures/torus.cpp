@@ -18,16 +18,14 @@ namespace {
 
 constexpr std::size_t most_points_of_torus = 2048, fewest_points_of_torus = 128;
 constexpr int most_curves = 6, lines_tried = 4;
-// Largest deviation of the ratios of length and curvature from 1: a set with a thickness has 4 and
-// 16.
+// Largest deviation of the ratios from 1: a set with a thickness has 4 and 16.
 constexpr double length_tolerance = 0.1, curvature_tolerance = 0.4;
 constexpr std::size_t coarse_neighbours = 4;
 // Largest gap between phases, in turns.
 constexpr double most_phase_gap = 0.05;
 
-// Largest ratio of the curvatures that the second half of the points shows between neighbours of
-// the first half and that all points show: a motion that still approaches a curve or an orbit has a
-// larger one.
+// Largest ratio of the curvature of the second half about the first to that of all points: a motion
+// that still approaches a curve or an orbit has a larger one.
 constexpr double most_drift = 3;
 // Largest error of the rotation number, in turns over all points.
 constexpr double most_error = 0.01;
@@ -37,19 +35,16 @@ constexpr double most_decay = 0.01;
 // Largest relative strength at half the frequency of a line, which leakage of the window reaches.
 constexpr double most_half = 1e-6;
 
-// Distance of two of the points, in units of the scale, that is a return: on a curve with 65,536
-// points the closest one is at about 1e-5.
+// Distance of two points that is a return: the closest of 65,536 on a curve are 1e-5 apart.
 constexpr double is_return = 1e-8;
-// Smallest median gap between the phases, in units of the mean gap: points of a periodic motion
-// coincide.
+// Smallest median gap between the phases over the mean gap: periodic points coincide.
 constexpr double least_median_gap = 0.01;
 
 std::complex<double> turned(double turns) {
     return elementary::phasor(2 * std::numbers::pi * turns);
 }
 
-/// (x, x') of the points as complex numbers, without their mean, weighted by the square of a Hann
-/// window.
+/// x + i x' of the points without their mean, weighted by the square of a Hann window.
 Signal windowed(std::span<const State> points) {
     Signal signal;
     std::complex<double> mean = 0;
@@ -149,8 +144,7 @@ public:
         return {length, median_of(std::move(curvatures))};
     }
 
-    /// Median curvature from the deviations of further points of the same motion, the first of
-    /// which follows the last of these, from the lines between their neighbours.
+    /// Median curvature of the points that follow these, from the lines between their neighbours.
     double curvature_at(std::span<const State> further, double frequency) const {
         std::vector<double> curvatures;
         for (std::size_t k = 0; k < further.size(); ++k) {
@@ -184,8 +178,7 @@ private:
     std::vector<std::pair<double, std::size_t>> phases_;
 };
 
-/// True if points of another curve are farther from these than neighbours on a curve are from each
-/// other: they are not further points of the same curve.
+/// True if other points are farther from these than neighbours on a curve are from each other.
 bool lie_apart(std::span<const State> points, std::span<const State> others, const State& scale) {
     std::vector<double> nearest, neighbours;
     const std::size_t examined = std::min<std::size_t>(others.size(), 64);
@@ -202,8 +195,7 @@ bool lie_apart(std::span<const State> points, std::span<const State> others, con
     return median_of(std::move(nearest)) > 4 * median_of(std::move(neighbours));
 }
 
-/// True if all points lie on one curve, of which every `apart`-th point seems to cover a part:
-/// `found` is of these.
+/// True if all points lie on one curve, not every `apart`-th on its own.
 bool is_one_curve(
     std::span<const State> states, const State& scale, const QuasiPeriodic& found, int apart) {
     for (int k = 0; k < apart; ++k) {
@@ -220,8 +212,7 @@ std::optional<QuasiPeriodic> on_one_curve(std::span<const State> points, const S
     const Signal signal = windowed(points);
     const auto first = points.first(points.size() / 2), last = points.last(points.size() / 2);
     for (const double line : strongest_lines(signal)) {
-        // A line at half the frequency: the curve closes after two turns of this one, whose strands
-        // can be closer to each other than neighbouring points.
+        // At half the frequency the curve closes after two turns, whose strands can be very close.
         const double strength = line_at(signal, line);
         if (line_at(signal, 0.5 * line) > most_half * strength ||
             line_at(signal, 0.5 * line + 0.5) > most_half * strength)

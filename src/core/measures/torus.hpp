@@ -4,14 +4,11 @@
 // A motion on a two-frequency torus meets the section at points s(nu k), k = 0, 1, ..., where s is
 // a smooth function with period 1. The rotation number nu is a strong line of the spectrum; with
 // the square of a Hann window its frequency has an error of order 1/N^6. Points are sorted by their
-// phases, nu k modulo 1. On a smooth curve the distance of two neighbours is proportional to that
-// of their phases, and a point deviates from the line between its neighbours by the product of both
-// phase distances times half the curvature: the length of the curve and its curvature are the same
-// from nearest neighbours and from every fourth point. In a chaotic band that is thicker than these
-// deviations, or on a curve that is still being approached, they are up to 4 and 16 times as large.
-// A slow spiral near a resonance passes this test, since its neighbours in phase are neighbours in
-// time: the second half of the points must also lie on the curve through the first half. A periodic
-// motion of a long period returns exactly. If the torus meets the section in several curves, which
+// phases, nu k modulo 1. On a smooth curve, length and curvature are the same from nearest
+// neighbours and from every fourth point; in a chaotic band, or on a curve that is still being
+// approached, they are up to 4 and 16 times as large. A slow spiral near a resonance passes this
+// test, since its neighbours in phase are neighbours in time: the second half of the points must
+// also lie on the curve through the first half. If the torus meets the section in m curves, which
 // the motion visits in turn, every m-th point lies on the same one.
 #pragma once
 
@@ -29,8 +26,7 @@ struct QuasiPeriodic {
     int curves;          ///< closed curves in the section
     std::size_t points;  ///< examined points of one of them
     double largest_gap;  ///< between the phases of neighbours, turns
-    /// Length and median curvature from nearest neighbours, over those from every fourth point:
-    /// about 1 for a smooth curve.
+    /// From nearest neighbours, over those from every fourth point: about 1 for a smooth curve.
     double length_ratio, curvature_ratio;
 };
 

@@ -12,40 +12,35 @@ namespace {
 
 constexpr double ulp = std::numeric_limits<double>::epsilon();
 
-// Halley's error is of third order: after a step below 1e-6 of the root the next one is below 1e-18
-// of it and not worth taking.
+// A step below 1e-6 of the root is the last: the next one would be below 1e-18.
 constexpr double last_step = 1e-6;
-// Last step in a cell, relative to h. The state is carried over it by its Taylor polynomial of
-// second order, whose remainder, (1e-7)^3 h^3/6 of x''', is below an ulp of x.
+// Last step in a cell, relative to h: the Taylor polynomial of second order suffices for it.
 constexpr double last_step_in_cell = 1e-7;
 
 /// Bisection on a polynomial, with a bound of its third derivative on [0, h].
-class CrossingSearch {
-public:
-    CrossingSearch(
-        std::span<const double> c, double h, double noise, std::optional<double>& tangent)
-        : c_(c),
-          h_(h),
-          noise_(noise),
-          tangent_(tangent) {
+struct CrossingSearch {
+    std::span<const double> c;
+    double h, noise;
+    std::optional<double>& tangent;
+    double third = 0;
+
+    std::optional<double> search() {
         double power = 1;
         for (std::size_t n = 3; n < c.size(); ++n, power *= h)
-            third_ += n * (n - 1.0) * (n - 2.0) * std::abs(c[n]) * power;
+            third += n * (n - 1.0) * (n - 2.0) * std::abs(c[n]) * power;
+        return in(0, h);
     }
 
-    std::optional<double> search() { return in(0, h_); }
-
-private:
     struct Value {
         double f, f1, f2;  // value, first derivative, half of the second
     };
 
     Value at(double d) const {
         Value v{0, 0, 0};
-        for (std::size_t n = c_.size(); n-- > 0;) {
+        for (std::size_t n = c.size(); n-- > 0;) {
             v.f2 = v.f2 * d + v.f1;
             v.f1 = v.f1 * d + v.f;
-            v.f = v.f * d + c_[n];
+            v.f = v.f * d + c[n];
         }
         return v;
     }
@@ -54,13 +49,13 @@ private:
     std::optional<double> in(double a, double e) {
         const double middle = 0.5 * (a + e), radius = 0.5 * (e - a);
         const Value m = at(middle);
-        if (m.f + radius * (std::abs(m.f1) + radius * (std::abs(m.f2) + radius * third_ / 6)) <
-            -noise_)
+        if (m.f + radius * (std::abs(m.f1) + radius * (std::abs(m.f2) + radius * third / 6)) <
+            -noise)
             return {};
 
-        const bool monotone = std::abs(m.f1) > radius * (2 * std::abs(m.f2) + radius * third_ / 2);
-        const bool one_curvature = 2 * std::abs(m.f2) > radius * third_;
-        const bool at_resolution = middle <= a || middle >= e || radius < ulp * h_;
+        const bool monotone = std::abs(m.f1) > radius * (2 * std::abs(m.f2) + radius * third / 2);
+        const bool one_curvature = 2 * std::abs(m.f2) > radius * third;
+        const bool at_resolution = middle <= a || middle >= e || radius < ulp * h;
         if (monotone || one_curvature || at_resolution) {
             const Value end = at(e);
             if (!at_resolution && !monotone && m.f2 < 0 && end.f1 < 0) return before_maximum(a, e);
@@ -85,7 +80,7 @@ private:
         }
         const double top = at(d).f;
         if (top >= 0) return root(a, at(a).f, d, top);
-        if (top >= -noise_) tangent_ = d;
+        if (top >= -noise) tangent = d;
         return {};
     }
 
@@ -107,10 +102,6 @@ private:
         }
         return d;
     }
-
-    std::span<const double> c_;
-    double h_, noise_, third_ = 0;
-    std::optional<double>& tangent_;
 };
 
 }  // namespace
@@ -123,7 +114,7 @@ std::optional<double> first_crossing(
     // Identically zero.
     if (std::all_of(c.begin(), c.end(), [](double v) { return v == 0; })) return {};
     if (c[0] >= 0) return 0;
-    return CrossingSearch(c, h, zeros > 0 ? 0 : noise, tangent).search();
+    return CrossingSearch{c, h, zeros > 0 ? 0 : noise, tangent}.search();
 }
 
 namespace {
@@ -139,8 +130,8 @@ struct CellSearch {
     const Polynomial& y;  // the ball's path
     std::vector<GrazingPoint>& grazing;
 
-    /// The most common case of rule 4: g' has no zero in cell k, and g ends beyond the wall
-    /// ahead, or at it: half a cycle is a multiple of h.
+    /// The most common case of rule 4: g is monotone in cell k and ends at or beyond the wall
+    /// ahead.
     std::optional<Contact> straight(int k, const Oscillation& lo, double next_relative) const {
         const Polynomial y_left = y.about(k * h);
         const double speed = lo.x_dot - y_left[1];
@@ -166,8 +157,7 @@ struct CellSearch {
             f2 + d * (3 * f3 + d * (6 * f4 + d * 10 * f5)));
         d = std::clamp(d, 0.0, h);
 
-        // Two steps suffice unless the speed is so small that rounding moves the root by more than
-        // the limit; then in_cell() brackets it.
+        // Two steps suffice unless the flight is so slow that in_cell() has to bracket the root.
         SeriesValue v;
         double step;
         for (int i = 0;; ++i) {
@@ -258,8 +248,7 @@ struct CellSearch {
 
 }  // namespace
 
-// Five products and five sums, each within half an ulp of the largest term, the same again in the
-// table and the state, and a safety factor of three.
+// Five products and five sums, twice (in the table, too), and a safety factor of three.
 constexpr double grid_rounding = 16 * 0x1p-52;
 
 double position_rounding(const Flow::Bounds& bounds, double y, double b) {
@@ -308,11 +297,26 @@ std::optional<Contact> next_contact(
 
 namespace {
 
-/// Number of cells of width h over which a value stays positive that changes by at most `rate` per
-/// unit of time.
-int cells_above_zero(double value, double rate, double h) {
-    const double cells = std::ceil(value / (rate * h)) - 1;
-    return cells > 0 ? static_cast<int>(std::min<double>(cells, Flow::cells)) : 0;
+/// The first s in (0, limit] at which a positive function falls to zero. value(k): the function at
+/// the left end of cell k; it changes by at most `rate` per unit of time. falling(k): coefficients
+/// of the negative function about that end. `zeros` derivatives vanish at s = 0, counting the 0th.
+template <class Value, class Coefficients>
+std::optional<double> first_zero(
+    const Flow& flow, int zeros, double limit, double rate, const Value& value,
+    const Coefficients& falling) {
+    assert(limit <= flow.reach());
+    const double h = flow.cell();
+    for (int k = 0, positive = 0; k < Flow::cells && k * h < limit; k += std::max(1, positive)) {
+        const int vanishing = k == 0 ? zeros : 0;
+        // Cells over which the function certainly stays positive.
+        const double cells = vanishing > 0 ? 0 : std::ceil(value(k) / (rate * h)) - 1;
+        positive = cells > 0 ? static_cast<int>(std::min<double>(cells, Flow::cells)) : 0;
+        if (positive > 0) continue;
+        std::optional<double> tangent;
+        if (const auto d = first_crossing(falling(k), vanishing, h, 0, tangent))
+            return k * h + *d <= limit ? std::optional(k * h + *d) : std::nullopt;
+    }
+    return {};
 }
 
 }  // namespace
@@ -320,54 +324,48 @@ int cells_above_zero(double value, double rate, double h) {
 std::optional<double> next_release(
     const Flow& flow, const Oscillation& start, int side, int zeros, double limit,
     const Polynomial& pull, double least) {
-    assert(side != 0 && (zeros == 0 || zeros == 1) && limit <= flow.reach());
+    assert(side != 0 && (zeros == 0 || zeros == 1));
     const double h = flow.cell(), time = std::min(flow.reach(), limit + h),
                  M3 = flow.bounds(start, time).x_dddot + pull.bound(1, time);
-    for (int k = 0, held = 0; k < Flow::cells && k * h < limit; k += std::max(1, held)) {
-        const Oscillation lo = k == 0 ? start : flow.at(start, k);
-        const bool vanishes = k == 0 && zeros > 0;
-        const double above = side * (flow.acceleration(lo) - pull.at(k * h)) - least;
-        held = vanishes ? 0 : cells_above_zero(above, M3, h);
-        if (held > 0) continue;
-        const Flow::TaylorSeries x = flow.series(lo);
-        // least - side (x'' - pull), negative while the ball is held.
+    const auto at = [&](int k) { return k == 0 ? start : flow.at(start, k); };
+    // side (x'' - pull) - least is positive while the ball is held.
+    const auto held = [&](int k) {
+        return side * (flow.acceleration(at(k)) - pull.at(k * h)) - least;
+    };
+    const auto falling = [&](int k) {
+        const Flow::TaylorSeries x = flow.series(at(k));
+        const Polynomial pulls = pull.about(k * h);
         std::array<double, Flow::degree - 1> f;
         for (int n = 0; n + 2 <= Flow::degree; ++n) f[n] = -side * (n + 1.0) * (n + 2.0) * x[n + 2];
-        const Polynomial pulls = pull.about(k * h);
         f[0] += least;
         for (int n = 0; n < pull.size; ++n) f[static_cast<std::size_t>(n)] += side * pulls[n];
-        std::optional<double> tangent;
-        if (auto d = first_crossing(f, k == 0 ? zeros : 0, h, 0, tangent))
-            return k * h + *d <= limit ? std::optional(k * h + *d) : std::nullopt;
-    }
-    return {};
+        return f;
+    };
+    return first_zero(flow, zeros, limit, M3, held, falling);
 }
 
 std::optional<double> next_equal_velocity(
     const Flow& flow, const FlightStart& start, int direction, int zeros, double limit) {
-    assert(direction != 0 && limit <= flow.reach());
+    assert(direction != 0);
     const Polynomial y = start.ball();
     const double h = flow.cell(), time = std::min(flow.reach(), limit + h),
                  M2 = flow.bounds(start.lo, time).x_ddot + y.bound(2, time);
-    for (int k = 0, sliding = 0; k < Flow::cells && k * h < limit; k += std::max(1, sliding)) {
-        const double speed = k > 0             ? flow.speed_at(start.lo, k) - y.rate(k * h)
-                             : start.side != 0 ? start.relative_speed
-                                               : start.lo.x_dot - y[1];
-        const int vanishing = k == 0 ? zeros : 0;
-        sliding = vanishing > 0 ? 0 : cells_above_zero(direction * speed, M2, h);
-        if (sliding > 0) continue;
+    const auto speed = [&](int k) {
+        return direction * (k > 0             ? flow.speed_at(start.lo, k) - y.rate(k * h)
+                            : start.side != 0 ? start.relative_speed
+                                              : start.lo.x_dot - y[1]);
+    };
+    const auto falling = [&](int k) {
         const Flow::TaylorSeries x = flow.series(k == 0 ? start.lo : flow.at(start.lo, k));
+        const Polynomial y_left = y.about(k * h);
         std::array<double, Flow::degree> f;
         for (int n = 0; n < Flow::degree; ++n) f[n] = -direction * (n + 1.0) * x[n + 1];
-        const Polynomial y_left = y.about(k * h);
         for (int n = 1; n < y.size; ++n)
             f[static_cast<std::size_t>(n) - 1] += direction * n * y_left[n];
-        if (k == 0) f[0] = -direction * speed;
-        std::optional<double> tangent;
-        if (auto d = first_crossing(f, vanishing, h, 0, tangent))
-            return k * h + *d <= limit ? std::optional(k * h + *d) : std::nullopt;
-    }
-    return {};
+        if (k == 0) f[0] = -speed(0);
+        return f;
+    };
+    return first_zero(flow, zeros, limit, M2, speed, falling);
 }
 
 }  // namespace vines

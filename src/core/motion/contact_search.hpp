@@ -1,25 +1,22 @@
 // The next contact of a free flight, with a guarantee that none is missed.
 //
-// g(s) = x(s) - y(s) leaves |g| < b at a contact. A sign test at the ends of steps misses contacts
-// (two can hide within a step). Therefore every cell of the flow's grid is either proven empty or
-// searched by first_crossing(), whose bisection is itself a proof. There are five rules; eta is the
-// rounding error of g on the grid.
+// g(s) = x(s) - y(s) leaves |g| < b at a contact. A sign test at the ends of steps misses two
+// contacts within a step. Therefore every cell of the flow's grid is either proven empty or
+// searched by first_crossing(). There are five rules; eta is the rounding error of g on the grid.
 //
-//   1. g differs from its chord over a cell of width h by at most M2 h^2/8, M2 >= |g''|, the bound
-//      of |x''| plus that of |y''|. The cell is empty if |g| < b - M2 h^2/8 - eta at both ends.
+//   1. g differs from its chord over a cell of width h by at most M2 h^2/8, M2 >= |g''|. The cell
+//      is empty if |g| < b - M2 h^2/8 - eta at both ends.
 //   2. If the flight has just left a wall, g = side b at s = 0 and the test of rule 1 always fails.
 //      Let phi(s) = (side g(s) - b)/s, the integral over t in (0,1) of side g'(ts). With M3 >=
-//      |g'''|, |phi''| <= M3/3 and phi differs from its chord by at most M3 h^2/24: there
-//      is no contact with this wall in (0, h] if phi(0) = side g'(0) and phi(h) are below
-//      -M3 h^2/24.
-//   3. Remaining cells are searched on the Taylor polynomial of g about the left end, which equals
-//      g up to rounding. Leading coefficients known to be zero (1 after an impact, 2 after an
-//      impact with R = 0, 3 at the release from sticking) are set to zero and divided out: the
-//      contact at s = 0 is identified by its side, not by comparing |g| with b, and the next
-//      contact of a chatter keeps full relative accuracy however close it is.
-//   4. first_crossing() bisects until an interval is empty, monotone, convex or concave by bounds
-//      on the polynomial; each such interval has at most one upward crossing, whose position is
-//      bracketed. Bisection ends at the latest when an interval reaches the resolution of double.
+//      |g'''|, |phi''| <= M3/3 and phi differs from its chord by at most M3 h^2/24: there is no
+//      contact with this wall in (0, h] if side g'(0) and phi(h) are below -M3 h^2/24.
+//   3. Remaining cells are searched on the Taylor polynomial of g about the left end. Leading
+//      coefficients known to be zero (1 after an impact, 2 after an impact with R = 0, 3 at the
+//      release from sticking) are divided out: the contact at s = 0 is identified by its side, and
+//      the next contact of a chatter keeps full relative accuracy however close it is.
+//   4. first_crossing() bisects until bounds on the polynomial show that an interval is empty, or
+//      that it is monotone, convex or concave there and thus has at most one upward crossing; or,
+//      at the latest, until the interval reaches the resolution of double.
 //   5. A flight that is pulled away from its wall keeps away from it for some time: with M4 >=
 //      |g''''|, side g falls up to 2 |g''(0)|/M3 where side g''(0) < 0, and after the release from
 //      sticking up to 3 |g'''(0)|/M4.
@@ -71,15 +68,13 @@ struct GrazingPoint {
     int side;
 };
 
-/// Halley's step towards the root of a function with value f, first derivative and half the second
-/// derivative. The error is of third order in the step.
+/// Halley's step towards the root of a function: an error of third order in the step.
 inline double halley(double f, double first, double half_second) {
     return -f * first / (first * first - f * half_second);
 }
 
-/// Halley's iteration for the next contact of a chatter ends at a step below this, relative to the
-/// flight time. The remaining error is of the order of the step's cube, 1e-24, because the errors
-/// of thousands of flights in a chatter accumulate.
+/// Last step of Halley's iteration in a chatter, relative to the flight time: the remaining error
+/// is of the order of its cube, 1e-24, because errors of thousands of flights accumulate.
 inline constexpr double last_chatter_step = 1e-8;
 
 /// Rounding error of x - y on the grid: |x - y| can exceed b by this without a contact.
@@ -90,11 +85,9 @@ std::optional<Contact> next_contact(
     const Flow& flow, const FlightStart& start, double b, double limit,
     std::vector<GrazingPoint>& grazing);
 
-/// The first s in (0, limit] at which side (x'' - pull) falls to `least`, where x'' is the
-/// acceleration of the joint motion; limit <= flow.reach(). At a wall, `side` presses the ball
-/// against it until then; inside the cavity friction holds the ball up to side (x'' - pull) =
-/// least < 0. `pull` is a function of the time. `zeros` is 1 if they are equal at the start,
-/// otherwise 0.
+/// The first s in (0, limit] at which side (x'' - pull) of the joint motion falls to `least`; limit
+/// <= flow.reach(). At a wall, `side` presses the ball against it until then; inside the cavity
+/// friction holds it up to least < 0. `zeros` is 1 if they are equal at the start, otherwise 0.
 std::optional<double> next_release(
     const Flow& flow, const Oscillation& start, int side, int zeros, double limit,
     const Polynomial& pull = {}, double least = 0);
@@ -104,16 +97,14 @@ std::optional<double> next_release(
 std::optional<double> next_equal_velocity(
     const Flow& flow, const FlightStart& start, int direction, int zeros, double limit);
 
-/// The first d in [0, h] at which the polynomial sum of c[n] d^n rises from below zero to zero or
-/// above. The first `zeros` coefficients are taken as zero and divided out, together with exact
-/// zeros that follow. `tangent` is set to the position of a maximum that is below zero by less than
-/// `noise`.
+/// The first d in [0, h] at which sum of c[n] d^n rises from below zero to zero. The first `zeros`
+/// coefficients are taken as zero and divided out, with exact zeros that follow. `tangent`:
+/// position of a maximum that is below zero by less than `noise`.
 std::optional<double> first_crossing(
     std::span<const double> c, int zeros, double h, double noise, std::optional<double>& tangent);
 
-/// The same contact as next_contact(), up to rounding, but faster for the flights that make up most
-/// of a run: away from one wall, across the cavity or back. It uses rules 1 to 4 and calls
-/// next_contact() in every case that they do not settle at once.
+/// The same contact as next_contact(), up to rounding, but faster for the most frequent flights;
+/// calls next_contact() for all others.
 std::optional<Contact> fast_contact(
     const Flow& flow, const FlightStart& start, double b, double limit,
     std::vector<GrazingPoint>& grazing);

@@ -3,21 +3,17 @@
 #include <algorithm>
 #include <array>
 #include <bit>
-#include <cmath>
-#include <cstdint>
 
-// All functions use the same method. The argument is reduced to a table point, whose function value
-// is known to twice the precision of double, and a small remainder r. The result is an exact large
-// part plus a small part in ordinary doubles, at most 2^-7 of it, so that the few roundings of the
-// small part contribute less than 2^-6 ulp. Each series ends where the first omitted term is below
-// 2^-62 of the result. The compiler computes the tables.
+// The argument is reduced to a table point, whose function value is known to twice the precision of
+// double, and a small remainder. The result is an exact large part plus a small part in ordinary
+// doubles, at most 2^-7 of it, whose roundings contribute less than 2^-6 ulp. Each series ends
+// where the first omitted term is below 2^-62 of the result. The compiler computes the tables.
 
 namespace vines::elementary {
 
 namespace {
 
-// Double-double arithmetic: unevaluated sums of two doubles, about 106 bits. It uses only + - * /,
-// so that results are the same on every machine and can be computed at compile time.
+// Double-double arithmetic: unevaluated sums of two doubles, about 106 bits.
 
 /// high + low, |low| at most half an ulp of high.
 struct DoubleDouble {
@@ -36,8 +32,7 @@ constexpr DoubleDouble exact_sum(double a, double b) {
     return {high, (a - (high - of_b)) + (b - of_b)};
 }
 
-/// The leading 26 bits of a number (Veltkamp's split); the remainder has at most 26 bits. Products
-/// of such parts are exact.
+/// The leading 26 bits of a number (Veltkamp's split); products of head and remainder are exact.
 constexpr double head_of(double a) {
     const double shifted = a * 0x8000001p0;
     return shifted - (shifted - a);
@@ -133,31 +128,19 @@ inline DoubleDouble log_parts(std::uint64_t bits, int k) {
     return {high, (low + (r_low + k * ln_2_on_grid.low + cell.logarithm.low)) + rest};
 }
 
-constexpr std::uint64_t least_normal = std::uint64_t{1} << mantissa_bits,
-                        bits_of_infinity = std::uint64_t{0x7ff} << mantissa_bits;
-
-bool is_positive_normal(std::uint64_t bits) {
-    return bits - least_normal < bits_of_infinity - least_normal;
-}
-
 /// The same for any positive finite number.
-DoubleDouble log_parts(double x) {
+inline DoubleDouble log_parts(double x) {
     const auto bits = std::bit_cast<std::uint64_t>(x);
-    return bits >= least_normal ? log_parts(bits, 0)
-                                : log_parts(std::bit_cast<std::uint64_t>(x * 0x1p54), 54);
+    return bits >> mantissa_bits > 0 ? log_parts(bits, 0)
+                                     : log_parts(std::bit_cast<std::uint64_t>(x * 0x1p54), 54);
 }
 
 }  // namespace
 
 double log(double x) {
-    const auto bits = std::bit_cast<std::uint64_t>(x);
-    if (!is_positive_normal(bits)) {
-        if (x == 0) return -infinity;
-        if (!(x > 0 && x < infinity)) return x > 0 ? x : nan;
-        const DoubleDouble parts = log_parts(x);
-        return parts.high + parts.low;
-    }
-    const DoubleDouble parts = log_parts(bits, 0);
+    if (x == 0) return -infinity;
+    if (!(x > 0 && x < infinity)) return x > 0 ? x : nan;
+    const DoubleDouble parts = log_parts(x);
     return parts.high + parts.low;
 }
 
@@ -235,14 +218,7 @@ constexpr int turn_steps = 64, right_angle = turn_steps / 4;
 constexpr double steps_per_radian = turn_steps / (2 * pi[0]);
 constexpr double angle_step[3] = {pi[0] / 32, pi[1] / 32, pi[2] / 32};
 
-/// A number as its leading 26 bits and the remainder.
-struct HeadAndRest {
-    double head = 0, rest = 0;
-    constexpr double value() const { return head + rest; }
-};
-
-/// Series of sin (first = 1) or cos (first = 0) up to pi/4: the term after the 14th is below
-/// 2^-107.
+/// Series of sin (first = 1) or cos (first = 0) up to pi/4, to 2^-107.
 constexpr DoubleDouble sine_series(const DoubleDouble& angle, int first) {
     const DoubleDouble minus_square = DoubleDouble{-1} * angle * angle;
     DoubleDouble sum = {1};
@@ -251,18 +227,19 @@ constexpr DoubleDouble sine_series(const DoubleDouble& angle, int first) {
     return first == 1 ? sum * angle : sum;
 }
 
+/// The high parts have 26 bits.
 constexpr auto sine_table = [] {
-    std::array<HeadAndRest, turn_steps> table;
+    std::array<DoubleDouble, turn_steps> table;
     for (int i = 0; i <= right_angle; ++i) {
         const bool near_0 = 2 * i <= right_angle;
         const DoubleDouble angle = DoubleDouble{angle_step[0], angle_step[1]} *
                                    DoubleDouble{1.0 * (near_0 ? i : right_angle - i)};
         const DoubleDouble sine = sine_series(angle, near_0 ? 1 : 0);
         const double head = head_of(sine.high);
-        const HeadAndRest entry = {head, (sine.high - head) + sine.low};
+        const DoubleDouble entry = {head, (sine.high - head) + sine.low};
         table[i] = table[2 * right_angle - i] = entry;
         for (const int k : {2 * right_angle + i, 4 * right_angle - i})
-            table[k % turn_steps] = i == 0 ? HeadAndRest{} : HeadAndRest{-entry.head, -entry.rest};
+            table[k % turn_steps] = i == 0 ? DoubleDouble{} : DoubleDouble{-entry.high, -entry.low};
     }
     return table;
 }();
@@ -272,8 +249,7 @@ struct ReducedAngle {
     DoubleDouble rest;  // |rest| <= step/2 = 0.0491
 };
 
-/// For fewer than 1024 steps, error 2^-95: products with 26-bit parts are exact, and so is the
-/// first difference because x is close to n steps.
+/// For fewer than 1024 steps, error 2^-95: products with 26-bit parts are exact.
 inline ReducedAngle less_few_steps(double x, double n) {
     constexpr double first = head_of(angle_step[0]), second = angle_step[0] - first;
     const DoubleDouble near = exact_sum(x - n * first, -n * second);
@@ -308,7 +284,7 @@ inline ReducedAngle reduced(double x) {
 /// sin(a + r) = sin a + r cos a + (sin r - r) cos a + (cos r - 1) sin a.
 inline double sine_at(std::int64_t steps, const DoubleDouble& r) {
     const auto at = [](std::int64_t k) { return sine_table[k & (turn_steps - 1)]; };
-    const HeadAndRest sine = at(steps), cosine = at(steps + right_angle);
+    const DoubleDouble sine = at(steps), cosine = at(steps + right_angle);
     const double r_head = head_of(r.high), r_rest = (r.high - r_head) + r.low,
                  square = r.high * r.high;
     // sin(r)/r - 1, cos(r) - 1
@@ -317,9 +293,10 @@ inline double sine_at(std::int64_t steps, const DoubleDouble& r) {
     const double cosine_less =
         square * (-1. / 2 + square * (1. / 24 + square * (-1. / 720 + square / 40320)));
     // sin a is 0 or the larger term.
-    const DoubleDouble large = ordered_sum(sine.head, cosine.head * r_head);
-    const double small = sine.rest + cosine.head * r_rest + cosine.rest * r.high +
-                         cosine.value() * (r.high * sine_less) + sine.value() * cosine_less;
+    const DoubleDouble large = ordered_sum(sine.high, cosine.high * r_head);
+    const double small = sine.low + cosine.high * r_rest + cosine.low * r.high +
+                         (cosine.high + cosine.low) * (r.high * sine_less) +
+                         (sine.high + sine.low) * cosine_less;
     return large.high + (large.low + small);
 }
 

@@ -31,9 +31,8 @@ double exp(double x);
 /// x^y for x >= 0, otherwise NaN; error below 0.51 + |y|/2^15 ulp.
 double pow(double x, double y);
 
-/// x in radians. Error below 0.51 ulp for |x| up to 2^31, plus 1e-30 up to 2^47. Beyond that, where
-/// neighbouring doubles are more than a thousandth of a revolution apart, x is reduced modulo the
-/// double next to 2 pi.
+/// x in radians. Error below 0.51 ulp for |x| up to 2^31, plus 1e-30 up to 2^47. Beyond that x is
+/// reduced modulo the double next to 2 pi.
 double sin(double x);
 double cos(double x);
 
@@ -44,9 +43,9 @@ double atan(double x);
 /// sqrt(x^2 + y^2); error below 0.51 ulp unless subnormal.
 double hypot(double x, double y);
 
-/// Modulus of a complex number; std::abs calls the C library.
 /// exp(i angle).
 inline std::complex<double> phasor(double angle) { return {cos(angle), sin(angle)}; }
+/// Modulus of a complex number; std::abs calls the C library.
 inline double modulus(const std::complex<double>& z) { return hypot(z.real(), z.imag()); }
 
 }  // namespace vines::elementary

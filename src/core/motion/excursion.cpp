@@ -11,9 +11,8 @@ namespace {
 
 bool signs_differ(double a, double b) { return (a < 0) != (b < 0); }
 
-/// x at the zero of x' in 0 < d < width from `left`; x' has opposite signs at the two ends and x''
-/// has one sign between them. Newton iteration with an acceleration accurate to 1e-5; the last step
-/// follows the parabola, whose relative error is 1e-18.
+/// x at the zero of x' in 0 < d < width; x' changes its sign there and x'' does not. Newton
+/// iteration; the last step follows the parabola, whose relative error is 1e-18.
 double extremum_value(const Flow& flow, const Oscillation& left, double width, double x_dot_end) {
     constexpr double last_step = 1e-5;
     const Flow::ShortSeries series = flow.short_series(left);
@@ -29,8 +28,7 @@ double extremum_value(const Flow& flow, const Oscillation& left, double width, d
     }
 }
 
-/// Visits the extrema of x in a cell or part of a cell, from `left` to `right`: at most one, or two
-/// if x'' changes sign in between.
+/// Visits the extrema of x from `left` to `right`: one at most, two if x'' changes its sign.
 template <class Visit>
 void visit_extrema(
     const Flow& flow, const Oscillation& left, double width, const Oscillation& right,
@@ -59,106 +57,95 @@ void visit_extrema(
 }
 
 /// Search for the peak over one grid length: the motion from o, for at most the reach of the flow.
-class PeakSearch {
-public:
-    PeakSearch(double known, const Flow& flow, const Oscillation& o, double part)
-        : known_(std::max(known, std::abs(o.x))),
-          flow_(flow),
-          o_(o),
-          h_(flow.cell()),
-          part_(part),
-          cells_(std::min(static_cast<int>(part / h_), Flow::cells)),
-          bounds_(flow.bounds(o, part)) {}
+struct PeakSearch {
+    const Flow& flow;
+    const Oscillation& o;
+    double part;
+    double known;
+    double h = flow.cell();
+    int cells = std::min(static_cast<int>(part / h), Flow::cells);
+    Flow::Bounds bounds = flow.bounds(o, part);
 
     double peak() {
-        if (bounds_.x <= known_) return known_;
-        // x differs from its chord over a width w by at most M2 w^2/8. The search narrows down from
-        // blocks of cells to cells to the extremum inside a cell.
-        const double width = Flow::block * h_, more = bounds_.x_ddot * (width * width / 8);
-        double left = o_.x;
-        const int blocks = cells_ / Flow::block;
+        known = std::max(known, std::abs(o.x));
+        if (bounds.x <= known) return known;
+        // By rule 1 of contact_search.hpp, from blocks of cells to cells to an extremum in a cell.
+        const double width = Flow::block * h, more = bounds.x_ddot * (width * width / 8);
+        double left = o.x;
+        const int blocks = cells / Flow::block;
         for (int from = 0; from < blocks; from += Flow::block) {
-            const Flow::Block ends = flow_.relative_positions_apart(o_, 0, 0, from);
+            const Flow::Block ends = flow.block_ends.relative_positions(o, 0, 0, from);
             for (int i = 0; i < Flow::block && from + i < blocks; ++i) {
-                if (std::max(std::abs(left), std::abs(ends[i])) + more > known_)
+                if (std::max(std::abs(left), std::abs(ends[i])) + more > known)
                     search_block((from + i) * Flow::block, left, ends[i], more);
                 left = ends[i];
             }
         }
-        if (cells_ % Flow::block != 0)
-            search_cells(blocks * Flow::block, left, cells_ % Flow::block);
+        if (cells % Flow::block != 0) search_cells(blocks * Flow::block, left, cells % Flow::block);
         search_remainder();
-        return known_;
+        return known;
     }
 
-private:
     /// Far from the middle the spring force dominates: x'' has no zero there, and x' at most one.
     void search_block(int from, double left, double right, double more) {
-        const double stiffness = flow_.coefficients()[0],
-                     rest = bounds_.x_ddot - stiffness * bounds_.x,
+        const double stiffness = flow.coefficients()[0],
+                     rest = bounds.x_ddot - stiffness * bounds.x,
                      least = std::min(std::abs(left), std::abs(right)) - more;
         if (signs_differ(left, right) || stiffness * least <= rest)
             return search_cells(from, left, Flow::block);
-        known_ = std::max({known_, std::abs(left), std::abs(right)});
-        double before = flow_.speed_at(o_, from);
-        if (!signs_differ(before, flow_.speed_at(o_, from + Flow::block))) return;
+        known = std::max({known, std::abs(left), std::abs(right)});
+        double before = flow.speed_at(o, from);
+        if (!signs_differ(before, flow.speed_at(o, from + Flow::block))) return;
         for (int k = from + 1; k <= from + Flow::block; ++k) {
-            const double now = flow_.speed_at(o_, k);
-            if (signs_differ(before, now)) return single_extremum(flow_.roughly_at(o_, k - 1), now);
+            const double now = flow.speed_at(o, k);
+            if (signs_differ(before, now)) {
+                // The motion goes no further than with its present speed.
+                const Oscillation o_left = flow.roughly_at(o, k - 1);
+                if (std::abs(o_left.x) + std::abs(o_left.x_dot) * h > known)
+                    visit(extremum_value(flow, o_left, h, now));
+                return;
+            }
             before = now;
         }
     }
 
-    /// A cell in which x' falls to zero: the motion goes no further than with its present speed.
-    void single_extremum(const Oscillation& left, double x_dot_end) {
-        if (std::abs(left.x) + std::abs(left.x_dot) * h_ > known_)
-            visit(extremum_value(flow_, left, h_, x_dot_end));
-    }
-
     void search_cells(int from, double left, int count) {
-        const Flow::Block ends = flow_.relative_positions(o_, 0, 0, from + 1);
-        const double more = bounds_.x_ddot * (h_ * h_ / 8);
+        const Flow::Block ends = flow.grid.relative_positions(o, 0, 0, from + 1);
+        const double more = bounds.x_ddot * (h * h / 8);
         for (int i = 0; i < count; ++i) {
             visit(ends[i]);
-            if (std::max(std::abs(left), std::abs(ends[i])) + more > known_)
-                extrema(flow_.roughly_at(o_, from + i), h_, flow_.roughly_at(o_, from + i + 1));
+            if (std::max(std::abs(left), std::abs(ends[i])) + more > known)
+                extrema(flow.roughly_at(o, from + i), h, flow.roughly_at(o, from + i + 1));
             left = ends[i];
         }
     }
 
     /// The part after the last whole cell.
     void search_remainder() {
-        const double d = part_ - cells_ * h_;
+        const double d = part - cells * h;
         if (!(d > 0)) return;
-        const Oscillation left = flow_.roughly_at(o_, cells_);
-        if (std::abs(left.x) + d * (std::abs(left.x_dot) + 0.5 * d * bounds_.x_ddot) <= known_)
+        const Oscillation left = flow.roughly_at(o, cells);
+        if (std::abs(left.x) + d * (std::abs(left.x_dot) + 0.5 * d * bounds.x_ddot) <= known)
             return;
-        const Oscillation right = flow_.after(left, d);
+        const Oscillation right = flow.after(left, d);
         visit(right.x);
         extrema(left, d, right);
     }
 
     void extrema(const Oscillation& left, double width, const Oscillation& right) {
-        visit_extrema(flow_, left, width, right, [this](double x) { visit(x); });
+        visit_extrema(flow, left, width, right, [this](double x) { visit(x); });
     }
-    void visit(double x) { known_ = std::max(known_, std::abs(x)); }
-
-    double known_;
-    const Flow& flow_;
-    const Oscillation& o_;
-    const double h_, part_;
-    const int cells_;
-    const Flow::Bounds bounds_;
+    void visit(double x) { known = std::max(known, std::abs(x)); }
 };
 
 }  // namespace
 
 double peak_beyond(double known, const Flow& flow, Oscillation o, double duration) {
     for (; duration > flow.reach(); duration -= flow.reach()) {
-        known = PeakSearch(known, flow, o, flow.reach()).peak();
+        known = PeakSearch{flow, o, flow.reach(), known}.peak();
         o = flow.at(o, Flow::cells);
     }
-    return PeakSearch(known, flow, o, std::max(0.0, duration)).peak();
+    return PeakSearch{flow, o, std::max(0.0, duration), known}.peak();
 }
 
 double peak_beyond(

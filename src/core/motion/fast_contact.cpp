@@ -8,9 +8,8 @@ namespace vines {
 
 namespace {
 
-// Last Halley step, relative to a cell (1.5e-7 absolute): the state is carried over it by its
-// Taylor polynomial of second order. The curvature is accurate to 5e-4, so that the error of the
-// step is below (1.5e-7)^2 5e-4 = 1e-17.
+// Last Halley step, relative to a cell: the state is carried over it by its Taylor polynomial of
+// second order, and the curvature leaves an error of (1.5e-7)^2 5e-4 = 1e-17.
 constexpr double little_step = 1e-6;
 // Maximum number of steps to find a crossing; after that next_contact() takes over.
 constexpr int most_crossing_steps = 4;
@@ -21,8 +20,7 @@ constexpr int near_size = 8;
 constexpr double inverse_factorial[near_size] = {1,        1,         1.0 / 2,   1.0 / 6,
                                                  1.0 / 24, 1.0 / 120, 1.0 / 720, 1.0 / 5040};
 
-/// Flow::short_series() for |d| <= near_reach h, from the derivatives: near_size coefficients, then
-/// zeros. The remainder is below 1e-20 of the motion.
+/// Flow::short_series() for |d| <= near_reach h, from the derivatives, to 1e-20 of the motion.
 Flow::ShortSeries near_series(const Flow& flow, const Oscillation& o) {
     const auto [stiffness, damping, forcing, Omega] = flow.coefficients();
     Flow::ShortSeries s{Flow::ShortCoefficients::Zero(), Flow::ShortCoefficients::Zero()};
@@ -39,8 +37,7 @@ Flow::ShortSeries near_series(const Flow& flow, const Oscillation& o) {
     return s;
 }
 
-/// True for a ball that flies straight or under a constant force, and begins between the walls,
-/// leaves a wall or is released from it.
+/// True for a ball under no or a constant force, between the walls, leaving one or released.
 bool is_simple(const FlightStart& start) {
     return !start.shift && (start.side == 0 || start.zeros == 3 ||
                             (start.zeros == 1 && start.side * start.relative_speed < 0));
@@ -53,30 +50,17 @@ enum class SearchResult { contact, none, undecided };
 template <bool bends>
 struct FastSearch {
     const Flow& flow;
-    bool leaves_wall, is_released;
-    double mirror, b, limit;
-    double w;  // relative speed away from the wall
-    double y, y_dot, y_2;
-    Oscillation lo;
-    double h, M2, M3, eta;
-
-    FastSearch(const Flow& f, const FlightStart& start, double half_width, double until)
-        : flow(f),
-          leaves_wall(start.side != 0),
-          is_released(start.zeros == 3),
-          mirror(leaves_wall ? start.side : 1),
-          b(half_width),
-          limit(until),
-          w(-mirror * start.relative_speed),
-          y(mirror * start.y),
-          y_dot(mirror * start.y_dot),
-          y_2(mirror * start.y_2),
-          lo(mirrored(start.lo)),
-          h(f.cell()) {
-        const Flow::Bounds bounds = f.bounds(lo);
-        M2 = bounds.x_ddot + 2 * std::abs(y_2), M3 = bounds.x_dddot;
-        eta = position_rounding(bounds, std::abs(y) + limit * limit * std::abs(y_2), b);
-    }
+    const FlightStart& start;
+    double b, limit;
+    bool leaves_wall = start.side != 0, is_released = start.zeros == 3;
+    double mirror = leaves_wall ? start.side : 1;
+    double w = -mirror * start.relative_speed;  // away from the wall
+    double y = mirror * start.y, y_dot = mirror * start.y_dot, y_2 = mirror * start.y_2;
+    Oscillation lo = mirrored(start.lo);
+    double h = flow.cell();
+    Flow::Bounds bounds = flow.bounds(lo);
+    double M2 = bounds.x_ddot + 2 * std::abs(y_2), M3 = bounds.x_dddot;
+    double eta = position_rounding(bounds, std::abs(y) + limit * limit * std::abs(y_2), b);
 
     // A straight flight takes the shorter terms: the search is the most frequent step of a run.
     double y_dot_at(double s) const {
@@ -118,8 +102,8 @@ struct FastSearch {
         double left = leaves_wall ? b : lo.x - y;  // x - y at a block's left end
         bool left_inside = std::abs(left) < least;
         for (int from = 0; from < blocks; from += Flow::block) {
-            Flow::Block ends = flow.relative_positions_apart(lo, y, y_dot, from);
-            if constexpr (bends) ends -= y_2 * flow.squared_times_apart(from);
+            Flow::Block ends = flow.block_ends.relative_positions(lo, y, y_dot, from);
+            if constexpr (bends) ends -= y_2 * flow.block_ends.squared_times(from);
             for (int i = 0; i < Flow::block && from + i < blocks; ++i) {
                 const double right = ends[i];
                 const bool right_inside = std::abs(right) < least;
@@ -138,8 +122,8 @@ struct FastSearch {
 
     SearchResult search_block(int block, double left, std::optional<Contact>& contact) const {
         const int from = Flow::block * block;
-        Flow::Block ends = flow.relative_positions(lo, y, y_dot, from + 1);
-        if constexpr (bends) ends -= y_2 * flow.squared_times(from + 1);
+        Flow::Block ends = flow.grid.relative_positions(lo, y, y_dot, from + 1);
+        if constexpr (bends) ends -= y_2 * flow.grid.squared_times(from + 1);
         const double least = inside(h);
         if (from == 0 && !leaves_wall && std::abs(left) >= b - eta) return SearchResult::undecided;
         // A faster flight is soon so far from the wall that rule 1 applies.
@@ -173,14 +157,12 @@ struct FastSearch {
         return -3 * flow.jerk(lo) / M4;
     }
 
-    /// True if x - y or y - x rises throughout a cell, given its first two derivatives at the left
-    /// end.
+    /// True if a function with these derivatives at the left end rises throughout a cell.
     bool rises(double first, double second) const {
         return first + std::min(0.0, second * h) > 0.5 * M3 * (h * h);
     }
 
-    /// True if there is no contact in cell k, given that there is none at its ends: x - y is
-    /// monotone, or rule 1 holds with the curvature in this cell.
+    /// True if a cell without contacts at its ends has none: by monotony, or by rule 1.
     bool is_empty(int k, double left, double right) const {
         const Oscillation o = flow.roughly_at(lo, k);
         const double rate = o.x_dot - y_dot_at(k * h);
@@ -192,9 +174,8 @@ struct FastSearch {
                std::min(wall * left, wall * right) > -inside(h);
     }
 
-    /// The contact in cell k if x - y is monotone there: the most common case of rule 4. A
-    /// contact at the right grid point, as happens where half a cycle is a multiple of h, can be
-    /// found one rounding error beyond it.
+    /// The contact in cell k if x - y is monotone there: the most common case of rule 4. A contact
+    /// at the right grid point can be found one rounding error beyond it.
     SearchResult crossing(int k, double left, double right, std::optional<Contact>& contact) const {
         const double wall = right > 0 ? 1 : -1, f0 = wall * left - b, fh = wall * right - b;
         const Oscillation o = flow.roughly_at(lo, k);
@@ -203,9 +184,8 @@ struct FastSearch {
                      f3 = (1.0 / 6) * wall * jerk, f4 = (1.0 / 24) * wall * snap;
         if (!rises(f1, 2 * f2) || f0 >= 0) return SearchResult::undecided;
 
-        // Root of the chord, corrected for curvature; one step on the quartic about the left end of
-        // the cell, with a fifth term so that it matches f(h), which leaves an error of about 1e-8
-        // h; then a step on the full series.
+        // Root of the chord, corrected for curvature; one step on the quartic about the left end,
+        // with a fifth term so that it matches f(h), to about 1e-8 h; then a step on the series.
         const double per_h = 1 / h, slope = (fh - f0) * per_h, inverse_slope = 1 / slope;
         const double f5 = ((((slope - f1) * per_h - f2) * per_h - f3) * per_h - f4) * per_h;
         double d = -f0 * inverse_slope;
@@ -241,8 +221,7 @@ struct FastSearch {
         return SearchResult::undecided;
     }
 
-    /// The first cell of a flight that may return to its wall there. With f = x - y - b = s phi(s)
-    /// there is at most one contact where phi rises. phi'(0) = a/2 and |phi''| <= M3/3.
+    /// The first cell of a flight that may return to its wall there, at most once if phi rises.
     SearchResult search_first(double right, std::optional<Contact>& contact) const {
         const double a = relative_acceleration(lo);
         if (is_released || !(3 * a > 2 * M3 * h)) return SearchResult::undecided;
@@ -250,12 +229,10 @@ struct FastSearch {
         return right < b + eta ? SearchResult::undecided : return_within(h, a, contact);
     }
 
-    /// True for a flight in a chatter: the conditions of CellSearch::chatter() prove that it
-    /// returns within D = 4 w/a.
+    /// True if CellSearch::chatter() proves a return within D = 4 w/a.
     bool is_in_chatter(double a) const { return 4 * w <= a * h && 4 * w * M3 < a * a; }
 
-    /// The return to the wall within D, where f = x - y - b = s phi(s) rises through 0 once;
-    /// a = f''(0) > 0.
+    /// The return within D, where f = x - y - b = s phi(s) rises through 0 once; a = f''(0) > 0.
     SearchResult return_within(double D, double a, std::optional<Contact>& contact) const {
         if (D * (w + M2 * D) >= b) return SearchResult::undecided;
         const bool is_near = D <= near_reach * h;
@@ -299,7 +276,7 @@ std::optional<Contact> fast_contact(
     std::optional<Contact> contact;
     // Through a function: with both searches in this one a run takes 2 % longer.
     const auto search = [&]<bool bends>(std::bool_constant<bends>) {
-        return FastSearch<bends>(flow, start, b, limit).search(contact);
+        return FastSearch<bends>{flow, start, b, limit}.search(contact);
     };
     if (!is_simple(start) || (start.y_2 == 0 ? search(std::false_type())
                                              : search(std::true_type())) == SearchResult::undecided)

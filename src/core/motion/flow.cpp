@@ -2,19 +2,16 @@
 
 #include <algorithm>
 #include <cassert>
-#include <cmath>
 #include <numbers>
 
 namespace vines {
 
 namespace {
 
-// 42 cells per period (2 pi/h) keep the empty-cell proof of contact_search.hpp sharp: its margin M2
-// h^2/8 is 0.3 % of the amplitude.
+// Keeps rule 1 of contact_search.hpp sharp: its margin M2 h^2/8 is 0.3 % of the amplitude.
 constexpr double cells_per_period = 42;
 
-// Taylor terms of the flow over a cell; its width times the fastest rate is 0.15, and the first
-// omitted term is below 1e-49.
+// Taylor terms of the flow over a cell; the first omitted one is below 1e-49.
 constexpr int cell_terms = 26;
 
 // Extended precision makes the tables accurate to the last ulp of double.
@@ -99,20 +96,15 @@ Flow::Flow(double stiffness, double damping, double forcing, double Omega)
         for (int n = 0; n < 2 * short_pairs; ++n)
             part->near.x_dot[n] = (n + 1) * part->series[n + 1];
     }
-    for (std::size_t k = 0; k < columns; ++k) {
-        for (std::size_t j = 0; j < 4; ++j) parts[j]->x[k] = (double)growth.motion[j][0];
-        time_[k] = static_cast<double>(k) * cell_;
-        if (k > 0 && k % block == 0) {
-            for (Response* part : parts) part->x_apart[k / block - 1] = part->x[k];
-            time_apart_[k / block - 1] = time_[k];
-        }
-        if (k <= cells) {
-            Row& row = rows_[k];
-            for (std::size_t j = 0; j < 4; ++j)
-                row.x[j] = parts[j]->x[k], row.x_dot[j] = (double)growth.motion[j][1];
-            row.cos = (double)growth.cos, row.sin = (double)growth.sin;
-        }
-        growth = advanced(growth, cell);
+    for (std::size_t k = 0; k < columns; ++k, growth = advanced(growth, cell)) {
+        Row row;
+        for (std::size_t j = 0; j < 4; ++j)
+            row.x[j] = (double)growth.motion[j][0], row.x_dot[j] = (double)growth.motion[j][1];
+        row.cos = (double)growth.cos, row.sin = (double)growth.sin;
+        const double time = static_cast<double>(k) * cell_;
+        grid.set(k, time, row.x);
+        if (k > 0 && k % block == 0) block_ends.set(k / block - 1, time, row.x);
+        if (k <= cells) rows_[k] = row;
     }
 }
 
@@ -129,26 +121,10 @@ Flow::Coefficients sticking_coefficients(const Parameters& p) {
     return {1 / mass, 2 * p.zeta() / mass, p.epsilon * p.A() / mass, p.Omega};
 }
 
-Flow of(const Flow::Coefficients& c) { return Flow(c[0], c[1], c[2], c[3]); }
-
 std::shared_ptr<const Flow> shared(const Flow::Coefficients& c) {
     thread_local SmallCache<Flow::Coefficients, Flow> flows;
-    return flows.get(c, [&c] { return of(c); });
+    return flows.get(c, [&c] { return Flow(c[0], c[1], c[2], c[3]); });
 }
-
-}  // namespace
-
-Flow Flow::free(const Parameters& p) { return of(free_coefficients(p)); }
-Flow Flow::sticking(const Parameters& p) { return of(sticking_coefficients(p)); }
-
-std::shared_ptr<const Flow> Flow::shared_free(const Parameters& p) {
-    return shared(free_coefficients(p));
-}
-std::shared_ptr<const Flow> Flow::shared_sticking(const Parameters& p) {
-    return shared(sticking_coefficients(p));
-}
-
-namespace {
 
 /// One Newton step keeps the phasor's length at 1 over millions of rotations.
 void keep_length(Oscillation& o) {
@@ -158,6 +134,13 @@ void keep_length(Oscillation& o) {
 }
 
 }  // namespace
+
+std::shared_ptr<const Flow> Flow::shared_free(const Parameters& p) {
+    return shared(free_coefficients(p));
+}
+std::shared_ptr<const Flow> Flow::shared_sticking(const Parameters& p) {
+    return shared(sticking_coefficients(p));
+}
 
 Oscillation Flow::at(const Oscillation& o, int k) const {
     assert(k >= 0 && k <= cells);
@@ -238,8 +221,7 @@ Transfer Flow::transfer(double s) const {
     for (; s >= reach(); s -= reach()) ++reaches;
     const int k = static_cast<int>(s / cell_);
     const double d = std::max(0.0, s - k * cell_);
-    // In a cell: if u is the unforced motion from (x', x) = (1, 0), that from (0, 1) is u' +
-    // damping u.
+    // In a cell: if u is the motion from (x', x) = (1, 0), u' + damping u is that from (0, 1).
     const auto [u, u_dot] = of_x_dot_.near.at(d);
     Transfer j = after({u_dot, -stiffness_ * u, u, u_dot + damping_ * u}, row(k));
     for (; reaches > 0; --reaches) j = after(j, row(cells));

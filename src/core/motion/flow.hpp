@@ -1,12 +1,10 @@
 // Motion between events: a harmonically forced linear oscillator, alone (free) or with the ball at
 // rest on its wall (sticking), as a function of the time s since the last event.
 //
-// Instead of the closed form (8)-(11), which divides by omega_d and by the distance to resonance,
-// the flow is stored as the exponential of the matrix of (x, x', sin theta, cos theta): a table on
-// a grid of s, and a Taylor series within a cell. It equals the closed form to the last ulp for
-// every zeta >= 0 and every Omega: undamped, at resonance (secular growth), critically damped and
-// overdamped motion need no special case. Absolute time does not occur; the forcing phase is the
-// phasor (sin theta, cos theta) and is thereby reduced modulo 2 pi.
+// The flow is stored as the exponential of the matrix of (x, x', sin theta, cos theta): a table on
+// a grid of s, and a Taylor series within a cell. It equals the closed form (8)-(11) to the last
+// ulp for every zeta >= 0 and every Omega, without special cases: (8)-(11) divide by omega_d and by
+// the distance to resonance. Absolute time does not occur; the forcing phase is a phasor.
 #pragma once
 
 #include <Eigen/Core>
@@ -114,13 +112,10 @@ public:
 
     Flow(double stiffness, double damping, double forcing, double Omega);
 
-    /// The oscillator of eq. (2), while the ball flies freely.
-    static Flow free(const Parameters& parameters);
-    /// Both masses moving as one: (1 + epsilon) x'' + 2 zeta x' + x = epsilon A sin(theta).
-    static Flow sticking(const Parameters& parameters);
-
-    /// The same from the thread's cache: one table serves all systems of equal forcing and damping.
+    /// The oscillator of eq. (2), while the ball flies freely. Flows come from the thread's cache:
+    /// one table serves all systems of equal forcing and damping.
     static std::shared_ptr<const Flow> shared_free(const Parameters& parameters);
+    /// Both masses moving as one: (1 + epsilon) x'' + 2 zeta x' + x = epsilon A sin(theta).
     static std::shared_ptr<const Flow> shared_sticking(const Parameters& parameters);
 
     static Coefficients free_coefficients(const Parameters& parameters);
@@ -146,38 +141,41 @@ public:
                forcing_ * Omega_ * Omega_ * o.sin_theta;
     }
 
-    /// x - y at the grid times k h, ..., (k + block - 1) h, for y = y0 + y_dot s: five
-    /// multiply-adds each. k <= cells.
-    Block relative_positions(const Oscillation& o, double y0, double y_dot, int k) const {
-        const auto from = [k](const auto& column) {
-            return Eigen::Map<const Block>(column.data() + k);
-        };
-        return from(of_x_.x) * o.x + from(of_x_dot_.x) * o.x_dot + from(of_sin_.x) * o.sin_theta +
-               from(of_cos_.x) * o.cos_theta - (y0 + from(time_) * y_dot);
-    }
-    /// The same for a curved path of the ball.
+    /// Grid times, and the responses of x at these times to each part of the state with size 1.
+    template <std::size_t size>
+    struct Columns {
+        std::array<double, size> time, x, x_dot, sin, cos;
+
+        void set(std::size_t k, double at, const std::array<double, 4>& responses) {
+            time[k] = at;
+            x[k] = responses[0], x_dot[k] = responses[1], sin[k] = responses[2],
+            cos[k] = responses[3];
+        }
+        /// x - y at the times k, ..., k + block - 1 for y = y0 + y_dot s: five multiply-adds each.
+        Block relative_positions(const Oscillation& o, double y0, double y_dot, int k) const {
+            const auto from = [k](const auto& column) {
+                return Eigen::Map<const Block>(column.data() + k);
+            };
+            return from(x) * o.x + from(x_dot) * o.x_dot + from(sin) * o.sin_theta +
+                   from(cos) * o.cos_theta - (y0 + from(time) * y_dot);
+        }
+        Block squared_times(int k) const {
+            return Eigen::Map<const Block>(time.data() + k).square();
+        }
+    };
+    // Long enough for a block that begins at the last grid time or block end.
+    static constexpr std::size_t columns = cells + block * block + 1;
+    Columns<columns> grid;                ///< at 0, h, 2 h, ...
+    Columns<columns / block> block_ends;  ///< at block h, 2 block h, ...
+
+    /// Columns::relative_positions() on the grid for a curved path of the ball.
     Block relative_positions(const Oscillation& o, const Polynomial& y, int k) const {
-        Block g = relative_positions(o, y[0], y[1], k);
+        Block g = grid.relative_positions(o, y[0], y[1], k);
         if (y.size <= 2) return g;
-        const auto time = Eigen::Map<const Block>(time_.data() + k);
+        const auto time = Eigen::Map<const Block>(grid.time.data() + k);
         Block curved = Block::Zero();
         for (int n = y.size - 1; n >= 2; --n) curved = curved * time + y[n];
         return g - time * time * curved;
-    }
-    /// The same at the ends of blocks j, j + 1, ... (from 0): at the grid times block (j + 1) h,
-    /// block (j + 2) h, ... j <= cells/block.
-    Block relative_positions_apart(const Oscillation& o, double y0, double y_dot, int j) const {
-        const auto from = [j](const auto& column) {
-            return Eigen::Map<const Block>(column.data() + j);
-        };
-        return from(of_x_.x_apart) * o.x + from(of_x_dot_.x_apart) * o.x_dot +
-               from(of_sin_.x_apart) * o.sin_theta + from(of_cos_.x_apart) * o.cos_theta -
-               (y0 + from(time_apart_) * y_dot);
-    }
-    /// Squares of the same grid times.
-    Block squared_times(int k) const { return Eigen::Map<const Block>(time_.data() + k).square(); }
-    Block squared_times_apart(int j) const {
-        return Eigen::Map<const Block>(time_apart_.data() + j).square();
     }
     /// The full state at grid time k h.
     Oscillation at(const Oscillation& o, int k) const;
@@ -201,8 +199,7 @@ public:
         return of_x_.series * o.x + of_x_dot_.series * o.x_dot + of_sin_.series * o.sin_theta +
                of_cos_.series * o.cos_theta;
     }
-    /// The same, shorter: coefficients of x and x' in pairs of an even and an odd power, for |d| <=
-    /// h. Remainders below 1e-18 of the motion.
+    /// The same, shorter, to 1e-18 of the motion: coefficients in pairs of even and odd powers.
     static constexpr int short_pairs = 6;
     using ShortCoefficients = Eigen::Array<double, 2 * short_pairs, 1>;
     struct ShortSeries {
@@ -243,8 +240,8 @@ public:
     /// The transfer matrix over any s >= 0, eq. (19).
     Transfer transfer(double s) const;
 
-    /// Upper bounds of |x|, |x''| and |x'''| over the reach, or over `time`, from the growth of the
-    /// energy: sqrt(stiffness x^2 + x'^2) grows no faster than |forcing|, for any damping >= 0.
+    /// Upper bounds over the reach, or over `time`, from the growth of the energy: sqrt(stiffness
+    /// x^2 + x'^2) grows no faster than |forcing|, for any damping >= 0.
     struct Bounds {
         double x, x_ddot, x_dddot;
     };
@@ -262,22 +259,12 @@ private:
     double stiffness_, damping_, forcing_, Omega_;
     double cell_;  // h
     double inverse_root_stiffness_, fastest_decay_;
-    // The tables extend past the last cell, where a block of grid points or of block ends can
-    // begin.
-    static constexpr std::size_t columns = cells + block * block + 1,
-                                 columns_apart = columns / block;
-    // Response to one part of the state with size 1: x at the grid times k h, and the Taylor
-    // coefficients of x within a cell. A motion is the sum of the responses to its four parts.
+    // Taylor coefficients of x within a cell, as response to one part of the state with size 1.
     struct Response {
-        std::array<double, columns> x;
-        std::array<double, columns_apart> x_apart;
         TaylorSeries series;
         ShortSeries near;
     };
     Response of_x_, of_x_dot_, of_sin_, of_cos_;
-    // Grid times.
-    std::array<double, columns> time_;
-    std::array<double, columns_apart> time_apart_;
     // Responses of x and x' to the four parts by grid time, and the rotation of the phasor.
     struct Row {
         std::array<double, 4> x, x_dot;
@@ -292,8 +279,7 @@ struct SeriesValue {
 };
 SeriesValue value_at(const Flow::TaylorSeries& series, double d);
 
-/// max(known, max |x|) over 0 <= s <= duration, in m. Where a bound on |x| shows that `known` is
-/// not exceeded, no maximum is searched for: in a long run that is most of the time.
+/// max(known, max |x|) over 0 <= s <= duration, m. In most of a long run a bound settles it.
 double peak_beyond(double known, const Flow& flow, Oscillation start, double duration);
 
 /// The same of the motion of a flow plus a polynomial.

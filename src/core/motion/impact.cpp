@@ -32,14 +32,11 @@ Impact impact_at(
     i.x_ddot_before = x_ddot;
     i.y_ddot_before = y_ddot;
     i.R = R;
-    // At the contact side (x - y) is b + w s - |a| s^2/2 if a = x'' - y'' reverses it: depth w^2/(2
-    // |a|).
+    // If a = x'' - y'' reverses side (x - y), b + w s - |a| s^2/2, its depth is w^2/(2 |a|).
     const double a = x_ddot - y_ddot;
     i.grazing = contact.side * a < 0 && w * w < 2 * std::abs(a) * grazing_depth * p.b;
     return i;
 }
-
-Eigen::Vector4d wall_normal() { return {0, 1, 0, -1}; }
 
 // S, eq. (25): the impact as a linear map of (x', x, y', y); positions are unchanged.
 Matrix4 Saltation::S() const {

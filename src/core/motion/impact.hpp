@@ -37,13 +37,11 @@ struct Impact {
 /// The ball comes to rest relative to the oscillator while it slides.
 struct Slip {
     double tau;
-    /// x'' - y'' after it over that before it, by which deviations of x' - y' change; 0 if the ball
-    /// then rests inside the cavity.
+    /// x'' - y'' after it over that before; 0 if the ball then rests inside the cavity.
     double ratio;
 };
 
-/// An impact counts as grazing if, without the wall, the ball would have passed the wall by less
-/// than this fraction of b and turned back.
+/// Depth, in units of b, below which the ball would have turned back at a grazing impact.
 inline constexpr double grazing_depth = 1e-9;
 
 /// The impact at a contact, eq. (4): conserves x' + epsilon y', reverses x' - y' with factor R.
@@ -52,13 +50,11 @@ Impact impact_at(
     double y_ddot = 0);
 
 /// M = S + r g^T with g^T = [0 1 0 -1] (23) and r = (f+ - S f-)/(g^T f-), eq. (27), where S is the
-/// derivative of the impact law (25). Stored by its factors, because the entries of r grow without
-/// bound towards grazing while every determinant of M is linear in them.
+/// derivative of the impact law (25). Stored by its factors: every determinant is linear in them.
 struct Saltation {
     double R;        ///< factor for x - y
     double R_speed;  ///< factor for x' - y': d(R w)/dw, R for a constant R
-    /// (1 + R) epsilon/(1 + epsilon) and (1 + R)/(1 + epsilon): velocities jump by these times
-    /// x' - y'.
+    /// (1 + R) epsilon/(1 + epsilon) and (1 + R)/(1 + epsilon): jumps of velocities over x' - y'.
     double jump_x, jump_y;
     double jump_x_dot, jump_y_dot;  ///< the same with R_speed, for deviations of the velocities
     double r_x, r_y;                ///< entries 0 and 2 of r; they contain x''/(x'- - y'-)
@@ -80,16 +76,14 @@ struct Saltation {
         out.row(3) = d.row(3) + jump_y * gap;
         return out;
     }
-    /// Condition number in the Frobenius norm: the largest factor by which M magnifies a relative
-    /// error. It grows as (x''/(x'- - y'-))^2 towards grazing; infinite for R = 0.
+    /// Condition number in the Frobenius norm; grows as (x''/(x'- - y'-))^2, infinite for R = 0.
     double condition() const;
 };
 
 /// The vector g of eq. (23): d(x - y)/dPhi, normal to both walls in state space.
-Eigen::Vector4d wall_normal();
+inline Eigen::Vector4d wall_normal() { return {0, 1, 0, -1}; }
 
-/// Saltation matrix of a slip: multiplies deviations of x' - y' by `ratio`, and leaves those of the
-/// positions and of the centre of mass unchanged.
+/// Multiplies deviations of x' - y' by `ratio`; those of positions and centre of mass stay.
 Saltation saltation(double epsilon, const Slip& slip);
 
 /// Saltation matrix of an impact. M has eigenvalues of moduli 1, 1, R, R_speed.

@@ -12,9 +12,8 @@ namespace vines {
 
 namespace {
 
-/// Length of a piece of a formula in units of 1/Omega, or of tau if Omega < 1: the Taylor
-/// polynomials of force and response, with their 14 coefficients, are exact to 1e-17 of the
-/// amplitude, if the damping is not larger. The last piece is up to half longer.
+/// Length of a piece of a formula in units of 1/Omega, at most of tau: 14 Taylor coefficients are
+/// exact to 1e-17, if the damping is not larger. The last piece is up to half longer.
 constexpr double formula_step = 0.3, longest_formula_step = 1.5 * formula_step;
 
 /// Taylor polynomial of amplitude sin(theta): z = exp(i theta) has z' = i theta' z.
@@ -34,21 +33,15 @@ Polynomial sine(double amplitude, const Polynomial& theta) {
     return p;
 }
 
-/// Displacement of a base from rest at 0.
-Polynomial integrated_twice(const Polynomial& acceleration) {
-    Polynomial x;
-    for (int n = 0; n < acceleration.size && n + 2 < Polynomial::most; ++n)
-        x.add(n + 2, acceleration[n] / ((n + 1) * (n + 2)));
-    return x;
-}
-
 /// A base that is accelerated piece by piece.
 struct BaseMotion {
     long double x = 0, v = 0;
 
     /// Its displacement over the next h.
     Polynomial advance(const Polynomial& acceleration, double h) {
-        Polynomial p = integrated_twice(acceleration);
+        Polynomial p;
+        for (int n = 0; n < acceleration.size && n + 2 < Polynomial::most; ++n)
+            p.add(n + 2, acceleration[n] / ((n + 1) * (n + 2)));
         const double by_x = p.at(h), by_v = p.rate(h);
         p.add(0, static_cast<double>(x));
         p.add(1, static_cast<double>(v));
@@ -56,8 +49,14 @@ struct BaseMotion {
         v += by_v;
         return p;
     }
-    Polynomial coasting() const { return {static_cast<double>(x), static_cast<double>(v)}; }
 };
+
+/// A base coasts or stays at the value `last`, a force ends.
+Polynomial after_end(LoadKind kind, const BaseMotion& motion, const Polynomial& last) {
+    if (kind == LoadKind::base_displacement) return last;
+    if (kind == LoadKind::force) return {0};
+    return {static_cast<double>(motion.x), static_cast<double>(motion.v)};
+}
 
 }  // namespace
 
@@ -70,10 +69,7 @@ Load::Load(LoadKind kind, const std::vector<double>& tau, const std::vector<doub
         const Polynomial chord{values[i], (values[i + 1] - values[i]) / h};
         add_piece(tau[i], kind == LoadKind::base_acceleration ? motion.advance(chord, h) : chord);
     }
-    add_piece(
-        tau.back(), kind == LoadKind::base_acceleration ? motion.coasting()
-                    : kind == LoadKind::force           ? Polynomial{0}
-                                                        : Polynomial{values.back()});
+    add_piece(tau.back(), after_end(kind, motion, {values.back()}));
 }
 
 Load::Load(std::vector<LoadHarmonic> harmonics)
@@ -101,10 +97,7 @@ Load::Load(
         if (next == duration) value = {value.at(next - tau)};
         tau = next;
     }
-    add_piece(
-        duration, kind == LoadKind::base_acceleration ? motion.coasting()
-                  : kind == LoadKind::force           ? Polynomial{0}
-                                                      : value);
+    add_piece(duration, after_end(kind, motion, value));
 }
 
 double Load::response_reach(double damping) const {
@@ -161,8 +154,7 @@ Load Load::noise(
         largest = std::max(largest, std::abs(second[n].real()));
     }
     load.add_piece(duration, {place + motion[0].real()});
-    // Ehlich and Zeller's bound of a trigonometric polynomial by its values at N points, and the
-    // error h^4/384 of a cubic.
+    // Ehlich and Zeller's bound by the values at N points, and the error h^4/384 of a cubic.
     largest /=
         elementary::cos(std::numbers::pi * static_cast<double>(last) / static_cast<double>(N));
     load.sampling_error_ = largest * h * h * h * h / 384;

@@ -26,8 +26,7 @@ struct LoadHarmonic {
 /// After its end an acceleration or force is zero; a displacement stays.
 class Load {
 public:
-    /// Samples at ascending times from 0 on, at least two, linear in between: the motion of the
-    /// base is a cubic in each interval.
+    /// At least two samples at ascending times from 0 on, linear in between.
     Load(LoadKind kind, const std::vector<double>& tau, const std::vector<double>& values);
     /// A sum of harmonics without end: the displacement of the base, m.
     explicit Load(std::vector<LoadHarmonic> harmonics);
@@ -37,8 +36,7 @@ public:
         LoadKind kind, double amplitude, double duration,
         const std::function<Polynomial(double tau)>& theta);
     /// Normally distributed acceleration of the base with the frequencies k 2 pi/duration between
-    /// Omega_low and Omega_high, of which there is at least one. The base begins and ends at rest,
-    /// at the same place. `seed`: the same record on every computer.
+    /// Omega_low and Omega_high, at least one. The base begins and ends at rest, at the same place.
     static Load noise(
         double rms, double Omega_low, double Omega_high, double duration, std::uint64_t seed);
     /// The largest Omega_high times duration of noise.
@@ -53,8 +51,7 @@ public:
     }
     /// Displacement of the base as a function of the time since `from`; zero for a force.
     Polynomial base(std::size_t interval, double from) const;
-    /// Right-hand side of x'' + 2 zeta x' + x: base + damping base' (eq. (1), damping = epsilon
-    /// lambda), or the force.
+    /// base + damping base' (eq. (1), damping = epsilon lambda), or the force.
     Polynomial force(std::size_t interval, double from, double damping) const;
 
     /// Longest time over which response() to a piece is exact to rounding, by the flow's damping.
@@ -62,13 +59,11 @@ public:
 
     bool moves_base() const { return kind_ != LoadKind::force; }
     double length() const { return tau_.empty() ? infinity : tau_.back(); }
-    /// True if a run is as long as the load by default: not where it has no end, nor after a shock,
-    /// which is shorter than a natural period.
+    /// True if a run is as long as the load by default: it ends, and is longer than a shock.
     bool sets_length() const { return length() < infinity && length() >= 2 * std::numbers::pi; }
     /// Largest |displacement of the base| at the ends of the pieces up to this time, m.
     double largest_base_displacement(double until) const;
-    /// Bound of the difference between the displacement of the base and its formula, m; zero if
-    /// they are equal up to rounding.
+    /// Bound of the error of the displacement of the base, m; zero if that is rounding.
     double sampling_error() const { return sampling_error_; }
 
 private:

@@ -18,9 +18,8 @@ enum class Damping {
     closed_form
 };
 
-/// The same system in SI units: masses in kg, c1 in N s/m, k1 in N/m, F (base amplitude) in m, f in
-/// Hz. The defaults are the paper's Table 1; its excitation is given in reduced form, G = .02 m and
-/// Omega = 1.
+/// The same system in SI units: kg, N s/m, N/m, F (base amplitude) in m, f in Hz. The defaults are
+/// the paper's Table 1, whose excitation is given as G = .02 m and Omega = 1.
 struct SiParameters {
     double m1 = 3.807, c1 = 2.53, k1 = 11.68e3, m2 = 0.032;
     double F = 0.02 * m2 / m1, f = f0();
@@ -35,8 +34,7 @@ struct SiParameters {
     double Omega() const { return f / f0(); }  ///< exactly 1 for f = f0()
 };
 
-/// Restitution coefficient as a function of the speed w = |x' - y'| before the impact: linear
-/// between the points, constant outside.
+/// R as a function of the speed w = |x' - y'| before the impact: linear between the points.
 struct RestitutionTable {
     std::vector<double> speed;  ///< m per unit of tau, ascending, >= 0
     std::vector<double> R;      ///< of equal length, in [0, 1]
@@ -50,8 +48,7 @@ struct RestitutionTable {
 class Load;
 
 /// Dimensionless unless a unit is given; symbols as in the paper. The defaults are Table 1 with the
-/// b of Fig. 3; epsilon and lambda follow from the SI values of the table, which rounds them to .84
-/// % and 1.43.
+/// b of Fig. 3; the table rounds epsilon and lambda to .84 % and 1.43.
 struct Parameters {
     double epsilon = SiParameters{}.epsilon();  ///< mass ratio m2/m1
     double lambda = SiParameters{}.lambda();    ///< c1/(m2 omega0)
@@ -63,8 +60,7 @@ struct Parameters {
     Damping damping = Damping::equation_of_motion;
     /// Laws that replace R_plus and R_minus, which then are their values at zero speed.
     std::shared_ptr<const RestitutionTable> table_plus, table_minus;
-    /// Acceleration of the free ball along its track, positive along +x: g
-    /// sin(inclination)/omega0^2, m. x is measured from the oscillator's rest without ball.
+    /// g sin(inclination)/omega0^2, m, of the free ball along +x; x = 0 without ball.
     double gravity = 0;
     /// Deceleration of the sliding ball: mu g cos(inclination)/omega0^2, m.
     double friction = 0;
@@ -96,16 +92,14 @@ struct Parameters {
     bool has_straight_flights() const { return gravity == 0 && friction == 0 && !load; }
     /// True if both walls obey the same law.
     bool has_equal_walls() const;
-    /// True if the mirror image of a motion under harmonic forcing, half a cycle later, is a
-    /// motion.
+    /// True if the mirror image of a motion, half a cycle later, is a motion.
     bool is_symmetric() const { return has_equal_walls() && gravity == 0; }
 };
 
 /// The same system in SI units, for an oscillator with mass m1 and stiffness k1.
 SiParameters in_si(const Parameters& parameters, double m1, double k1);
 
-/// State of the flow in the paper's order, eq. (5). Positions in m, velocities in m per unit of
-/// tau.
+/// State in the order of eq. (5). Positions in m, velocities in m per unit of tau.
 struct State {
     double x_dot = 0, x = 0, y_dot = 0, y = 0;
 };
@@ -132,8 +126,7 @@ struct Fault {
 /// The initial state of Table 1: at rest, the ball at 95 % of b.
 State default_state(const Parameters& parameters);
 
-/// All faults of a system and its initial state (empty: valid). In addition to the ranges it checks
-/// the damping ratio and |x - y| <= b at the start.
+/// All faults: ranges, the damping ratio, and |x - y| <= b at the start.
 std::vector<Fault> validate(const Parameters& parameters, const State& start);
 
 /// True if the equations of motion are meaningful: epsilon, Omega, b > 0, lambda and G >= 0, both R

@@ -2,6 +2,8 @@
 // grazing contacts.
 #pragma once
 
+#include <array>
+#include <functional>
 #include <limits>
 #include <optional>
 #include <vector>
@@ -12,26 +14,22 @@
 
 namespace vines {
 
-/// The oscillator at equidistant times of a stretch: one table look-up in the flow, then eight
-/// multiplications per sample. The flow is a linear map of (x, x', sin theta, cos theta); its maps
-/// over 1, 2, 3, ... steps are stored in a table, each accurate to the last ulp, so that errors do
-/// not add up from sample to sample. A sample differs from Flow::after() by at most 16 ulp of the
-/// motion's size (Flow::Bounds::x): up to 4 from the sum of four products, the rest from rounding
-/// of times within the flow's reach, up to 19/max(1, Omega), half an ulp of which is 2e-15.
+/// The oscillator at equidistant times of a stretch: eight multiplications per sample. The flow is
+/// a linear map of (x, x', sin theta, cos theta); its maps over 1, 2, 3, ... steps are tabulated,
+/// each to the last ulp, so that errors do not add up. A sample differs from Flow::after() by at
+/// most 16 ulp of Flow::Bounds::x, mostly from rounding of times within the flow's reach.
 class SampledFlow {
 public:
     /// Time between samples, in tau.
     explicit SampledFlow(double step) : step_(step) {}
 
-    /// Sets the flow and the state at s = 0 for the following calls of at(). The flow must exist
-    /// until the next begin().
+    /// Sets the flow, which must exist until the next begin(), and the state at s = 0.
     void begin(const Flow& flow, const Oscillation& start);
     /// The state after s <= reach; s grows from call to call, by one step up to rounding of tau.
     Oscillation at(double s);
 
 private:
-    /// The map over j steps: responses of x and x' to the parts of the state, rotation of the
-    /// phasor.
+    /// The map over j steps: responses to the parts of the state, rotation of the phasor.
     struct Steps {
         double time;  ///< duration of j steps, rounded: the map is exact for it
         Oscillation x, x_dot;
@@ -57,24 +55,25 @@ private:
 /// Capacity of a record that keeps all entries.
 inline constexpr std::size_t everything = std::numeric_limits<std::size_t>::max() / 2;
 
-/// Trims a growing record to its last `most` entries whenever it holds half as many more: an entry
-/// moves about twice.
-template <class Entries>
-void keep_last(Entries& entries, std::size_t most) {
-    if (entries.size() >= most + most / 2 + 1)
-        entries.erase(entries.begin(), entries.end() - static_cast<std::ptrdiff_t>(most));
-}
-/// Trims to exactly the last `most` entries at the end of the run.
+/// Trims a record to its last `most` entries at the end of the run.
 template <class Entries>
 void trim_to_last(Entries& entries, std::size_t most) {
     if (entries.size() > most)
         entries.erase(entries.begin(), entries.end() - static_cast<std::ptrdiff_t>(most));
+}
+/// Trims a growing record whenever it holds half as many more: an entry moves about twice.
+template <class Entries>
+void keep_last(Entries& entries, std::size_t most) {
+    if (entries.size() > most + most / 2) trim_to_last(entries, most);
 }
 
 /// The sampled motion: columns of equal length. x and y in m, derivatives with respect to tau.
 struct Series {
     std::vector<double> tau, x, x_dot, y, y_dot, x_ddot;
     std::vector<double> x_relative;  ///< to the base; empty unless a load moves it
+
+    /// The columns that every series has.
+    auto columns() { return std::array{&tau, &x, &x_dot, &y, &y_dot, &x_ddot}; }
 };
 
 /// Samples the motion at tau = 0, step, 2 step, ... and at the end of the run.
@@ -101,16 +100,21 @@ private:
     SampledFlow free_, sticking_;
 };
 
-/// Takes the state once per forcing cycle, at tau = (k + phase/(2 pi)) 2 pi/Omega with k = first,
-/// first + 1, ...; there theta = phi + phase.
+/// Times at which a Stroboscope takes the state, up to `until`: tau = (k + phase/(2 pi)) 2 pi/Omega
+/// with k = first, first + 1, ...; there theta = phi + phase.
+struct StroboscopeTimes {
+    long first = 0;
+    double phase = 0, until = infinity;
+};
+
+/// Takes the state once per forcing cycle.
 class Stroboscope : public Observer {
 public:
-    explicit Stroboscope(
-        const Parameters& parameters, long first = 0, double phase = 0, double until = infinity)
-        : cycle_(parameters.cycle()),
-          after_(phase / parameters.Omega),
-          until_(until),
-          next_(first) {}
+    explicit Stroboscope(const Parameters& p, const StroboscopeTimes& times = {})
+        : cycle_(p.cycle()),
+          after_(times.phase / p.Omega),
+          until_(times.until),
+          next_(times.first) {}
     void on_stretch(const Stretch&) override;
 
     /// Time of sample k.
@@ -125,20 +129,14 @@ private:
     long next_;
 };
 
-/// Selects the last `most` states at whole cycles up to the time `until`.
-struct LastStates {
-    std::size_t most;
-    double until;
-};
-
-/// Stroboscopic states: all of them, or those selected by LastStates and up to half as many more.
+/// The last `most` stroboscopic states, and up to half as many more.
 class StroboscopicRecord : public Stroboscope {
 public:
-    explicit StroboscopicRecord(const Parameters& parameters, long first = 0, double phase = 0)
-        : Stroboscope(parameters, first, phase) {}
-    StroboscopicRecord(const Parameters& parameters, const LastStates& last)
-        : Stroboscope(parameters, 0, 0, last.until),
-          most_(last.most) {}
+    explicit StroboscopicRecord(
+        const Parameters& parameters, const StroboscopeTimes& times = {},
+        std::size_t most = everything)
+        : Stroboscope(parameters, times),
+          most_(most) {}
 
     /// Number k of the first state kept.
     long first() const { return next() - static_cast<long>(states.size()); }
@@ -150,7 +148,7 @@ private:
         states.push_back(state);
         keep_last(states, most_);
     }
-    const std::size_t most_ = everything;
+    const std::size_t most_;
 };
 
 /// The last `most` entries of a growing list, and up to half as many more. `seen` counts all.
@@ -177,27 +175,63 @@ public:
     void on_impact(const Impact& impact) override { add(impact); }
 };
 
+/// A range of impacts by their numbers, counted from 0.
+struct ImpactRange {
+    long first = 0, count = 0;
+};
+
+/// Observer of the last `most_listed` impacts of a run. If there are more than `most_kept` of them,
+/// the list is dropped and only the quantities derived from all impacts are kept.
+class ImpactCollector : public Observer {
+public:
+    ImpactCollector(std::size_t most_listed, std::size_t most_kept);
+
+    void on_impact(const Impact& impact) override;
+    void finish();  ///< call once, after the run
+
+    ImpactRange listed() const;  ///< numbers of the listed impacts
+    bool kept() const { return kept_; }
+
+    std::vector<Impact> entries;  ///< all listed impacts, or empty if not kept()
+    double typical_speed = 1;     ///< median of the relative speeds; 1 without impacts
+    struct NearlyTangent {
+        long number;
+        double tau, speed;  ///< |x' - y'| before the impact
+    };
+    std::vector<NearlyTangent> nearly_tangent;
+
+private:
+    void conclude(long number, const Impact& impact);
+
+    const std::size_t most_listed_, most_kept_;
+    bool kept_ = true;
+    long seen_ = 0;
+    LastOf<double> speeds_;
+};
+
+/// Passes the impacts in `range` to `take`, in order, by repeating the run with its limits. Returns
+/// false if limits.stop ended the repetition before the last of them.
+bool repeat_impacts(
+    const Parameters& parameters, const State& start, const Limits& limits,
+    const ImpactRange& range, const std::function<void(const Impact&)>& take);
+
 /// An impact and the time since the previous impact.
 struct SectionPoint {
     Impact impact;
     double since;  ///< NaN at the first impact of the run
 };
 
-/// The impacts in [tau_start, tau_end], each with the time since the previous impact, even if that
-/// is outside the window.
+/// The impacts in a window, each with the time since the previous impact, even if that is outside.
 class SectionRecord : public Observer, public LastOf<SectionPoint> {
 public:
-    SectionRecord(double tau_start, double tau_end, std::size_t most)
-        : LastOf(most),
-          tau_start_(tau_start),
-          tau_end_(tau_end) {}
+    SectionRecord(const Interval& window, std::size_t most) : LastOf(most), window_(window) {}
     void on_impact(const Impact& impact) override {
-        if (impact.tau >= tau_start_ && impact.tau <= tau_end_) add({impact, impact.tau - before_});
+        if (window_.contains(impact.tau)) add({impact, impact.tau - before_});
         before_ = impact.tau;
     }
 
 private:
-    const double tau_start_, tau_end_;
+    const Interval window_;
     double before_ = nan;
 };
 
@@ -226,36 +260,46 @@ public:
     void on_grazing_contact(double tau, int side) override { add({tau, side}); }
 };
 
-/// A contact of ball and oscillator as regimes and periodic orbits count it: an impact, or a
-/// complete chatter that ends in sticking.
+/// A contact as regimes count it: an impact, or a complete chatter that ends in sticking.
 struct CountedContact {
     double tau;
     int side;
 };
 
+/// Keeps only the first impact of a chatter.
+inline void fold_chatter(std::vector<CountedContact>& contacts, const StickStart& start) {
+    if (start.impacts > 1)
+        contacts.resize(contacts.size() - static_cast<std::size_t>(start.impacts - 1));
+}
+
 class ContactRecord : public Observer {
 public:
-    struct Stick {
-        double tau_start, tau_end;
-    };
-
-    void on_impact(const Impact& impact) override;
-    void on_stick(const StickStart& start) override;
-    void on_release(double tau) override { sticks.back().tau_end = tau; }
+    void on_impact(const Impact& impact) override {
+        ++impacts;
+        contacts.push_back({impact.tau, impact.side});
+    }
+    void on_stick(const StickStart& start) override {
+        sticks.push_back({start.tau, start.tau});
+        fold_chatter(contacts, start);
+    }
+    void on_release(double tau) override { sticks.back().to = tau; }
 
     std::vector<CountedContact> contacts;
-    std::vector<Stick> sticks;
+    std::vector<Interval> sticks;
     long impacts = 0;
 };
 
-/// Reports the same contacts one at a time. It stores only impacts that can still belong to a
-/// chatter, because the sticking phase at its end makes them one contact.
+/// Reports the same contacts one at a time; stores only impacts that may belong to a chatter.
 class ContactStream : public Observer {
 public:
-    explicit ContactStream(const Parameters& parameters);
+    /// Flights of a chatter take less than half a cycle (Run::longest_bounce_), up to rounding.
+    explicit ContactStream(const Parameters& p) : longest_bounce_(1.001 * p.faster_half_cycle()) {}
 
     void on_impact(const Impact& impact) override;
-    void on_stick(const StickStart& start) override;
+    void on_stick(const StickStart& start) override {
+        fold_chatter(held_, start);
+        flush_contacts();
+    }
 
 protected:
     virtual void on_contact(const CountedContact& contact) = 0;

@@ -1,33 +1,33 @@
-// The event loop: free flight -> impact -> ... -> chatter -> sticking -> release -> free flight.
-//
-// The loop stores nothing; it notifies observers in order of time. Sampling, impact lists and
-// exponents are separate observers and cost nothing when absent.
+// The event loop: free flight -> impact -> ... -> chatter -> sticking -> release -> free flight. It
+// stores nothing; it notifies observers in order of time.
 #pragma once
 
+#include <algorithm>
 #include <functional>
-#include <optional>
+#include <initializer_list>
 #include <span>
-#include <string_view>
-#include <vector>
 
 #include "core/motion/contact_search.hpp"
 #include "core/motion/impact.hpp"
 
 namespace vines {
 
-/// A load's force and base displacement, as functions of the time s since the last event.
-struct Loading {
-    Polynomial force;  ///< right-hand side of x'' + 2 zeta x' + x
-    Polynomial base;   ///< displacement of the base; zero for a force on the oscillator
-};
-
-/// Forces beyond the paper's during a stretch.
+/// Forces beyond the paper's during a stretch. The polynomials are functions of the time s since
+/// the last event; `load` and `base` are empty without a load.
 struct Forces {
     double y_ddot = 0;          ///< of a free ball, constant
     bool rests_inside = false;  ///< friction holds the ball inside the cavity
-    /// Contribution of the forces on the oscillator to its motion: x(s) = flow's x(s) + shift(s).
-    Polynomial shift;
-    std::optional<Loading> loading;
+    Polynomial load;            ///< right-hand side of x'' + 2 zeta x' + x
+    Polynomial base;            ///< displacement of the base; zero for a force on the oscillator
+    Polynomial shift;           ///< what all forces add to the flow's x(s)
+};
+
+/// An interval of tau.
+struct Interval {
+    double from, to;
+
+    double length() const { return to - from; }
+    bool contains(double tau) const { return tau >= from && tau <= to; }
 };
 
 /// A part of the motion without an event inside. A long flight consists of several stretches.
@@ -43,6 +43,11 @@ struct Stretch {
     bool rests_inside() const { return forces && forces->rests_inside; }
     /// True while both masses move as one.
     bool is_joint() const { return sticking_side != 0 || rests_inside(); }
+    /// The part within a window, as times s; its length is negative outside.
+    Interval within(const Interval& window) const {
+        return {std::max(0.0, window.from - tau), std::min(duration, window.to - tau)};
+    }
+    Polynomial shift() const { return forces ? forces->shift : Polynomial{}; }
     /// The state of both masses at 0 <= s <= duration.
     State at(double s) const { return at(s, flow.after(start, s)); }
     /// The same, given the flow's state.
@@ -98,11 +103,6 @@ struct Limits {
     double tau_start = 0;  ///< initial time; it sets the phase of the forcing
 };
 
-/// An interval of tau.
-struct Interval {
-    double from, to;
-};
-
 enum class End { tau_end, max_impacts, stopped };
 
 struct Outcome {
@@ -112,11 +112,15 @@ struct Outcome {
     long impacts;
 };
 
-/// Runs a system that satisfies is_physical() from a state within the cavity, |x - y| <= b up to
-/// rounding. x and the velocities are not limited, so that a run can continue from the end of
-/// another one.
+/// Runs a system that satisfies is_physical() from |x - y| <= b up to rounding; x and the
+/// velocities are not limited, so that a run can continue another one.
 Outcome simulate(
     const Parameters& parameters, const State& start, const Limits& limits,
-    std::span<Observer* const> observers = {});
+    std::span<Observer* const> observers);
+inline Outcome simulate(
+    const Parameters& parameters, const State& start, const Limits& limits,
+    std::initializer_list<Observer*> observers = {}) {
+    return simulate(parameters, start, limits, std::span(observers.begin(), observers.size()));
+}
 
 }  // namespace vines

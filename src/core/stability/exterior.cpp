@@ -13,15 +13,13 @@ namespace {
 // A spectral radius below this fraction of the norm is dominated by rounding.
 constexpr double least_radius = 1e-8;
 
-double parts_of(const Flow& flow, double duration) {
-    const double contraction = flow.fastest_decay() * duration;
-    return contraction > most_contraction ? std::ceil(contraction / most_contraction) : 1;
-}
-
 }  // namespace
 
 Leg leg_of(const Flow& flow, double duration, bool sticking, bool resting) {
-    const double parts = parts_of(flow, duration), part = duration / parts;
+    const double contraction = flow.fastest_decay() * duration,
+                 parts =
+                     contraction > most_contraction ? std::ceil(contraction / most_contraction) : 1,
+                 part = duration / parts;
     return {flow.transfer(part),      part,     -flow.damping() * part,
             static_cast<long>(parts), sticking, resting};
 }
@@ -68,8 +66,7 @@ namespace {
 /// Determinant over one part; the contraction is too small for the difference to lose digits.
 double determinant_of(const Transfer& a) { return a.a11 * a.a22 - a.a12 * a.a21; }
 
-/// In the coordinates (x', x, z', z) with z = x - y, c = x' - mu z' and x move as one body, z'
-/// vanishes and z stays.
+/// With z = x - y: c = x' - mu z' and x move as one body, z' vanishes and z stays.
 [[gnu::noinline]] Area carried_at_rest(const Area& w, const Leg& leg, double epsilon) {
     const auto& [a11, a12, a21, a22] = leg.oscillator;
     // The areas of c and x, c and z, x and z.
@@ -81,11 +78,10 @@ double determinant_of(const Transfer& a) { return a.a11 * a.a22 - a.a12 * a.a21;
     return out;
 }
 
-[[gnu::noinline]] Volume carried_at_rest(const Volume& volume, const Leg& leg, double epsilon) {
-    const Eigen::Vector4d& n = volume.normal;
+[[gnu::noinline]] Volume carried_at_rest(const Volume& n, const Leg& leg, double epsilon) {
     const double nu = 1 / (1 + epsilon),
                  size = determinant_of(leg.oscillator) * (epsilon * nu * n(0) - nu * n(2));
-    return {{size, 0, -size, 0}};
+    return {size, 0, -size, 0};
 }
 
 }  // namespace
@@ -95,8 +91,7 @@ Area carried(const Area& w, const Leg& leg, double epsilon) {
     const double det = determinant_of(leg.oscillator);
     Area out;
     if (leg.sticking) {
-        // Area of the deviations of the centre of mass, (nu x' + mu y') and (nu x + mu y): x' = y',
-        // x = y.
+        // Area of the deviations of the centre of mass: x' = y', x = y.
         const double nu = 1 / (1 + epsilon), mu = epsilon * nu;
         const double area = det * (nu * nu * w(0) + nu * mu * (w(2) - w(3)) + mu * mu * w(5));
         out << area, 0, area, -area, 0, area;
@@ -110,16 +105,15 @@ Area carried(const Area& w, const Leg& leg, double epsilon) {
     return out;
 }
 
-Volume carried(const Volume& volume, const Leg& leg, double epsilon) {
-    if (leg.sticking) return {Eigen::Vector4d::Zero()};
+Volume carried(const Volume& n, const Leg& leg, double epsilon) {
+    if (leg.sticking) return Volume::Zero();
+    if (leg.resting) return carried_at_rest(n, leg, epsilon);
     // det(J) J^-T n
     const auto& [a11, a12, a21, a22] = leg.oscillator;
-    const Eigen::Vector4d& n = volume.normal;
     const double det = determinant_of(leg.oscillator);
-    if (leg.resting) return carried_at_rest(volume, leg, epsilon);
     return {
-        {a22 * n(0) - a21 * n(1), a11 * n(1) - a12 * n(0), det * (n(2) - leg.duration * n(3)),
-         det * n(3)}};
+        a22 * n(0) - a21 * n(1), a11 * n(1) - a12 * n(0), det * (n(2) - leg.duration * n(3)),
+        det * n(3)};
 }
 
 namespace {
@@ -128,8 +122,7 @@ namespace {
 /// -R z, x' gains -jump_x_dot z' + r_x z and x gains -jump_x z.
 struct Relative {
     double R, R_speed, jump_x, jump_x_dot, r_x, r_z;
-    /// R_speed r_x - jump_x_dot r_z, in which R_speed x''/(x'- - y'-) cancels: x'' enters linearly
-    /// everywhere
+    /// R_speed r_x - jump_x_dot r_z, without products of x'': it enters linearly everywhere.
     double mixed;
 };
 Relative relative(const Saltation& M) {
@@ -154,14 +147,13 @@ Area carried(const Area& w, const Saltation& M) {
     return out;
 }
 
-Volume carried(const Volume& volume, const Saltation& M) {
+Volume carried(const Volume& n, const Saltation& M) {
     // det(M) M^-T n.
     const auto [R, R_speed, jump_x, jump_x_dot, r_x, r_z, mixed] = relative(M);
-    const Eigen::Vector4d& n = volume.normal;
     const double along_x_dot = n(0) + n(2), along_x = n(1) + n(3), det = M.determinant();
     const double along_z_dot = R * (n(2) - jump_x_dot * along_x_dot),
                  along_z = mixed * along_x_dot + r_z * n(2) + R_speed * (n(3) - jump_x * along_x);
-    return {{det * along_x_dot + along_z_dot, det * along_x + along_z, -along_z_dot, -along_z}};
+    return {det * along_x_dot + along_z_dot, det * along_x + along_z, -along_z_dot, -along_z};
 }
 
 void Flag::pass(const Leg& leg, double epsilon) {
@@ -178,11 +170,11 @@ void Flag::strike(const Saltation& M) {
 }
 
 std::array<double, 3> Flag::squares() const {
-    return {deviation.squaredNorm(), area.squaredNorm(), volume.normal.squaredNorm()};
+    return {deviation.squaredNorm(), area.squaredNorm(), volume.squaredNorm()};
 }
 
 std::array<double, 2> Flag::separations() const {
-    const Eigen::Vector4d &d = deviation, &n = volume.normal;
+    const Eigen::Vector4d &d = deviation, &n = volume;
     const Area& w = area;
     const Eigen::Vector4d spanned(
         d(0) * w(3) - d(1) * w(1) + d(2) * w(0), d(0) * w(4) - d(1) * w(2) + d(3) * w(0),
@@ -209,6 +201,16 @@ double PowerProduct::Scaled<n>::log_radius() const {
     return radius > least_radius ? log_scale + elementary::log(radius) : nan;
 }
 
+template <class... By>
+void PowerProduct::transport(const By&... by) {
+    first_.rescale();
+    for (int k = 0; k < 6; ++k) second_.matrix.col(k) = carried(Area(second_.matrix.col(k)), by...);
+    second_.rescale();
+    if (rank_ < 3) return;
+    for (int k = 0; k < 4; ++k) third_.matrix.col(k) = carried(Volume(third_.matrix.col(k)), by...);
+    third_.rescale();
+}
+
 void PowerProduct::pass(const Leg& leg) {
     if (leg.sticking) rank_ = 2;
     if (leg.resting) rank_ = std::min(rank_, 3);
@@ -216,14 +218,7 @@ void PowerProduct::pass(const Leg& leg) {
         Frame first = first_.matrix;
         carry(first, leg, epsilon_);
         first_.matrix = first;
-        first_.rescale();
-        for (int k = 0; k < 6; ++k)
-            second_.matrix.col(k) = carried(Area(second_.matrix.col(k)), leg, epsilon_);
-        second_.rescale();
-        if (rank_ < 3) continue;
-        for (int k = 0; k < 4; ++k)
-            third_.matrix.col(k) = carried(Volume{third_.matrix.col(k)}, leg, epsilon_).normal;
-        third_.rescale();
+        transport(leg, epsilon_);
         log_det_ += leg.log_det;
     }
     if (leg.slip != 1) strike(slip_of(leg, epsilon_));
@@ -232,13 +227,7 @@ void PowerProduct::pass(const Leg& leg) {
 void PowerProduct::strike(const Saltation& M) {
     if (M.is_singular()) rank_ = std::min(rank_, 3);
     first_.matrix = M.times(first_.matrix);
-    first_.rescale();
-    for (int k = 0; k < 6; ++k) second_.matrix.col(k) = carried(Area(second_.matrix.col(k)), M);
-    second_.rescale();
-    if (rank_ < 3) return;
-    for (int k = 0; k < 4; ++k)
-        third_.matrix.col(k) = carried(Volume{third_.matrix.col(k)}, M).normal;
-    third_.rescale();
+    transport(M);
     log_det_ += elementary::log(std::abs(M.R)) + elementary::log(std::abs(M.R_speed));
 }
 
@@ -256,39 +245,30 @@ Moduli eigenvalue_moduli(const Matrix4& m) {
     return moduli;
 }
 
-namespace {
-
-/// Moduli of J_i, or of T_i = M_i J_i, eq. (30), from the exterior powers.
-Moduli moduli_of(const ImpactTransfer& transfer, bool with_impact) {
-    PowerProduct product(transfer.epsilon);
-    for (const Leg& leg : transfer.legs) product.pass(leg);
-    if (with_impact) product.strike(transfer.M);
+Moduli ImpactTransfer::moduli(bool with_impact) const {
+    PowerProduct product(epsilon);
+    for (const Leg& leg : legs) product.pass(leg);
+    if (with_impact) product.strike(M);
     Moduli moduli = product.log_moduli();
     for (double& m : moduli) m = elementary::exp(m);
     return moduli;
 }
 
-}  // namespace
-
 Moduli ImpactTransfer::J_moduli() const {
-    Moduli moduli = {1, 1, 1, 1};
+    if (std::ranges::any_of(legs, [](const Leg& leg) { return leg.sticking || leg.slip != 1; }))
+        return moduli(false);
     // Two blocks, eq. (19). The ball's, [1 0; s 1], is a Jordan block, which a solver would split.
-    const bool blocks =
-        std::ranges::all_of(legs, [](const Leg& leg) { return !leg.sticking && leg.slip == 1; });
-    if (blocks) {
-        for (const Leg& leg : legs) {
-            const auto& [a11, a12, a21, a22] = leg.oscillator;
-            const double n = static_cast<double>(leg.parts), half_trace = 0.5 * std::abs(a11 + a22);
-            // half_trace^2 minus the determinant, without the ones that cancel in a short flight.
-            const double d = 0.25 * (a11 - a22) * (a11 - a22) + a12 * a21;
-            const double large =
-                d > 0 ? elementary::log(half_trace + std::sqrt(d)) : 0.5 * leg.log_det;
-            moduli[2] = elementary::exp(n * large);
-            moduli[3] = elementary::exp(n * (leg.log_det - large));
-        }
-        return moduli;
+    Moduli moduli = {1, 1, 1, 1};
+    for (const Leg& leg : legs) {
+        const auto& [a11, a12, a21, a22] = leg.oscillator;
+        const double n = static_cast<double>(leg.parts), half_trace = 0.5 * std::abs(a11 + a22);
+        // half_trace^2 minus the determinant, without the ones that cancel in a short flight.
+        const double d = 0.25 * (a11 - a22) * (a11 - a22) + a12 * a21;
+        const double large = d > 0 ? elementary::log(half_trace + std::sqrt(d)) : 0.5 * leg.log_det;
+        moduli[2] = elementary::exp(n * large);
+        moduli[3] = elementary::exp(n * (leg.log_det - large));
     }
-    return moduli_of(*this, false);
+    return moduli;
 }
 
 Moduli ImpactTransfer::M_moduli() const {
@@ -297,33 +277,27 @@ Moduli ImpactTransfer::M_moduli() const {
     return moduli;
 }
 
-Moduli ImpactTransfer::T_moduli() const { return moduli_of(*this, true); }
-
 void TransferObserver::on_stretch(const Stretch& stretch) {
     if (!begun_) return;
     const bool sticking = stretch.sticking_side != 0;
     const bool continues = !legs_.empty() && legs_.back().sticking == sticking &&
                            legs_.back().resting == stretch.rests_inside() && legs_.back().slip == 1;
-    if (!continues) {
-        legs_.push_back(leg_of(stretch));
-        return;
+    double duration = stretch.duration;
+    if (continues) {
+        duration += legs_.back().duration * static_cast<double>(legs_.back().parts);
+        legs_.pop_back();
     }
-    Leg& leg = legs_.back();
-    leg = leg_of(
-        stretch.flow, stretch.duration + leg.duration * static_cast<double>(leg.parts), sticking,
-        stretch.rests_inside());
+    legs_.push_back(leg_of(stretch.flow, duration, sticking, stretch.rests_inside()));
 }
 
 void TransferObserver::on_slip(const Slip& slip) {
     if (!begun_) return;
-    if (legs_.empty())
-        legs_.push_back(
-            {.oscillator = {}, .duration = 0, .log_det = 0, .parts = 1, .sticking = false});
+    if (legs_.empty()) legs_.push_back({{}, 0, 0, 1, false});
     legs_.back().slip *= slip.ratio;
 }
 
 void TransferObserver::on_impact(const Impact& impact) {
-    if (impact.tau < window_.from || impact.tau > window_.to) return;
+    if (!window_.contains(impact.tau)) return;
     if (begun_) on_transfer(impact, saltation(parameters_, impact), legs_);
     else on_first_impact(impact);
     begun_ = true;

@@ -3,10 +3,9 @@
 // spanned by two and three deviations.
 //
 // Under strong damping a flight shrinks deviations of the oscillator below double precision
-// relative to those of the ball, and near grazing the entries of M grow without bound. An area or
-// volume computed from deviations would be a difference of large numbers. The formulas below
-// transport areas and volumes directly: they add products of the factors of a flight or an impact,
-// and the determinant of a flight is known, e^(-2 zeta s).
+// relative to those of the ball, and near grazing the entries of M grow without bound: an area or
+// volume computed from deviations would be a difference of large numbers. The formulas below only
+// add products of the factors of a flight or an impact.
 #pragma once
 
 #include <array>
@@ -17,12 +16,11 @@
 
 namespace vines {
 
-/// Largest contraction exponent of one part of a leg: no deviation shrinks by more than e^-4 in one
-/// step, so that the product of two neighbouring lengths keeps 14 digits.
+/// Largest contraction exponent of one part of a leg: products of two lengths keep 14 digits.
 inline constexpr double most_contraction = 4;
 
-/// A free flight, or a phase with both masses as one (sticking at a wall, or resting inside the
-/// cavity), divided into equal parts that contract by at most e^-most_contraction each.
+/// A free flight, or a phase with both masses as one, divided into equal parts that contract by at
+/// most e^-most_contraction each.
 struct Leg {
     Transfer oscillator;  ///< per part: block (x', x) of J, eq. (19)
     double duration;      ///< per part
@@ -46,15 +44,13 @@ Matrix4 transfer_of(const Leg& leg, double epsilon);
 /// The same over legs that follow each other.
 Matrix4 transfer_of(std::span<const Leg> legs, double epsilon);
 
-/// Area spanned by two deviations: components 01, 02, 03, 12, 13, 23 in the order (x', x, y', y).
-using Area = Eigen::Matrix<double, 6, 1>;
 /// The slip that ends a leg, as a saltation matrix.
 Saltation slip_of(const Leg& leg, double epsilon);
 
+/// Area spanned by two deviations: components 01, 02, 03, 12, 13, 23 in the order (x', x, y', y).
+using Area = Eigen::Matrix<double, 6, 1>;
 /// Volume spanned by three deviations, as its normal n: with a fourth deviation v it spans n.v.
-struct Volume {
-    Eigen::Vector4d normal;
-};
+using Volume = Eigen::Vector4d;
 
 Area carried(const Area& area, const Leg& leg, double epsilon);  ///< over one part
 /// Over one part; zero after sticking, of rank 3 after a rest.
@@ -69,15 +65,14 @@ Volume carried(const Volume& volume, const Saltation& M);
 struct Flag {
     Eigen::Vector4d deviation = Eigen::Vector4d::Unit(0);
     Area area = Area::Unit(0);
-    Volume volume{Eigen::Vector4d::Unit(3)};
+    Volume volume = Volume::Unit(3);
     double determinant = 1;
 
     void pass(const Leg& leg, double epsilon);  ///< over one part
     void strike(const Saltation& M);
     std::array<double, 3> squares() const;  ///< squares of length, area and volume
-    /// Sines of the angles between the deviation and the plane of the area, and between that plane
-    /// and the space of the volume: they measure how far rounding has separated the three. NaN for
-    /// a zero size.
+    /// Sines of the angles between the deviation, the plane of the area and the space of the
+    /// volume: how far rounding has separated them. NaN for a zero size.
     std::array<double, 2> separations() const;
 };
 
@@ -85,9 +80,8 @@ struct Flag {
 using Moduli = std::array<double, 4>;
 Moduli eigenvalue_moduli(const Matrix4& m);
 
-/// A product of transfer matrices represented by its exterior powers, rescaled as it grows. It
-/// gives the moduli of all four eigenvalues at any ratio between them: the largest eigenvalue of
-/// the k-th power is the product of the k largest ones.
+/// A product of transfer matrices as exterior powers, rescaled as they grow: the largest eigenvalue
+/// of the k-th power is the product of the k largest ones, at any ratio between these.
 class PowerProduct {
 public:
     explicit PowerProduct(double epsilon) : epsilon_(epsilon) {}
@@ -95,8 +89,7 @@ public:
     void pass(const Leg& leg);
     void strike(const Saltation& M);
 
-    /// 4; 3 after an impact with R = 0 or a rest inside the cavity; 2 after sticking (only the
-    /// centre of mass deviates).
+    /// 4; 3 after an impact with R = 0 or a rest inside the cavity; 2 after sticking.
     int rank() const { return rank_; }
     /// ln|eigenvalues|, descending; -infinity beyond the rank, NaN if not found.
     Moduli log_moduli() const;
@@ -110,6 +103,9 @@ private:
         void rescale();
         double log_radius() const;
     };
+    /// Transports areas and volumes by carried(..., by...).
+    template <class... By>
+    void transport(const By&... by);
 
     const double epsilon_;
     Scaled<4> first_, third_;
@@ -131,16 +127,19 @@ struct ImpactTransfer {
     /// Exactly 1, 1, R, R (section 4): M is triangular for the centre of mass and x - y.
     Moduli M_moduli() const;
     /// From the exterior powers: accurate for any damping and any entries of M.
-    Moduli T_moduli() const;
+    Moduli T_moduli() const { return moduli(true); }
+
+private:
+    Moduli moduli(bool with_impact) const;
 };
 
-/// Passes on the impacts in [tau_start, tau_end], from the second one on, each with its M and the
-/// legs since the previous one; consecutive free flights form one leg.
+/// Passes on the impacts in a window, from the second one on, each with its M and the legs since
+/// the previous one; consecutive free flights form one leg.
 class TransferObserver : public Observer {
 public:
-    TransferObserver(const Parameters& parameters, double tau_start, double tau_end)
+    TransferObserver(const Parameters& parameters, const Interval& window)
         : parameters_(parameters),
-          window_{tau_start, tau_end} {}
+          window_(window) {}
 
     void on_stretch(const Stretch& stretch) override;
     void on_slip(const Slip& slip) override;
@@ -165,9 +164,8 @@ private:
 class TransferRecord : public TransferObserver, public LastOf<ImpactTransfer> {
 public:
     TransferRecord(
-        const Parameters& parameters, double tau_start, double tau_end,
-        std::size_t most = everything)
-        : TransferObserver(parameters, tau_start, tau_end),
+        const Parameters& parameters, const Interval& window, std::size_t most = everything)
+        : TransferObserver(parameters, window),
           LastOf(most) {}
 
 private:

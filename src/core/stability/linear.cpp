@@ -16,8 +16,7 @@ namespace {
 // Size known at run time only: this compiles in two thirds of the time of solvers for 4 and 6.
 using Square = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::ColMajor, 6, 6>;
 
-// Singular values below this fraction of the largest count as zero: far above an ulp, so that the
-// rounding of a zero is never a divisor.
+// Singular values below this fraction of the largest count as zero.
 constexpr double least_share = 1e-10;
 
 Eigen::VectorXcd solved(const Square& matrix) {
@@ -63,8 +62,7 @@ Eigen::Vector4d minimum_norm_solution(const Eigen::Matrix4d& matrix, const Eigen
 }
 
 Eigen::VectorXd smallest_singular_vector(const Eigen::MatrixXd& matrix) {
-    // Inverse iteration: M^T M v is smallest. The value is smaller than all others by orders of
-    // magnitude, so that a few steps suffice; a pivot of zero becomes one of rounding's size.
+    // Inverse iteration. The smallest value is so by orders of magnitude: a few steps suffice.
     Eigen::ColPivHouseholderQR<Eigen::MatrixXd> solver(matrix);
     Eigen::MatrixXd upper = solver.matrixQR().triangularView<Eigen::Upper>();
     const double rounding = 1e-16 * std::abs(upper(0, 0));

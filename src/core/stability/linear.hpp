@@ -19,16 +19,15 @@ double spectral_radius(const Eigen::Matrix2d& matrix);
 double spectral_radius(const Eigen::Matrix4d& matrix);
 double spectral_radius(const Matrix6& matrix);
 
-/// Eigenvalues, and the inverse of the eigenvector matrix, which transforms a vector to eigenvector
-/// coordinates; it has non-finite entries if the eigenvector matrix is singular.
+/// Eigenvalues, and the inverse of the eigenvector matrix; not finite if that is singular.
 struct EigenBasis {
     Eigen::Vector4cd values;
     Eigen::Matrix4cd to_coordinates;
 };
 EigenBasis eigen_basis_of(const Eigen::Matrix4d& matrix);
 
-/// Minimum-norm least-squares solution: the shortest z that minimises |matrix z - right|_2.
-/// Singular values below 1e-10 of the largest count as zero.
+/// Shortest z that minimises |matrix z - right|_2; singular values below 1e-10 of the largest are
+/// 0.
 Eigen::Vector4d minimum_norm_solution(const Eigen::Matrix4d& matrix, const Eigen::Vector4d& right);
 
 /// Unit vector v with the smallest |matrix v|_2, for a square matrix; its sign is arbitrary.

@@ -1,12 +1,8 @@
-// The three estimators of lyapunov.hpp.
-//
-// Qr carries a Flag (exterior.hpp): a length, an area, a volume and a determinant. Before they
-// leave the range of double, their logarithms are extracted. The logarithms of the four sizes are
-// the cumulative sums of T lambda_k; the difference of neighbouring sums is T lambda_k. Each sum
-// has an error estimate: the angles by which rounding has separated the three subspaces, the
-// accumulated rounding of steep impacts, and for the determinant the deviation from its exact
-// value. An exponent is reported only if its error is at most most_residual. RawProduct multiplies
-// the matrices as the paper did.
+// Qr carries a Flag (exterior.hpp). Before its four sizes leave the range of double, their
+// logarithms are extracted: the cumulative sums of T lambda_k. Each sum has an error estimate: the
+// angles by which rounding has separated the three subspaces, the accumulated rounding of steep
+// impacts (near grazing, or with a tiny R), and at rank 4 the deviation of the determinant from its
+// exact value (the sum rule). An exponent is reported only if its error is at most most_residual.
 #include "core/stability/lyapunov.hpp"
 
 #include <algorithm>
@@ -21,14 +17,12 @@ namespace vines {
 
 namespace {
 
-// Products of lengths, and squares of areas and volumes, stay within these bounds by extracting
-// their logarithms: a third of the exponent range of double, so that further factors do not leave
-// it.
+// Products of lengths, and squares of areas and volumes, stay within these bounds, a third of the
+// exponent range of double, by extracting their logarithms.
 constexpr double least_product = 1e-100, most_product = 1e100;
 constexpr double rounding = std::numeric_limits<double>::epsilon();
-// Typical rounding error per impact; over many impacts it is neither always the largest nor of one
-// sign. Among 1500 strongly damped systems, most with chatter, a full ulp makes the exponents of
-// ten systems NaN although they are accurate to 1e-7; a tenth of an ulp does so for one.
+// Typical rounding error per impact. Among 1500 strongly damped systems a full ulp makes the
+// exponents of ten NaN although they are accurate to 1e-7; a tenth of an ulp does so for one.
 constexpr double typical_rounding = 0.1 * rounding;
 // Sine of an angle that should be zero, far above the effect of rounding.
 constexpr double widest_separation = 1e-6;
@@ -60,13 +54,12 @@ public:
 private:
     bool wants_next() const { return capacity_ > 0 && seen_ % stride_ == 0; }
     void thin() {
-        std::size_t kept = 0;
-        for (std::size_t i = 0; i < history_.tau.size(); i += 2, ++kept) {
-            history_.tau[kept] = history_.tau[i];
-            history_.lambda[kept] = history_.lambda[i];
-        }
-        history_.tau.resize(kept);
-        history_.lambda.resize(kept);
+        const auto halve = [](auto& column) {
+            std::size_t kept = 0;
+            for (std::size_t i = 0; i < column.size(); i += 2) column[kept++] = column[i];
+            column.resize(kept);
+        };
+        halve(history_.tau), halve(history_.lambda);
         stride_ *= 2;
     }
 
@@ -81,8 +74,7 @@ Exponents per_time(const Exponents& logs, int rank, double T) {
     return lambda;
 }
 
-/// The same in descending order, NaN last: over a short window or under strong damping the
-/// deviations are not yet ordered.
+/// The same in descending order, NaN last: over a short window they are not yet ordered.
 Exponents descending(Exponents logs, int rank, double T) {
     for (int k = 1; k < rank; ++k)
         for (int j = k; j > 0 && (logs[j] > logs[j - 1] || std::isnan(logs[j - 1])); --j)
@@ -121,10 +113,8 @@ struct Qr {
         if (++since_rescale == 4) rescale();
     }
 
-    /// Impact with large entries of M, or with a tiny R. x - y and x' - y' of a deviation are
-    /// accurate to an ulp of x and x', and areas and volumes likewise. M magnifies this error by
-    /// its entries; it counts relative to the sizes after the impact. Errors of different chatters
-    /// are independent.
+    /// Impact with large entries of M, or with a tiny R: M magnifies errors of an ulp of x and x'
+    /// in the gaps x - y and x' - y' of deviations, areas and volumes.
     void strike_magnified(const Saltation& M, double steepness) {
         rescale();
         const auto before = flag.squares();
@@ -151,7 +141,7 @@ struct Qr {
         };
         keep(squares[0], flag.deviation, extracted_logs[0]);
         keep(squares[1], flag.area, extracted_logs[1]);
-        keep(squares[2], flag.volume.normal, extracted_logs[2]);
+        keep(squares[2], flag.volume, extracted_logs[2]);
         auto take = [](double& product, double& log) {
             if (is_in_range(std::abs(product)) || product == 0) return;
             log += elementary::log(std::abs(product));
@@ -165,15 +155,13 @@ struct Qr {
         return extracted_logs[3] + elementary::log(std::abs(flag.determinant));
     }
 
-    /// ln r_kk of the triangular factor of the QR method: the logarithmic growth of the first
-    /// deviation, and the additional growth of area, volume and determinant.
+    /// ln r_kk of the triangular factor: growth of the first deviation, then additional growth.
     Exponents logs(int rank) const {
         const auto squares = flag.squares();
         Exponents logs{};
         double before = 0;
         for (int k = 0; k < rank; ++k) {
-            // The determinants of the impacts are kept apart: log_det_carried() is compared with
-            // the exact value for the flights.
+            // The impacts' determinants are kept apart for the comparison in errors().
             const double sum = k < 3 ? extracted_logs[k] + 0.5 * elementary::log(squares[k])
                                      : log_det_carried() + log_determinants +
                                            elementary::log(std::abs(determinant_product));
@@ -183,9 +171,8 @@ struct Qr {
         return logs;
     }
 
-    /// Errors of the four cumulative sums of logarithms (dimensionless). Length, area and volume:
-    /// the larger of the angles to their neighbours, and the rounding if that exceeds `most`;
-    /// infinity if unknown. Determinant: deviation of its logarithm from the exact value.
+    /// Errors of the four cumulative sums of logarithms, infinity if unknown: the larger of the
+    /// angles to the neighbours, the rounding if that exceeds `most`, the error of the determinant.
     std::array<double, 4> errors(int rank, double most) const {
         const auto squares = flag.squares();
         const auto separations = flag.separations();
@@ -196,8 +183,7 @@ struct Qr {
             if (!(squares[k] > 0)) errors[k] = infinity;
         }
         for (int k = 1; k < std::min(rank, 3); ++k) {
-            // The angle does not show which of the two neighbours is inaccurate: both get its
-            // error.
+            // The angle does not show which of the two neighbours is inaccurate.
             const double separation =
                 separations[k - 1] <= widest_separation ? separations[k - 1] : infinity;
             errors[k - 1] = std::max(errors[k - 1], separation);
@@ -248,19 +234,16 @@ double rounding_floor(double lambda1, double T) {
 
 /// The requested estimators and their histories.
 struct TransferProduct::Estimators {
-    std::optional<Qr> qr;
-    std::optional<PowerProduct> powers;
-    std::optional<RawProduct> raw;
     ThinnedHistory qr_history, powers_history, raw_history;
+    std::optional<Qr> qr = {};
+    std::optional<PowerProduct> powers = {};
+    std::optional<RawProduct> raw = {};
 };
 
 TransferProduct::TransferProduct(double epsilon, const ExponentOptions& o)
     : epsilon_(epsilon),
       options_(o),
       estimators_(new Estimators{
-          {},
-          {},
-          {},
           ThinnedHistory(std::max(o.history, shortest_history)),
           ThinnedHistory(std::min(o.history, most_eigenvalue_entries)),
           ThinnedHistory(o.history)}) {
@@ -271,13 +254,8 @@ TransferProduct::TransferProduct(double epsilon, const ExponentOptions& o)
 TransferProduct::~TransferProduct() = default;
 TransferProduct::TransferProduct(TransferProduct&&) noexcept = default;
 
-void TransferProduct::start(double tau) {
-    start_ = end_ = tau;
-    impacts_ = 1;
-}
-
 void TransferProduct::append(std::span<const Leg> legs, const Saltation& M, double tau) {
-    auto& [qr, powers, raw, qr_history, powers_history, raw_history] = *estimators_;
+    auto& [qr_history, powers_history, raw_history, qr, powers, raw] = *estimators_;
     end_ = tau;
     ++impacts_;
     for (const Leg& leg : legs) {
@@ -317,8 +295,7 @@ Exponents TransferProduct::qr() const {
     const double T = end_ - start_;
     Exponents logs = qr->logs(rank_);
     const auto errors = qr->errors(rank_, most_residual * T);
-    // The k-th exponent is the difference of two sums. If one is unknown, the order of all
-    // following exponents is unknown, too.
+    // A difference of two sums: if one is unknown, so is the order of all following exponents.
     for (int k = 0; k < rank_; ++k)
         if (!(errors[k] <= most_residual * T)) {
             std::fill(logs.begin() + k, logs.begin() + rank_, nan);
@@ -350,11 +327,6 @@ double TransferProduct::sum_rule_residual() const {
     return *std::ranges::max_element(errors) / (end_ - start_);
 }
 
-void Lyapunov::on_first_impact(const Impact& impact) {
-    product_.start(impact.tau);
-    side_ = impact.side;
-}
-
 void Lyapunov::on_transfer(const Impact& impact, const Saltation& M, std::span<const Leg> legs) {
     product_.append(legs, M, impact.tau);
     const bool is_steep = steepness_of(M) > steep;
@@ -367,18 +339,6 @@ const TransferProduct& Lyapunov::product() {
     if (chatters_ && !(product_.sum_rule_residual() <= most_residual)) product_.end_sticking();
     chatters_ = false;
     return product_;
-}
-
-void WindowedExponents::add(double tau_start, double tau_end) {
-    windows_.emplace_back(parameters_, tau_start, tau_end, options_);
-}
-
-void WindowedExponents::on_stretch(const Stretch& stretch) {
-    for (Lyapunov* w : open_) w->on_stretch(stretch);
-}
-
-void WindowedExponents::on_slip(const Slip& slip) {
-    for (Lyapunov* w : open_) w->on_slip(slip);
 }
 
 void WindowedExponents::on_impact(const Impact& impact) {

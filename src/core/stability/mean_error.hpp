@@ -1,13 +1,10 @@
 // Standard error of a mean over a finite window, estimated from that window alone.
 //
-// The steps of a motion are correlated, so that the variance of their sum is N times their spectral
-// density at frequency zero. It is estimated with sine tapers (Riedel and Sidorenko, IEEE Trans.
-// Signal Process. 43, 1995): the k-th taper is sqrt(2/(N+1)) sin(pi k n/(N+1)), n = 1 to N; the
-// squared sums of the tapered steps are nearly independent, each with one degree of freedom. The
-// mean of the steps is subtracted first, which removes the part (sum of v_k)^2/N of the k-th
-// square: together .96 of 8. About seven degrees of freedom remain, so that (mean - truth)/error
-// follows Student's distribution with seven degrees of freedom: wider intervals than the normal
-// distribution, because the error is itself an estimate.
+// The steps of a motion are correlated: the variance of their sum is N times their spectral density
+// at frequency zero, which is estimated with sine tapers (Riedel and Sidorenko, IEEE Trans. Signal
+// Process. 43, 1995), the k-th being sqrt(2/(N+1)) sin(pi k n/(N+1)), n = 1 to N. The squared sums
+// of the tapered steps are nearly independent. Subtracting the mean of the steps removes .96 of the
+// eight degrees of freedom: (mean - truth)/error follows Student's distribution with seven.
 #pragma once
 
 #include <algorithm>
@@ -21,20 +18,17 @@ namespace vines {
 
 /// Steps of equal duration into which a window is divided.
 inline constexpr int error_steps = 128;
-/// Fewest steps with a standard error. A run that ends within its window has fewer than
-/// error_steps.
+/// Fewest steps with a standard error: a run can end within its window.
 inline constexpr std::size_t fewest_error_steps = 32;
 
 /// Degrees of freedom of the standard errors of exponents.
 inline constexpr int degrees_of_freedom = 7;
 /// Probability of an interval of mean +- student_95 standard errors, and the quantile.
 inline constexpr double interval_level = 0.95, student_95 = 2.364624251010299;
-/// Quantile with the one-sided probability 0.00135 of three standard deviations of the normal
-/// distribution.
+/// Quantile with the one-sided probability 0.00135 of three normal standard deviations.
 inline constexpr double student_three_sigma = 4.529910402650086;
 
-/// Division of a window into steps of at least a forcing cycle. A window of fewer than
-/// fewest_error_steps cycles has none.
+/// Division of a window into steps of at least a cycle; none below fewest_error_steps cycles.
 class WindowSteps {
 public:
     WindowSteps(const Interval& window, double cycle) : window_(window) {
@@ -55,16 +49,13 @@ private:
     std::size_t count_ = 0;
 };
 
-/// Standard error of the sum of the steps; their mean is removed here. NaN for fewer than
-/// fewest_error_steps or non-finite steps.
+/// Standard error of the sum; NaN for fewer than fewest_error_steps or non-finite steps.
 double error_of_sum(std::span<const double> steps);
 /// The same for quantities that slow modulations of the amplitude dominate: the larger of the
-/// errors by eight and by four tapers, since eight average over too wide a band where the density
-/// rises towards frequency zero. Four degrees of freedom.
+/// errors by eight and by four tapers, which average over a narrower band. Four degrees of freedom.
 double error_of_modulated_sum(std::span<const double> steps);
 
-/// Difference of the means of both halves over its standard error, by four tapers in each half: six
-/// degrees of freedom.
+/// Difference of the means of both halves over its standard error: six degrees of freedom.
 double difference_of_halves(std::span<const double> steps);
 /// True if the halves differ by more than stationary steps do with a probability of 0.001.
 inline bool halves_differ(double difference) { return std::abs(difference) > 5.958816179933981; }

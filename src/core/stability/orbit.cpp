@@ -14,29 +14,23 @@ namespace {
 constexpr long most_orbit_impacts = 20000;
 // Newton's method has converged when the return differs by at most this, in units of the scale.
 constexpr double return_tolerance = 1e-10;
-// Rounding prevents anything closer: some ulps of a state of order one. Above that, a step that
-// does not reduce the miss to a tenth has reached rounding, because convergence near the orbit is
-// quadratic.
+// Rounding prevents anything closer; it is reached, too, by a step that does not reduce the miss to
+// a tenth, because convergence near the orbit is quadratic.
 constexpr double rounding_tolerance = 1e-14, least_improvement = 0.1;
 // Limits of Newton's method: steps, steps that increase the miss, halvings of a step out of the
-// cavity. The search also stops where the motion stretches deviations, in units of the scale, by
-// more than most_stretch: an ulp of the state then moves its return by more than
-// `return_tolerance`. That happens for returns of a chaotic motion after many cycles, which without
-// this limit take half of all steps.
+// cavity, stretching of deviations in units of the scale. Beyond most_stretch an ulp of the state
+// moves its return by more than `return_tolerance`, as in a chaotic motion after many cycles.
 constexpr int most_steps = 25, most_worse_steps = 2, most_halvings = 6;
 constexpr double most_stretch = 1e6;
 // A divisor of the period also closes if the state returns to within this distance.
 constexpr double divisor_tolerance = 1e3 * return_tolerance;
-// An eigenvalue this much smaller than the largest one has lost six digits to the solver's error,
-// an ulp of the largest; the exterior powers give its modulus more accurately.
+// Below this fraction of the largest eigenvalue the solver loses more than six digits.
 constexpr double small_multiplier = 1e-6;
-// Smallest scales, in units of b: less is rest. A ball that meets both walls is never slower, by
-// order of magnitude, than b per half cycle.
+// Smallest scales, in units of b. A ball that meets both walls is hardly slower.
 constexpr double least_scale = 1e-9, least_ball_speed = 0.1;
 // Rounding of a contact's tau, as a fraction of a period; it must not be counted twice.
 constexpr double contact_rounding = 1e-9;
-// An orbit is symmetric if its state after half a period is the negative one to within this
-// distance, in units of the scale: far above its closure, far below any relevant asymmetry.
+// Distance, in units of the scale, of the state after half a period from the mirrored one.
 constexpr double symmetric_within = 1e-6;
 
 /// Exterior powers of that product.
@@ -53,8 +47,7 @@ private:
     const Parameters p_;
 };
 
-/// Eigenvalues. The solver's error is an ulp of the largest: small ones take their moduli from the
-/// exterior powers.
+/// Eigenvalues; the exterior powers give the moduli of small ones.
 Eigenvalues multipliers_of(const Matrix4& monodromy, const PowerProduct& powers) {
     Eigenvalues values = eigenvalues_of(monodromy);
     const auto logs = powers.log_moduli();
@@ -91,13 +84,6 @@ private:
     double from_ = 0, length_ = 0;
 };
 
-std::optional<State> after_period(
-    const Parameters& p, const State& s, double tau, int cycles, const StopRequest& stop,
-    std::initializer_list<Observer*> observers) {
-    if (std::abs(s.x - s.y) > p.b) return std::nullopt;
-    return follow(p, s, tau, cycles * p.cycle(), stop, observers);
-}
-
 /// Newton's method, in coordinates scaled to order one.
 std::optional<State> solve_return(
     const Parameters& p, State s, double tau, int cycles, const State& scale, double reach,
@@ -107,7 +93,8 @@ std::optional<State> solve_return(
     double miss_before = infinity;
     for (int step = 0, worse = 0; step < most_steps; ++step) {
         Monodromy monodromy(p);
-        const auto back = after_period(p, s, tau, cycles, stop, {&monodromy});
+        if (std::abs(s.x - s.y) > p.b) return std::nullopt;
+        const auto back = follow(p, s, tau, cycles * p.cycle(), stop, {&monodromy});
         if (!back) return std::nullopt;
         const Eigen::Vector4d miss = (vector_of(*back) - vector_of(s)).cwiseQuotient(unit);
         const double size = miss.cwiseAbs().maxCoeff();
@@ -170,17 +157,15 @@ Exponents PeriodicOrbit::exponents(const Parameters& p) const {
 std::optional<State> follow(
     const Parameters& p, const State& start, double tau, double duration, const StopRequest& stop,
     std::initializer_list<Observer*> observers) {
-    const Outcome outcome = simulate(
-        p, start, {tau + duration, most_orbit_impacts, stop, tau},
-        std::span(observers.begin(), observers.size()));
+    const Outcome outcome =
+        simulate(p, start, {tau + duration, most_orbit_impacts, stop, tau}, observers);
     if (outcome.reason != End::tau_end) return std::nullopt;
     return outcome.state;
 }
 
 namespace {
 
-/// The smallest period: the first divisor of `cycles` after which the state returns. Sets the
-/// results of the monodromy matrix over it; false if the search was stopped.
+/// Sets the smallest period and the results of the monodromy matrix over it; false if stopped.
 bool find_smallest_period(
     const Parameters& p, int cycles, const State& scale, const StopRequest& stop,
     PeriodicOrbit& orbit) {
@@ -189,7 +174,7 @@ bool find_smallest_period(
         Monodromy monodromy(p);
         Powers powers(p);
         const auto back =
-            after_period(p, orbit.state, orbit.tau, divisor, stop, {&monodromy, &powers});
+            follow(p, orbit.state, orbit.tau, divisor * p.cycle(), stop, {&monodromy, &powers});
         if (!back) return false;
         orbit.closure = distance(*back, orbit.state, scale);
         if (divisor < cycles && orbit.closure > divisor_tolerance) continue;
@@ -203,18 +188,14 @@ bool find_smallest_period(
 
 /// Counts the events in a period; false if the search was stopped.
 bool count_period(const Parameters& p, const StopRequest& stop, PeriodicOrbit& orbit) {
-    // Follows three periods and counts one from the first contact after a release: no chatter is
-    // cut.
+    // Counts one of three periods from the first contact after a release: no chatter is cut.
     ContactRecord contacts;
     ImpactRecord impacts;
     const double period = orbit.cycles * p.cycle();
     if (!follow(p, orbit.state, orbit.tau, 3 * period, stop, {&contacts, &impacts})) return false;
-    double from = contacts.sticks.empty() ? orbit.tau : contacts.sticks[0].tau_end;
-    for (const CountedContact& c : contacts.contacts)
-        if (c.tau >= from) {
-            from = c.tau;
-            break;
-        }
+    double from = contacts.sticks.empty() ? orbit.tau : contacts.sticks[0].to;
+    const auto first = std::ranges::lower_bound(contacts.contacts, from, {}, &CountedContact::tau);
+    if (first != contacts.contacts.end()) from = first->tau;
     const double to = from + period * (1 - contact_rounding);
     const auto within = [&](double t) { return t >= from && t < to; };
     orbit.contacts = std::ranges::count_if(
@@ -222,7 +203,7 @@ bool count_period(const Parameters& p, const StopRequest& stop, PeriodicOrbit& o
     orbit.impacts =
         std::ranges::count_if(impacts.entries, [&](const Impact& i) { return within(i.tau); });
     orbit.sticks =
-        std::ranges::count_if(contacts.sticks, [&](const auto& s) { return within(s.tau_start); });
+        std::ranges::count_if(contacts.sticks, [&](const auto& s) { return within(s.from); });
     return true;
 }
 
@@ -264,9 +245,8 @@ std::complex<double> power(std::complex<double> z, int n) {
     return result;
 }
 
-/// Deviations from an orbit in eigenvector coordinates of its monodromy matrix: a small deviation
-/// shrinks there per period by the multipliers' moduli, however non-orthogonal the eigenvectors
-/// are.
+/// Deviations from an orbit in eigenvector coordinates of its monodromy matrix, where they shrink
+/// per period by the multipliers' moduli.
 class EigenCoordinates {
 public:
     EigenCoordinates(const PeriodicOrbit& orbit, const State& scale, bool oscillator_alone)
@@ -290,14 +270,13 @@ private:
     EigenBasis base_;
 };
 
-// Convergence from order one to on_the_orbit takes this many time constants of the contraction,
-// plus some periods before it becomes linear.
+// Time constants of a convergence from order one to on_the_orbit, and periods before it is linear.
 constexpr double decay_times = 24;
 constexpr int more_periods = 20;
 // Longest time that a motion is followed, in cycles, but at least least_periods periods.
 constexpr int most_cycles = 4000, least_periods = 30;
 // If that is too short, the motion must agree with the orbit's linear map in each of `spans`
-// intervals, to this fraction of the contraction in the interval.
+// intervals, to this fraction of the contraction.
 constexpr int spans = 3;
 constexpr double linear_return_share = 0.2;
 // ln of the smallest contraction per period that is more than rounding.
@@ -346,7 +325,7 @@ bool attracts(
 }
 
 std::vector<State> whole_cycle_states(const Parameters& p, const PeriodicOrbit& orbit) {
-    StroboscopicRecord record(p, 1);
+    StroboscopicRecord record(p, {.first = 1});
     follow(p, orbit.state, orbit.tau, (orbit.cycles + 0.5) * p.cycle(), {}, {&record});
     record.states.resize(orbit.cycles);
     return record.states;

@@ -1,8 +1,6 @@
-// Periodic orbits of the forced system, by Newton's method on the return after whole cycles.
-//
-// The derivative of the return map is the transfer matrix over the period (monodromy matrix), the
-// product of the matrices that also give the exponents. Its eigenvalues are the Floquet
-// multipliers: the orbit is stable if all lie inside the unit circle.
+// Periodic orbits of the forced system, by Newton's method on the return after whole cycles. The
+// derivative of the return map is the product of the transfer matrices over the period (monodromy
+// matrix); its eigenvalues, the Floquet multipliers, lie inside the unit circle for a stable orbit.
 #pragma once
 
 #include <optional>
@@ -32,8 +30,7 @@ struct PeriodicOrbit {
     Eigen::Matrix4d monodromy;  ///< derivative of the return map at `state`
 
     bool stable() const { return elementary::modulus(multipliers[0]) < 1; }
-    /// ln|multiplier| / period, the exponents of every motion that the orbit attracts; -infinity
-    /// for a zero multiplier.
+    /// ln|multiplier| / period: those of every motion that the orbit attracts.
     Exponents exponents(const Parameters& parameters) const;
 };
 
@@ -62,20 +59,17 @@ std::optional<State> follow(
     const Parameters& parameters, const State& start, double tau, double duration,
     const StopRequest& stop, std::initializer_list<Observer*> observers = {});
 
-/// The orbit with a period of `cycles` (or a divisor) near the state at a whole cycle, if Newton's
-/// method finds one within `reach` of it before it is stopped.
+/// The orbit of that period or a divisor that Newton's method finds within `reach`.
 std::optional<PeriodicOrbit> find_orbit(
     const Parameters& parameters, const State& at_whole_cycle, int cycles, const State& scale,
     double reach, const StopRequest& stop);
 
-/// At this distance, in units of the scale, a motion follows an attracting orbit permanently: a
-/// chance return from order one would take 1e16 cycles or more.
+/// At this distance a motion stays: a chance return would take 1e16 cycles or more.
 inline constexpr double on_the_orbit = 1e-8;
 
-/// True if a stable orbit attracts the motion from a state at a whole cycle. Proof: the motion is
-/// followed until it is closer than chance can explain. If the orbit contracts too slowly for that,
-/// the motion must agree with the orbit's linear map much more precisely than the map contracts. A
-/// motion that only passes by does neither.
+/// True if a stable orbit attracts the motion from a state at a whole cycle: followed, it comes
+/// closer than chance can explain, or, if the orbit contracts too slowly for that, agrees with its
+/// linear map much more precisely than the map contracts.
 bool attracts(
     const Parameters& parameters, const PeriodicOrbit& orbit, const State& at_whole_cycle,
     const State& scale, const StopRequest& stop);

@@ -15,14 +15,13 @@ namespace {
 
 // A shorter history gives no standard error.
 constexpr std::size_t least_entries = 32;
-// Entries that determine the standard error of a part of a history: twice as many as the tapers
-// resolve.
+// Fewest entries for the standard error of a part: twice as many as the tapers resolve.
 constexpr std::size_t least_entries_of_transient = 18;
 // 1/10 of the impacts counts as transient.
 constexpr std::size_t transient_part = 10;
 
-/// Increments of one exponent's sum of logarithms (lambda times its window) over even steps of tau,
-/// from entry `first`, or else from the window's start, up to entry `last`.
+/// Increments of lambda times its window over even steps of tau, from entry `first`, or else from
+/// the window's start, up to entry `last`.
 std::array<double, error_steps> even_steps(
     const ExponentHistory& h, double start, std::optional<std::size_t> first, std::size_t last,
     std::size_t stride, int exponent) {
@@ -143,8 +142,7 @@ std::optional<double> chaotic_transient_end(const ExponentHistory& h, double sta
                    0.25 * least_growth_of_departures;
     };
     if (grows_in_both_halves(last)) return h.tau[last];
-    // The sum can rise a little further while the motion settles: then its growth ends where it is
-    // farthest above half of its mean slope.
+    // Growth ends where the sum is farthest above half of its mean slope.
     std::size_t grown = last;
     const double slope = growth / (h.tau[last] - h.tau[first]);
     const auto above = [&](std::size_t k) { return sum_at(k) - 0.5 * slope * h.tau[k]; };

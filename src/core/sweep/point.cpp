@@ -88,7 +88,7 @@ double reference_rms(
     const Parameters& p, const State& begin, std::optional<double> amplitude,
     const Interval& window) {
     return amplitude && *amplitude > 0 ? *amplitude / std::numbers::sqrt2
-                                       : unattached(p, begin, window.from, window.to).rms;
+                                       : unattached(p, begin, window).rms;
 }
 
 /// Last state at a whole cycle: a run that ended within a cycle continues to its end.

@@ -51,7 +51,7 @@ peers::Answer motion(const peers::Job& job) {
 
 peers::Answer exponents(const peers::Job& job) {
     Contacts contacts;
-    Lyapunov lyapunov(system_of(job), job.tau, job.tau_end, qr_alone);
+    Lyapunov lyapunov(system_of(job), {job.tau, job.tau_end}, qr_alone);
     run(job, {&contacts, &lyapunov});
     return std::move(contacts.answer);
 }

@@ -129,7 +129,7 @@ TEST_CASE("exponents that violate the sum rule give a warning") {
     product.start(run.impacts[0].tau);
     for (std::size_t k = 1; k < 3; ++k) {
         const double flight = run.impacts[k].tau - run.impacts[k - 1].tau;
-        Leg leg = leg_of(Flow::free(p), flight, false);
+        Leg leg = leg_of(*Flow::shared_free(p), flight, false);
         leg.log_det += 0.1;  // inconsistent with its matrix
         product.append({&leg, 1}, saltation(p, run.impacts[k]), run.impacts[k].tau);
     }

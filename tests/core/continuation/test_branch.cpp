@@ -108,7 +108,7 @@ void check_points(
             CHECK(
                 elementary::modulus(found->multipliers[k]) ==
                 doctest::Approx(elementary::modulus(orbit.multipliers[k])).epsilon(1e-6));
-        Energy energy(p, 0, orbit.sequence.cycles() * p.cycle());
+        Energy energy(p, {0, orbit.sequence.cycles() * p.cycle()});
         follow(p, s, 0, orbit.sequence.cycles() * p.cycle(), {}, {&energy});
         const EnergyBalance balance = energy.balance({0, orbit.sequence.cycles() * p.cycle()});
         CHECK(orbit.measures.x_max == doctest::Approx(balance.peak).epsilon(1e-7));
@@ -125,7 +125,7 @@ TEST_CASE("an arc is the flow's motion, and its derivatives are differences of a
         Parameters p = table1(0.015, damping);
         p.Omega = 1.07;
         const Flow::Coefficients law = Flow::free_coefficients(p);
-        const Flow flow = Flow::free(p);
+        const Flow flow = *Flow::shared_free(p);
         const Oscillation start{0.002, -0.003, std::sin(0.7), std::cos(0.7)};
         for (const double s : {1e-7, 0.3, 3.1, 12.0}) {
             CAPTURE(s);

@@ -53,8 +53,8 @@ Extremes sampled(const Parameters& p, const State& start, double tau_end) {
             for (int k = 0; k <= 2000; ++k) {
                 const double at = s.duration * k / 2000, tau = s.tau + at;
                 found.x_acceleration = std::max(found.x_acceleration, std::abs(s.x_ddot(at)));
-                const double base = p.load ? s.forces->loading->base.at(at)
-                                           : p.epsilon * p.G * std::sin(p.Omega * tau);
+                const double base =
+                    p.load ? s.forces->base.at(at) : p.epsilon * p.G * std::sin(p.Omega * tau);
                 found.x_relative = std::max(found.x_relative, std::abs(s.at(at).x - base));
             }
         }
@@ -86,7 +86,7 @@ TEST_CASE("extremes are those of dense samples and of all impacts") {
             p.Omega = Omega;
             p.lambda = 20;
             if (slides) p.gravity = 0.002, p.friction = 0.001;
-            ExtremesRecord record(p, 0, 60);
+            ExtremesRecord record(p, {0, 60});
             Observer* const observers[] = {&record};
             simulate(p, default_state(p), {.tau_end = 60}, observers);
             const Extremes dense = sampled(p, default_state(p), 60);

@@ -72,7 +72,7 @@ Verdict long_run_verdict(const Parameters& p) {
     if (const auto k = std::find_if(known.begin(), known.end(), same); k != known.end())
         return k->second;
     const double begin = 2e4, end = 2e5;
-    Lyapunov lyapunov(p, begin, end, qr_alone);
+    Lyapunov lyapunov(p, {begin, end}, qr_alone);
     Observer* const observers[] = {&lyapunov};
     simulate(
         p, default_state(p), {.tau_end = end, .max_impacts = std::numeric_limits<long>::max()},

@@ -25,7 +25,7 @@ inline Judged judged(
     const Parameters& p, const State& start, double cycles, double settle_cycles = 0) {
     Rhythm rhythm(p, {0, cycles * p.cycle()}, everything);
     StroboscopicRecord stroboscopic(p);
-    Lyapunov lyapunov(p, 0, cycles * p.cycle(), qr_alone);
+    Lyapunov lyapunov(p, {0, cycles * p.cycle()}, qr_alone);
     Observer* const observers[] = {&rhythm, &stroboscopic, &lyapunov};
     const Outcome outcome = simulate(p, start, {cycles * p.cycle(), 10000000, {}}, observers);
     const Growth growth = growth_of(lyapunov.product());

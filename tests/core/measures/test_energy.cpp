@@ -19,7 +19,7 @@ TEST_CASE("the energy balance closes to rounding, whatever the system and the wi
         System s = random_system(engine);
         if (i % 3 == 0) s.parameters.table_plus = random_table(engine, 0.02);
         const double from = uniform(engine, 0, 40), to = from + uniform(engine, 1, 100);
-        Energy energy(s.parameters, from, to);
+        Energy energy(s.parameters, {from, to});
         record(s.parameters, s.start, 150, 5000, {&energy});
         const double turnover = std::abs(energy.balance({}).input) + energy.balance({}).damper +
                                 energy.balance({}).impacts + energy.balance({}).at_start +
@@ -32,7 +32,7 @@ TEST_CASE("the energy balance closes to rounding, whatever the system and the wi
 TEST_CASE("the residual of Table 1 is below 1e-9 of the input, also with sticking") {
     for (double b : {0.015, 0.022, 0.004}) {
         const Parameters p = table1(b, Damping::closed_form);
-        Energy energy(p, 0, 1709);
+        Energy energy(p, {0, 1709});
         record(p, default_state(p), 1709, 1000000, {&energy});
         CHECK(energy.balance({}).input > 0);
         CHECK(std::abs(energy.balance({}).residual) < 1e-12 * energy.balance({}).input);
@@ -43,11 +43,11 @@ TEST_CASE("an impact at the border of two windows belongs to the first alone") {
     Parameters p;
     p.b = 0.0088, p.G = 0.0284, p.R_plus = p.R_minus = 0.367, p.Omega = 0.98, p.epsilon = 0.03356,
     p.lambda = 2.064;
-    Energy whole(p, 0, 100);
+    Energy whole(p, {0, 100});
     const Record run = record(p, default_state(p), 100, 1000000, {&whole});
     REQUIRE(run.impacts.size() > 20);
     for (const Impact& i : run.impacts) {
-        Energy before(p, 0, i.tau), after(p, i.tau, 100);
+        Energy before(p, {0, i.tau}), after(p, {i.tau, 100});
         record(p, default_state(p), 100, 1000000, {&before, &after});
         CHECK(
             before.balance({}).impacts + after.balance({}).impacts ==
@@ -61,7 +61,7 @@ TEST_CASE("an impact at the border of two windows belongs to the first alone") {
 
 TEST_CASE("rms and peak of x are those of dense samples") {
     const Parameters p = table1(0.022, Damping::equation_of_motion);
-    Energy energy(p, 100, 400);
+    Energy energy(p, {100, 400});
     SeriesRecord series(1e-3);
     record(p, default_state(p), 400, 1000000, {&energy, &series});
     double squares = 0, peak = 0;
@@ -87,13 +87,13 @@ TEST_CASE("from rest the rms is right however short the window and slow the forc
             p.Omega = Omega;
             p.b = 10;  // no impact
             const State rest{0, 0, 0, 0};
-            Energy energy(p, 0, tau_end);
+            Energy energy(p, {0, tau_end});
             record(p, rest, tau_end, 1000, {&energy});
             CAPTURE(Omega);
             CAPTURE(tau_end);
             CHECK(
                 energy.balance({}).rms ==
-                doctest::Approx(unattached(p, rest, 0, tau_end).rms).epsilon(1e-11).scale(0));
+                doctest::Approx(unattached(p, rest, {0, tau_end}).rms).epsilon(1e-11).scale(0));
             CHECK(
                 std::abs(energy.balance({}).residual) <
                 1e-11 * energy.balance({}).damper + 1e-11 * energy.balance({}).at_end);
@@ -103,7 +103,7 @@ TEST_CASE("from rest the rms is right however short the window and slow the forc
 TEST_CASE("a window that begins at the last impact has the energy after it") {
     const Parameters p = table1(0.015, Damping::closed_form);
     const Impact last = record(p, default_state(p), 1000, 20).impacts.back();
-    Energy energy(p, last.tau, 1000);
+    Energy energy(p, {last.tau, 1000});
     record(p, default_state(p), 1000, 20, {&energy});
     CHECK(energy.duration() == 0);
     CHECK(energy.balance({}).at_end == energy.balance({}).at_start);
@@ -116,14 +116,14 @@ TEST_CASE("without absorber the oscillator reaches its steady amplitude") {
     for (double Omega : {0.4, 1.0, 2.3}) {
         Parameters p = table1(0.022, Damping::closed_form);
         p.Omega = Omega;
-        const Unattached u = unattached(p, {}, 5000, 6000);
+        const Unattached u = unattached(p, {}, {5000, 6000});
         REQUIRE(u.amplitude);
         CHECK(u.peak == doctest::Approx(*u.amplitude).epsilon(1e-9));
         CHECK(u.rms == doctest::Approx(*u.amplitude / std::sqrt(2)).epsilon(1e-2));
     }
     Parameters undamped = table1(0.022, Damping::closed_form);
     undamped.lambda = 0;
-    CHECK_FALSE(unattached(undamped, {}, 0, 10).amplitude);
+    CHECK_FALSE(unattached(undamped, {}, {0, 10}).amplitude);
 }
 
 TEST_CASE("a system at rest has no time at which half of its energy is left") {
@@ -179,7 +179,7 @@ TEST_CASE("the standard errors of x_rms, the fraction of impacts and z are those
     } rms, share, z;
     State state = default_state(p);
     for (int k = 0; k < windows; ++k) {
-        Energy energy(p, 0, length);
+        Energy energy(p, {0, length});
         Rhythm rhythm(p, {0, length}, 0);
         Observer* const observers[] = {&energy, &rhythm};
         state = simulate(p, state, {length, 100000, {}}, observers).state;
@@ -202,7 +202,7 @@ TEST_CASE("the standard errors of x_rms, the fraction of impacts and z are those
 
 TEST_CASE("windows of fewer than 32 cycles have no standard errors") {
     const Parameters p = table1(0.025, Damping::closed_form);
-    Energy energy(p, 0, 31.5 * p.cycle());
+    Energy energy(p, {0, 31.5 * p.cycle()});
     Rhythm rhythm(p, {0, 31.5 * p.cycle()}, 0);
     record(p, default_state(p), 31.5 * p.cycle(), 100000, {&energy, &rhythm});
     const ContactCounts counts = rhythm.finish({0, 31.5 * p.cycle()});
@@ -214,7 +214,7 @@ TEST_CASE("the smallest peak in a cycle is that of dense samples") {
     for (const double b : {0.003, 0.022, 0.04}) {
         const Parameters p = table1(b, Damping::closed_form);
         const double from = 50.3, to = from + 60.5 * p.cycle();
-        CyclePeaks cycle_peaks(from, to, p.cycle());
+        CyclePeaks cycle_peaks({from, to}, p.cycle());
         SeriesRecord series(p.cycle() / 2000);
         record(p, default_state(p), to, 100000, {&cycle_peaks, &series});
         std::vector<double> peaks(60);

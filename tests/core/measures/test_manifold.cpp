@@ -21,7 +21,7 @@ Moduli cycle_moduli(double R, double Omega, double b, double V) {
     // The natural frequency is 1: the manifold of Omega = 1 in the oscillator's time.
     const double k = (1 - R) / (1 + R), x = b - std::numbers::pi / 2 * V;
     const State after_impact{k * V, x, V, x - b};
-    TransferRecord record_of(p, 0, 100);
+    TransferRecord record_of(p, {0, 100});
     Observer* const observers[] = {&record_of};
     simulate(p, after_impact, {3.5 * std::numbers::pi, 1000, {}}, observers);
     REQUIRE(record_of.entries.size() >= 2);
@@ -124,7 +124,7 @@ TEST_CASE(
         Parameters p = table1(0.015, Damping::closed_form);
         p.lambda *= p.epsilon / 0.0084;  // 1 for Table 1
         p.epsilon = epsilon;
-        HalfCycles points(p, 0, 20000);
+        HalfCycles points(p, {0, 20000});
         record(p, default_state(p), 20000, 1000000, {&points});
         const ManifoldPoint end = points.points.back();
         const double on_manifold = manifold_C(0.6, 1, p.b, end.V);
@@ -137,7 +137,7 @@ TEST_CASE(
     "half cycles hold the mean speed of the ball and the peak of the oscillator, including "
     "sticking phases") {
     const Parameters p = table1(0.015, Damping::closed_form);
-    HalfCycles points(p, 0, 60);  // includes the sticking phase at 11.8
+    HalfCycles points(p, {0, 60});  // includes the sticking phase at 11.8
     SeriesRecord series(1e-4);
     record(p, default_state(p), 60, 1000000, {&points, &series});
     for (std::size_t k = 0; k < points.points.size(); ++k) {

@@ -77,7 +77,7 @@ TEST_CASE(
 
 TEST_CASE("the multipliers of a regular response are the exponents of a long window") {
     const Parameters p = table1(0.015, Damping::closed_form);
-    Lyapunov lyapunov(p, 5000, 30000, qr_alone);
+    Lyapunov lyapunov(p, {5000, 30000}, qr_alone);
     record(p, default_state(p), 30000, 1000000, {&lyapunov});
     const Exponents of_orbit = judge(0.015, Damping::closed_form).orbit->exponents(p);
     // Both pairs are complex: the splitting of each pair by QR decays as 1/T, its sum is exact.

@@ -25,7 +25,7 @@ TEST_CASE("integrals in closed form equal those by tables, in free flight and st
     int compared = 0;
     for (int i = 0; i < 300; ++i) {
         const Parameters p = random_system(engine).parameters;
-        const Flow flow = i % 2 ? Flow::free(p) : Flow::sticking(p);
+        const Flow flow = i % 2 ? *Flow::shared_free(p) : *Flow::shared_sticking(p);
         const auto F = Antiderivative::of(flow);
         if (!F) continue;
         ++compared;
@@ -48,7 +48,7 @@ TEST_CASE("integrals in closed form equal those by tables, in free flight and st
 }
 
 TEST_CASE("across() equals the change of at() over an impact") {
-    const Flow flow = Flow::free(table1(0.022, Damping::closed_form));
+    const Flow flow = *Flow::shared_free(table1(0.022, Damping::closed_form));
     const Antiderivative F = Antiderivative::of(flow).value();
     const Oscillation before = {0.003, -0.004, 0.6, -0.8}, after = {0.003, -0.0031, 0.6, -0.8};
     Integrals difference = F.at(before);

@@ -83,8 +83,8 @@ TEST_CASE("each window of a run has its own verdict") {
     const auto [p, captured] = captured_transient();
     Rhythm rhythm(p, {1.1 * captured, 20000}, everything);
     StroboscopicRecord stroboscopic(p);
-    Lyapunov first(p, 0, 0.5 * captured, qr_alone), second(p, 0, 0.9 * captured, qr_alone),
-        last(p, 1.1 * captured, 20000, qr_alone);
+    Lyapunov first(p, {0, 0.5 * captured}, qr_alone), second(p, {0, 0.9 * captured}, qr_alone),
+        last(p, {1.1 * captured, 20000}, qr_alone);
     Observer* const observers[] = {&rhythm, &stroboscopic, &first, &second, &last};
     simulate(p, default_state(p), {20000, 10000000, {}}, observers);
     const Regime r = regime_of(
@@ -132,7 +132,7 @@ TEST_CASE("a run that keeps only its last states reports the same capture") {
     const State start = default_state(p);
     for (const double tau_end : {20000.0, captured + 3000}) {
         Rhythm rhythms[] = {{p, {0, tau_end}, 0}, {p, {0, tau_end}, 0}, {p, {0, tau_end}, 0}};
-        StroboscopicRecord all(p), last(p, {fewest_states, tau_end});
+        StroboscopicRecord all(p), last(p, {.until = tau_end}, fewest_states);
         Observer* const observers[] = {&rhythms[0], &rhythms[1], &rhythms[2], &all, &last};
         simulate(p, start, {tau_end, 10000000, {}}, observers);
         REQUIRE(last.states.size() < all.states.size());
@@ -153,7 +153,7 @@ TEST_CASE("without time to repeat the run, a capture is dated from the kept stat
     const State start = default_state(p);
     const double tau_end = 20000;
     Rhythm rhythm(p, {0, tau_end}, 0);
-    StroboscopicRecord last(p, {fewest_states, tau_end});
+    StroboscopicRecord last(p, {.until = tau_end}, fewest_states);
     Observer* const observers[] = {&rhythm, &last};
     simulate(p, start, {tau_end, 10000000, {}}, observers);
     const auto judged = [&](long most_looks, long& looks) {

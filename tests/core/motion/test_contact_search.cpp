@@ -63,7 +63,7 @@ TEST_CASE("no contact of a random flight is missed or early") {
     int contacts = 0;
     for (int n = 0; n < 3000; ++n) {
         const System s = random_system(engine);
-        const Flow flow = Flow::free(s.parameters);
+        const Flow flow = *Flow::shared_free(s.parameters);
         const double b = s.parameters.b;
         const Oscillation lo{s.start.x, s.start.x_dot, std::sin(n), std::cos(n)};
         FlightStart start{lo, s.start.y, s.start.y_dot, 0, 0, 0};
@@ -100,7 +100,7 @@ TEST_CASE("no contact of a random flight is missed or early") {
 
 TEST_CASE("a contact at the very end of the interval belongs to it, one just after it does not") {
     const Parameters p = table1(0.022, Damping::closed_form);
-    const Flow flow = Flow::free(p);
+    const Flow flow = *Flow::shared_free(p);
     const FlightStart start{{0, 0.03, std::sin(p.phi()), std::cos(p.phi())}, 0, 0, 0, 0, 0};
     std::vector<GrazingPoint> grazing;
     const auto contact = next_contact(flow, start, p.b, 5, grazing);
@@ -117,7 +117,7 @@ TEST_CASE("a contact with a relative speed near rounding is found once, at the w
         Parameters p = table1(uniform(engine, 0.5, 2), Damping::closed_form);
         p.G = 0;
         const double speed = p.b * std::pow(10, uniform(engine, -15, -8));
-        const Flow flow = Flow::free(p);
+        const Flow flow = *Flow::shared_free(p);
         const double s = uniform(engine, 0, 0.9) * flow.reach(),
                      x = uniform(engine, 0, 0.5) * speed * s;
         const FlightStart start{

@@ -29,8 +29,8 @@ TEST_CASE("each impact is a contact, and a chatter that ends in sticking is one 
     CHECK(record.contacts[1].side == -1);
     CHECK(record.contacts[2].tau == 5);
     REQUIRE(record.sticks.size() == 1);
-    CHECK(record.sticks[0].tau_start == 3);
-    CHECK(record.sticks[0].tau_end == 4);
+    CHECK(record.sticks[0].from == 3);
+    CHECK(record.sticks[0].to == 4);
 }
 
 TEST_CASE("sticking after one impact, or after none, removes no contact") {

@@ -27,7 +27,7 @@ TEST_CASE(
     "peak") {
     std::mt19937_64 engine(12);
     for (int i = 0; i < 200; ++i) {
-        const Flow flow = Flow::free(random_system(engine).parameters);
+        const Flow flow = *Flow::shared_free(random_system(engine).parameters);
         const Oscillation o = {uniform(engine, -1, 1), uniform(engine, -1, 1), 0.6, 0.8};
         const double duration = uniform(engine, 0, i % 2 ? 1 : 50);
         double sampled = 0;

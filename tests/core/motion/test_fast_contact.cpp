@@ -25,9 +25,11 @@ RandomFlight random_flight(std::mt19937_64& engine, bool bends = false) {
     const double y_2 = bends ? uniform(engine, -1, 1) * (std::abs(lo.x) + s.parameters.b) : 0;
     if (engine() % 8 == 0)
         return {
-            Flow::free(s.parameters), s.parameters.b, {lo, s.start.y, s.start.y_dot, 0, 0, 0, y_2}};
+            *Flow::shared_free(s.parameters),
+            s.parameters.b,
+            {lo, s.start.y, s.start.y_dot, 0, 0, 0, y_2}};
     if (engine() % 4 == 0) {
-        const Flow flow = Flow::free(s.parameters);
+        const Flow flow = *Flow::shared_free(s.parameters);
         const auto [stiffness, damping, forcing, Omega] = flow.coefficients();
         lo.x = (forcing * lo.sin_theta - damping * lo.x_dot - 2 * y_2) / stiffness;
         const int away = flow.jerk(lo) < 0 ? 1 : -1;
@@ -38,7 +40,7 @@ RandomFlight random_flight(std::mt19937_64& engine, bool bends = false) {
     const double speed =
         std::abs(s.start.x_dot - s.start.y_dot) * std::pow(10, -uniform(engine, 0, 12)) + 1e-12;
     return {
-        Flow::free(s.parameters),
+        *Flow::shared_free(s.parameters),
         s.parameters.b,
         {lo, lo.x - side * s.parameters.b, lo.x_dot + side * speed, side, -side * speed, 1, y_2}};
 }

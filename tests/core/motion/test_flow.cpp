@@ -48,7 +48,7 @@ TEST_CASE("the flow is the paper's closed form") {
             CAPTURE(zeta);
             CAPTURE(Omega);
             const Parameters p = with_zeta(zeta, Omega);
-            const Flow flow = Flow::free(p);
+            const Flow flow = *Flow::shared_free(p);
             for (double s : {0.0, 1e-9, 0.01, 0.15, 0.16, 1.0, 7.3, 20.0, 300.0}) {
                 const Oscillation o = flow.after(start, s);
                 const ClosedForm c = closed_form(p, start, s);
@@ -62,7 +62,7 @@ TEST_CASE("the flow is the paper's closed form") {
 TEST_CASE("the transfer matrix is eq. (19), and the derivative of the flow by its start") {
     for (double zeta : {0.012, 0.5}) {
         const Parameters p = with_zeta(zeta, 1.7);
-        const Flow flow = Flow::free(p);
+        const Flow flow = *Flow::shared_free(p);
         const double wd = std::sqrt(1 - zeta * zeta);
         for (double s : {1e-6, 0.1, 2.0, 33.0}) {
             const Transfer t = flow.transfer(s);
@@ -84,7 +84,7 @@ TEST_CASE("the transfer matrix is eq. (19), and the derivative of the flow by it
 TEST_CASE("without damping at resonance the response grows with time") {
     const Parameters p = with_zeta(0, 1);
     const double a = p.epsilon * p.A();
-    const Flow flow = Flow::free(p);
+    const Flow flow = *Flow::shared_free(p);
     for (double s : {0.1, 3.0, 50.0}) {  // x'' + x = a sin s from rest: x = a (sin s - s cos s)/2
         const Oscillation o = flow.after({0, 0, 0, 1}, s);
         CHECK(std::abs(o.x - a * (std::sin(s) - s * std::cos(s)) / 2) < 1e-16);
@@ -92,7 +92,8 @@ TEST_CASE("without damping at resonance the response grows with time") {
 }
 
 TEST_CASE("near an undamped resonance no digits are lost to cancellation") {
-    const Flow at = Flow::free(with_zeta(0, 1)), beside = Flow::free(with_zeta(0, 1 + 1e-12));
+    const Flow at = *Flow::shared_free(with_zeta(0, 1)),
+               beside = *Flow::shared_free(with_zeta(0, 1 + 1e-12));
     CHECK(std::abs(at.after(start, 100).x - beside.after(start, 100).x) < 1e-12);
 }
 
@@ -102,7 +103,7 @@ TEST_CASE("critical and over-critical damping are their closed forms") {
     for (double s : {0.05, 1.0, 5.0})  // x = e^-s (x0 + (v0 + x0) s)
         CHECK(
             std::abs(
-                Flow::free(p).after(start, s).x -
+                Flow::shared_free(p)->after(start, s).x -
                 std::exp(-s) * (start.x + (start.x_dot + start.x) * s)) < 1e-17);
     p = with_zeta(3, 1);
     p.G = 0;
@@ -111,16 +112,16 @@ TEST_CASE("critical and over-critical damping are their closed forms") {
     for (double s : {0.01, 0.5, 4.0})
         CHECK(
             std::abs(
-                Flow::free(p).after(start, s).x - (c1 * std::exp(m1 * s) + c2 * std::exp(m2 * s))) <
-            1e-17);
+                Flow::shared_free(p)->after(start, s).x -
+                (c1 * std::exp(m1 * s) + c2 * std::exp(m2 * s))) < 1e-17);
 }
 
 TEST_CASE("the bounds of the motion hold over the whole reach") {
     std::mt19937_64 engine(7);
     for (int n = 0; n < 200; ++n) {
         const System system = random_system(engine);
-        const Flow flow =
-            engine() % 2 ? Flow::free(system.parameters) : Flow::sticking(system.parameters);
+        const Flow flow = engine() % 2 ? *Flow::shared_free(system.parameters)
+                                       : *Flow::shared_sticking(system.parameters);
         Oscillation o{system.start.x, system.start.x_dot, std::sin(n), std::cos(n)};
         const auto bounds = flow.bounds(o);
         double x = 0, a = 0, j = 0;

@@ -22,7 +22,7 @@ Impact random_impact(std::mt19937_64& engine, Parameters& p) {
         {uniform(engine, -.01, .01), uniform(engine, -.01, .01), std::sin(1.0), std::cos(1.0)},
         0};
     c.relative_speed = c.side * uniform(engine, 1e-4, 0.02);
-    return impact_at(p, c, Flow::free(p).acceleration(c.lo), 1);
+    return impact_at(p, c, Flow::shared_free(p)->acceleration(c.lo), 1);
 }
 
 }  // namespace

@@ -133,7 +133,7 @@ TEST_CASE("the energy and the deviations of a loaded motion balance") {
     for (const LoadKind kind : {LoadKind::base_acceleration, LoadKind::force}) {
         Parameters p = loaded(kind, 0.03);
         p.gravity = 0.002, p.friction = 0.001;
-        Energy energy(p, 0, 45);
+        Energy energy(p, {0, 45});
         Observer* const observers[] = {&energy};
         simulate(p, {0, 0, 0.01, 0}, {45, 100000, {}}, observers);
         const EnergyBalance balance = energy.balance({0, 45});

@@ -45,7 +45,7 @@ TEST_CASE("the series is the motion between the impacts, at equal steps and at t
     CHECK(series.series.tau[400] == 100);
     CHECK(series.series.tau.back() == 100.1);
     CHECK(series.series.x.back() == run.outcome.state.x);
-    const Flow flow = Flow::free(p);
+    const Flow flow = *Flow::shared_free(p);
     // Before the first impact.
     const Oscillation o = flow.after({0, 0, std::sin(p.phi()), std::cos(p.phi())}, 18);
     CHECK(std::abs(series.series.x[72] - o.x) < 1e-16);
@@ -66,7 +66,7 @@ TEST_CASE("a series whose last step is the end of the run contains the end once"
 TEST_CASE("stroboscopic states are those of the motion at one phase of each cycle") {
     const Parameters p = table1(0.022, Damping::closed_form);
     const double phase = 0.7;
-    StroboscopicRecord strobe(p, 2, phase);
+    StroboscopicRecord strobe(p, {.first = 2, .phase = phase});
     record(p, default_state(p), 100, 1000, {&strobe});
     REQUIRE(strobe.states.size() == 14);
     for (std::size_t k = 0; k < strobe.states.size(); ++k) {
@@ -80,7 +80,7 @@ TEST_CASE("stroboscopic states are those of the motion at one phase of each cycl
 
 TEST_CASE("the last states up to a given time are kept") {
     const Parameters p = table1(0.022, Damping::closed_form);
-    StroboscopicRecord all(p), last(p, {8, 150});
+    StroboscopicRecord all(p), last(p, {.until = 150}, 8);
     record(p, default_state(p), 300, 100000, {&all, &last});
     const long end = last.first() + static_cast<long>(last.states.size());
     CHECK(last.tau_of(end - 1) <= 150);
@@ -97,7 +97,7 @@ TEST_CASE("the last states up to a given time are kept") {
 TEST_CASE(
     "a section contains the impacts of its window, each with the time since the previous one") {
     const Parameters p = table1(0.022, Damping::closed_form);
-    SectionRecord whole(0, 300, everything), late(100, 200, everything), last(0, 300, 4);
+    SectionRecord whole({0, 300}, everything), late({100, 200}, everything), last({0, 300}, 4);
     const Record run = record(p, default_state(p), 300, 1000, {&whole, &late, &last});
     REQUIRE(whole.entries.size() == run.impacts.size());
     CHECK(std::isnan(whole.entries[0].since));

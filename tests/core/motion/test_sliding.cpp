@@ -211,7 +211,7 @@ TEST_CASE("the energy of a sliding ball balances") {
          {std::pair{0.02, 0.}, std::pair{0., 0.004}, std::pair{0.01, 0.012},
           std::pair{0., 0.015}}) {
         const Parameters p = machine(gravity, friction);
-        Energy energy(p, 0, 200);
+        Energy energy(p, {0, 200});
         Observer* const observers[] = {&energy};
         simulate(p, {0.01, 0.002, -0.02, 0.005}, {200, 100000, {}}, observers);
         const EnergyBalance balance = energy.balance({0, 200});
@@ -296,7 +296,7 @@ TEST_CASE("a bouncing ball on a heavy oscillator has the times of the closed for
 
 TEST_CASE("a rest inside the cavity has one exponent of minus infinity") {
     const Parameters p = machine(0, 0.012);
-    Lyapunov lyapunov(p, 0, 1000, {.qr = true, .eigenvalues = true});
+    Lyapunov lyapunov(p, {0, 1000}, {.qr = true, .eigenvalues = true});
     Rests rests;
     Observer* const observers[] = {&lyapunov, &rests};
     simulate(p, {0.01, 0.002, -0.02, 0.005}, {1000, 100000, {}}, observers);
@@ -344,7 +344,7 @@ TEST_CASE("slips change the sum of the exponents by the logarithms of their rati
             pending = 0;
         }
     } ratios;
-    Lyapunov lyapunov(p, 0, 100, {.qr = true});
+    Lyapunov lyapunov(p, {0, 100}, {.qr = true});
     Rests rests;
     Observer* const observers[] = {&lyapunov, &ratios, &rests};
     simulate(p, {0.01, 0.002, -0.02, 0.005}, {100, 100000, {}}, observers);

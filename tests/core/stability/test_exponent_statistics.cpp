@@ -39,7 +39,7 @@ TEST_CASE("a slope needs twenty steps after the first tenth of the impacts") {
 TEST_CASE("a coarse slope does not depend on the requested length of the history") {
     const Parameters p = table1(0.022, Damping::closed_form);
     const auto slope = [&](std::size_t history) {
-        Lyapunov lyapunov(p, 0, 1e9, {.qr = true, .history = history});
+        Lyapunov lyapunov(p, {0, 1e9}, {.qr = true, .history = history});
         record(p, default_state(p), 4000, 1000000, {&lyapunov});
         return coarse_slope(lyapunov.product().qr_history(), lyapunov.product().start_tau());
     };
@@ -110,7 +110,7 @@ Coverage coverage(const Parameters& p) {
     double mean = 0;
     State state = default_state(p);
     for (int k = -1; k < covered_windows; ++k) {
-        Lyapunov lyapunov(p, 0, length, qr_alone);
+        Lyapunov lyapunov(p, {0, length}, qr_alone);
         Observer* const observers[] = {&lyapunov};
         state = simulate(p, state, {length, 100000, {}}, observers).state;
         if (k < 0) continue;  // transient

@@ -50,7 +50,7 @@ Eigen::Matrix<double, 6, 6> area_matrix(const Way&... way) {
 template <class... Way>
 Matrix4 volume_matrix(const Way&... way) {
     Matrix4 m;
-    for (int k = 0; k < 4; ++k) m.col(k) = carried(Volume{Eigen::Vector4d::Unit(k)}, way...).normal;
+    for (int k = 0; k < 4; ++k) m.col(k) = carried(Volume(Volume::Unit(k)), way...);
     return m;
 }
 
@@ -59,8 +59,8 @@ enum class Kind { flight, sticking, resting };
 
 Leg random_leg(std::mt19937_64& engine, const Parameters& p, Kind kind) {
     Leg leg = leg_of(
-        kind == Kind::flight ? Flow::free(p) : Flow::sticking(p), uniform(engine, 0, 0.5),
-        kind == Kind::sticking);
+        kind == Kind::flight ? *Flow::shared_free(p) : *Flow::shared_sticking(p),
+        uniform(engine, 0, 0.5), kind == Kind::sticking);
     leg.resting = kind == Kind::resting;
     return leg;
 }
@@ -124,7 +124,7 @@ TEST_CASE("areas and volumes are transported like the deviations that span them"
                 of.col(3) = Eigen::Vector4d::Unit(i);
                 normal(i) = of.determinant();
             }
-            return Volume{normal};
+            return Volume(normal);
         };
         Frame after_leg = v;
         carry(after_leg, leg, p.epsilon);
@@ -133,13 +133,13 @@ TEST_CASE("areas and volumes are transported like the deviations that span them"
             (carried(area(v), leg, p.epsilon) - area(after_leg)).norm() <
             1e-12 * (1 + after_leg.squaredNorm()));
         CHECK(
-            (carried(volume(v), leg, p.epsilon).normal - volume(after_leg).normal).norm() <
+            (carried(volume(v), leg, p.epsilon) - volume(after_leg)).norm() <
             1e-12 * (1 + std::pow(after_leg.norm(), 3)));
         CHECK(
             (carried(area(v), M) - area(after_impact)).norm() <
             1e-12 * (1 + after_impact.squaredNorm()));
         CHECK(
-            (carried(volume(v), M).normal - volume(after_impact).normal).norm() <
+            (carried(volume(v), M) - volume(after_impact)).norm() <
             1e-12 * (1 + std::pow(after_impact.norm(), 3)));
     }
 }
@@ -173,7 +173,7 @@ TEST_CASE("the sizes of a flag are those of a QR factorisation at every impact")
         apart.deviation += 1e-6 * apart.deviation.norm() * Eigen::Vector4d(1, -2, 3, 1);
         CHECK(apart.separations()[0] > 1e-8);
         apart = flag;
-        apart.volume.normal += 1e-6 * apart.volume.normal.norm() * Eigen::Vector4d(1, -2, 3, 1);
+        apart.volume += 1e-6 * apart.volume.norm() * Eigen::Vector4d(1, -2, 3, 1);
         CHECK(apart.separations()[1] > 1e-8);
     }
 }
@@ -183,7 +183,7 @@ TEST_CASE(
     "flight") {
     Parameters p = table1(0.02, Damping::closed_form);
     p.lambda = 2 / p.epsilon;  // zeta = 2
-    const Flow flow = Flow::free(p);
+    const Flow flow = *Flow::shared_free(p);
     for (const double duration : {0.1, 3.0, 8.0}) {
         const Leg leg = leg_of(flow, duration, false);
         CHECK(static_cast<double>(leg.parts) * leg.duration == doctest::Approx(duration));

@@ -17,7 +17,7 @@ struct WindowsInARow {
 };
 WindowsInARow windows(double b, int count, double length, double start) {
     const Parameters p = table1(b, Damping::closed_form);
-    Lyapunov lyapunov(p, start, 1e9, {.qr = true, .history = 1000000});
+    Lyapunov lyapunov(p, {start, 1e9}, {.qr = true, .history = 1000000});
     record(p, default_state(p), start + (count + 1) * length, 10000000, {&lyapunov});
     const ExponentHistory& h = lyapunov.product().qr_history();
     const double from = lyapunov.product().start_tau();
@@ -68,8 +68,8 @@ TEST_CASE("the sum rule holds to 1e-10 in every window without sticking") {
             std::vector<std::unique_ptr<Lyapunov>> all;
             std::vector<Observer*> observers;
             for (int k = 0; k < 30; ++k) {
-                all.push_back(
-                    std::make_unique<Lyapunov>(p, 1700.0 * k, 1700.0 * (k + 1), qr_alone));
+                all.push_back(std::make_unique<Lyapunov>(
+                    p, Interval{1700.0 * k, 1700.0 * (k + 1)}, qr_alone));
                 observers.push_back(all.back().get());
             }
             record(p, default_state(p), 1700 * 30, 1000000, observers);
@@ -102,8 +102,8 @@ TEST_CASE("the sum rule holds through nearly grazing impacts, where entries of M
                  std::cos(n)},
                 0};
             c.relative_speed = c.side * (n % 10 == 0 ? speed : uniform(engine, 0.002, 0.02));
-            const Impact i = impact_at(p, c, Flow::free(p).acceleration(c.lo), tau);
-            const Leg flight = leg_of(Flow::free(p), s, false);
+            const Impact i = impact_at(p, c, Flow::shared_free(p)->acceleration(c.lo), tau);
+            const Leg flight = leg_of(*Flow::shared_free(p), s, false);
             const Saltation M = saltation(p, i);
             entries += M.r().cwiseAbs().maxCoeff();
             product.append({&flight, 1}, M, tau);
@@ -124,14 +124,14 @@ TEST_CASE(
     for (std::size_t k = last - 1; k <= last; ++k) {
         const double s = run.impacts[k].tau - run.impacts[k - 1].tau;
         cycle = saltation(p, run.impacts[k]).matrix() *
-                transfer_of(leg_of(Flow::free(p), s, false), p.epsilon) * cycle;
+                transfer_of(leg_of(*Flow::shared_free(p), s, false), p.epsilon) * cycle;
     }
     const double period = run.impacts[last].tau - run.impacts[last - 2].tau;
     CHECK(period == doctest::Approx(2 * 3.14159265358979323846).epsilon(1e-9));
     Moduli multipliers = eigenvalue_moduli(cycle);
     for (double& m : multipliers) m = std::log(m) / period;
 
-    Lyapunov lyapunov(p, run.impacts[last - 401].tau - 1e-6, 6001, all_estimators);
+    Lyapunov lyapunov(p, {run.impacts[last - 401].tau - 1e-6, 6001}, all_estimators);
     record(p, default_state(p), 6000, 1000000, {&lyapunov});
     const Exponents eigenvalues = lyapunov.product().eigenvalues(), qr = lyapunov.product().qr();
     for (int k = 0; k < 4; ++k) {
@@ -145,7 +145,7 @@ TEST_CASE(
 TEST_CASE(
     "raw_product shows the paper's four positive exponents, three of them the rounding floor") {
     const Parameters p = table1(0.022, Damping::closed_form);
-    Lyapunov lyapunov(p, 0, 1709, all_estimators);
+    Lyapunov lyapunov(p, {0, 1709}, all_estimators);
     record(p, default_state(p), 1709, 100000, {&lyapunov});
     const TransferProduct& product = lyapunov.product();
     const Exponents raw = product.raw_product(), qr = product.qr();
@@ -160,7 +160,7 @@ TEST_CASE(
 
 TEST_CASE("beyond the range of double raw_product has no value, eigenvalues and qr do") {
     const Parameters p = table1(0.034, Damping::closed_form);
-    Lyapunov lyapunov(p, 0, 20000, all_estimators);
+    Lyapunov lyapunov(p, {0, 20000}, all_estimators);
     record(p, default_state(p), 20000, 100000, {&lyapunov});
     CHECK(status_of(lyapunov.product().raw_product()[0]) == Status::not_converged);
     CHECK(std::abs(lyapunov.product().eigenvalues()[0] - lyapunov.product().qr()[0]) < 1e-3);
@@ -168,7 +168,7 @@ TEST_CASE("beyond the range of double raw_product has no value, eigenvalues and 
 
 TEST_CASE("after sticking two exponents are minus infinity, after R = 0 one is") {
     Parameters p = table1(0.015, Damping::closed_form);
-    Lyapunov stick(p, 0, 1709, all_estimators);
+    Lyapunov stick(p, {0, 1709}, all_estimators);
     record(p, default_state(p), 1709, 100000, {&stick});
     const Exponents qr = stick.product().qr(), eigenvalues = stick.product().eigenvalues();
     for (const Exponents& e : {qr, eigenvalues}) {
@@ -179,13 +179,13 @@ TEST_CASE("after sticking two exponents are minus infinity, after R = 0 one is")
     }
     // The sum rule does not apply at rank 2; the area spanned by two deviations is checked instead.
     CHECK(stick.product().sum_rule_residual() < 1e-10);
-    Lyapunov before(p, 0, 70, all_estimators);
+    Lyapunov before(p, {0, 70}, all_estimators);
     record(p, default_state(p), 1709, 100000, {&before});
     CHECK(before.product().rank() == 4);
 
     p.b = 0.05;
     p.R_plus = p.R_minus = 0;
-    Lyapunov plastic(p, 0, 1e9, all_estimators);
+    Lyapunov plastic(p, {0, 1e9}, all_estimators);
     const Record run = record(p, {0.02, 0, -0.3, 0}, 8, 100000, {&plastic});
     REQUIRE(run.sticks.empty());
     REQUIRE(run.impacts.size() > 1);
@@ -194,7 +194,7 @@ TEST_CASE("after sticking two exponents are minus infinity, after R = 0 one is")
 
 TEST_CASE("a window with fewer than two impacts has no exponents") {
     const Parameters p = table1(0.022, Damping::closed_form);
-    Lyapunov lyapunov(p, 0, 20, all_estimators);
+    Lyapunov lyapunov(p, {0, 20}, all_estimators);
     record(p, default_state(p), 100, 100000, {&lyapunov});
     CHECK(lyapunov.product().impacts() == 1);
     CHECK(status_of(lyapunov.product().qr()[0]) == Status::not_converged);
@@ -203,7 +203,7 @@ TEST_CASE("a window with fewer than two impacts has no exponents") {
 
 TEST_CASE("a thinned history keeps every second, fourth, ... impact and ends near the end") {
     const Parameters p = table1(0.008, Damping::closed_form);
-    Lyapunov full(p, 0, 1e9, {.qr = true, .history = 100000}), thin(p, 0, 1e9, qr_alone);
+    Lyapunov full(p, {0, 1e9}, {.qr = true, .history = 100000}), thin(p, {0, 1e9}, qr_alone);
     record(p, default_state(p), 3000, 100000, {&full, &thin});
     const ExponentHistory &f = full.product().qr_history(), &t = thin.product().qr_history();
     CHECK(f.tau.size() == static_cast<std::size_t>(full.product().impacts() - 1));
@@ -351,7 +351,7 @@ TEST_CASE("under strong damping all four exponents are accurate, at any rank") {
         Parameters p;
         p.epsilon = k.epsilon, p.lambda = k.lambda, p.damping = k.damping, p.G = k.G,
         p.Omega = k.Omega, p.R_plus = k.R_plus, p.R_minus = k.R_minus, p.b = k.b;
-        Lyapunov lyapunov(p, 0, k.tau_end, all_estimators);
+        Lyapunov lyapunov(p, {0, k.tau_end}, all_estimators);
         record(p, k.start, k.tau_end, k.max_impacts, {&lyapunov});
         const TransferProduct& product = lyapunov.product();
         CHECK(product.rank() == k.rank);
@@ -377,7 +377,7 @@ TEST_CASE(
     const State start{0.0059149439149146985, 0, -0.056531687868110039, -0.020834212450224508};
     const auto product_of = [&](double R) {
         p.R_plus = p.R_minus = R;
-        Lyapunov lyapunov(p, 0, 4000, qr_alone);
+        Lyapunov lyapunov(p, {0, 4000}, qr_alone);
         record(p, start, 4000, 6, {&lyapunov});
         return lyapunov.take();
     };
@@ -405,7 +405,7 @@ TEST_CASE(
         Parameters p = table1(0.02, Damping::closed_form);
         p.R_plus = p.R_minus = R;
         for (double from : {0.0, 300.0, 600.0}) {
-            Lyapunov lyapunov(p, from, from + 60, all_estimators);
+            Lyapunov lyapunov(p, {from, from + 60}, all_estimators);
             record(p, default_state(p), 800, 100000, {&lyapunov});
             if (lyapunov.product().impacts() < 2) continue;
             CHECK(lyapunov.product().sum_rule_residual() < 1e-6);
@@ -421,7 +421,7 @@ TEST_CASE("the exponents of a sticking motion exist wherever in its chatter the 
     // One chatter has about 75 impacts.
     for (long impacts = 2000; impacts < 2080; ++impacts) {
         CAPTURE(impacts);
-        Lyapunov lyapunov(p, 0, infinity, all_estimators);
+        Lyapunov lyapunov(p, {0, infinity}, all_estimators);
         record(p, default_state(p), 1e9, impacts, {&lyapunov});
         const TransferProduct& product = lyapunov.product();
         CHECK(product.sum_rule_residual() < most_residual);
@@ -444,7 +444,7 @@ TEST_CASE("the exponents of a sticking motion exist in windows of any length") {
         p.R_plus = p.R_minus = s.R;
         WindowedExponents windows(p, {.qr = true});
         const int lengths[] = {20, 25, 40, 100, 200};
-        for (const int cycles : lengths) windows.add(0, cycles * p.cycle());
+        for (const int cycles : lengths) windows.add({0, cycles * p.cycle()});
         simulate(
             p, default_state(p), {.tau_end = 200 * p.cycle()}, std::vector<Observer*>{&windows});
         double lambda1 = 0;
@@ -462,7 +462,7 @@ TEST_CASE("the exponents obey the sum rule with a restitution that depends on th
     for (int n = 0; n < 10; ++n) {
         Parameters p = table1(0.02, Damping::equation_of_motion);
         p.table_plus = random_table(engine, 0.02), p.table_minus = random_table(engine, 0.02);
-        Lyapunov lyapunov(p, 0, 800, all_estimators);
+        Lyapunov lyapunov(p, {0, 800}, all_estimators);
         const Record run = record(p, default_state(p), 800, 100000, {&lyapunov});
         if (!run.sticks.empty()) continue;
         const TransferProduct& product = lyapunov.product();
@@ -488,7 +488,7 @@ TEST_CASE("a table with one R everywhere gives the motion and exponents of a con
     Parameters constant = table1(0.018, Damping::closed_form), table = constant;
     table.table_plus = table.table_minus = std::make_shared<const RestitutionTable>(
         RestitutionTable{{0, 0.01, 0.05}, {0.6, 0.6, 0.6}});
-    Lyapunov one(constant, 0, 1000, qr_alone), other(table, 0, 1000, qr_alone);
+    Lyapunov one(constant, {0, 1000}, qr_alone), other(table, {0, 1000}, qr_alone);
     const Record a = record(constant, default_state(constant), 1000, 100000, {&one}),
                  b = record(table, default_state(table), 1000, 100000, {&other});
     CHECK(a.outcome.state.x == b.outcome.state.x);

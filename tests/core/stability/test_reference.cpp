@@ -88,7 +88,7 @@ TEST_CASE("all four exponents of a regular window without sticking agree with th
     for (const char* name : {"closed_b0.008", "eom_b0.008", "eom_b0.018"}) {
         CAPTURE(name);
         const Reference reference = read_reference(name);
-        Lyapunov lyapunov(reference.parameters, 0, 1709, all_estimators);
+        Lyapunov lyapunov(reference.parameters, {0, 1709}, all_estimators);
         record(
             reference.parameters, default_state(reference.parameters), 1709, 1000000, {&lyapunov});
         const Exponents qr = lyapunov.product().qr(),
@@ -103,7 +103,7 @@ TEST_CASE("all four exponents of a regular window without sticking agree with th
 
 TEST_CASE("the eigenvalues of a product that spans 300 digits add up to its determinant") {
     const Reference reference = read_reference("eom_b0.008");
-    Lyapunov lyapunov(reference.parameters, 0, 1709, all_estimators);
+    Lyapunov lyapunov(reference.parameters, {0, 1709}, all_estimators);
     record(reference.parameters, default_state(reference.parameters), 1709, 1000000, {&lyapunov});
     const Exponents eigenvalues = lyapunov.product().eigenvalues();
     CHECK(

@@ -13,7 +13,7 @@ using namespace vines::test;
 TEST_CASE(
     "J has the moduli e^(-zeta s) twice and 1 twice, and det T = det M det J = R^2 e^(-2 zeta s)") {
     const Parameters p = table1(0.022, Damping::closed_form);
-    TransferRecord transfers(p, 0, 1709);
+    TransferRecord transfers(p, {0, 1709});
     const Record run = record(p, default_state(p), 1709, 1000000, {&transfers});
     REQUIRE(transfers.entries.size() + 1 == run.impacts.size());
     for (std::size_t i = 0; i < transfers.entries.size(); ++i) {
@@ -46,7 +46,7 @@ TEST_CASE(
 TEST_CASE("overdamped flights have two different decaying moduli") {
     Parameters p = table1(0.01, Damping::equation_of_motion);
     p.lambda = 4 / p.epsilon;  // zeta = 2
-    ImpactTransfer t{0, p.epsilon, {}, {leg_of(Flow::free(p), 0.7, false)}};
+    ImpactTransfer t{0, p.epsilon, {}, {leg_of(*Flow::shared_free(p), 0.7, false)}};
     const Moduli J = t.J_moduli();
     CHECK(J[2] == doctest::Approx(std::exp((-2 + std::sqrt(3)) * 0.7)));
     CHECK(J[3] == doctest::Approx(std::exp((-2 - std::sqrt(3)) * 0.7)));
@@ -54,7 +54,7 @@ TEST_CASE("overdamped flights have two different decaying moduli") {
 
 TEST_CASE("after sticking J and T have rank two") {
     const Parameters p = table1(0.015, Damping::closed_form);
-    TransferRecord transfers(p, 0, 100);
+    TransferRecord transfers(p, {0, 100});
     const Record run = record(p, default_state(p), 100, 1000000, {&transfers});
     REQUIRE(run.sticks.size() == 1);
     bool found = false;
@@ -109,11 +109,12 @@ TEST_CASE("J and M transport a deviation as the trajectory does") {
         double before = 0;
         for (const Impact& i : run.impacts) {
             product = saltation(p, i).matrix() *
-                      transfer_of(leg_of(Flow::free(p), i.tau - before, false), p.epsilon) *
+                      transfer_of(leg_of(*Flow::shared_free(p), i.tau - before, false), p.epsilon) *
                       product;
             before = i.tau;
         }
-        product = transfer_of(leg_of(Flow::free(p), tau - before, false), p.epsilon) * product;
+        product =
+            transfer_of(leg_of(*Flow::shared_free(p), tau - before, false), p.epsilon) * product;
 
         Matrix4 differences;
         const double d = 1e-7;

@@ -13,7 +13,7 @@ TEST_CASE("windows that share one run have the same bits as each window alone") 
     WindowedExponents windows(p, all_estimators);
     std::vector<Lyapunov> alone;
     for (const auto& [from, to] : bounds)
-        windows.add(from, to), alone.emplace_back(p, from, to, all_estimators);
+        windows.add({from, to}), alone.emplace_back(p, Interval{from, to}, all_estimators);
     std::vector<Observer*> observers = {&windows};
     for (Lyapunov& l : alone) observers.push_back(&l);
     record(p, default_state(p), 1709, 100000, observers);
