@@ -141,8 +141,8 @@ struct SweepPoint {
     std::optional<PointSystem> system;  ///< empty: the values make no valid system
     /// The neighbour had no last state at a whole cycle to continue from.
     bool afresh = false;
-    std::vector<Motion> motions;
-    std::optional<Motion> second;  ///< from a second start, to detect dependence on the start
+    std::vector<Motion> motions = {};
+    std::optional<Motion> second = {};  ///< from a second start, to detect dependence on the start
 };
 
 /// Lifetime of chaotic transients, in forcing cycles, from motions of which some were captured.
@@ -158,8 +158,6 @@ Lifetime lifetime_of(std::span<const Motion> motions);
 /// Measured motions in ascending order of the objective: the worst is the last.
 std::vector<const Motion*> ranked(const SweepPoint& point);
 
-/// True if one of the motions differs from the worst one in its steady state.
-bool depends_on_start(const std::vector<const Motion*>& ranked);
 /// True if the point's steady state depends on the start. Empty if only one start was tried.
 std::optional<bool> depends_on_start(const SweepPoint& point, bool default_set);
 
@@ -191,9 +189,5 @@ RowSummary summary_of(std::span<const SweepPoint> row, bool largest, bool defaul
 /// request.
 PointResult run_point(
     const PointSystem& system, const State& start, PointOptions options, RunControl& control);
-/// The same from each of the starts, in their order.
-std::vector<Motion> run_starts(
-    const PointSystem& system, const std::vector<NamedStart>& starts, const PointOptions& options,
-    RunControl& control);
 
 }  // namespace vines
