@@ -1,9 +1,10 @@
-#include "core/continuation/curve.hpp"
-
+// Curves of special points in two parameters: the equations of an orbit together with the test
+// function of the special point, along their common arclength.
 #include <Eigen/LU>
 #include <algorithm>
 #include <utility>
 
+#include "core/continuation/branch.hpp"
 #include "core/continuation/branch_node.hpp"
 
 namespace vines {
@@ -115,9 +116,9 @@ public:
             {plan_.family.ranges[0]}};
         const auto equations = over_both_->over(along);
         const auto sticking_at = [&](const Unknowns& near, double parameter) {
-            auto node = node_at_parameter(*equations, near, parameter, 1);
-            if (node && equations->check(node->at.z, {}).fault) node.reset();
-            return node ? std::optional(node->at.z) : std::nullopt;
+            const auto node = node_at_parameter({equations, near}, parameter, 1);
+            if (!node || node->check().fault) return std::optional<Unknowns>();
+            return std::optional(node->at.z);
         };
         const Unknowns near = guess.head(guess.size() - 1);
         const double at = near(near.size() - 1);

@@ -1,7 +1,5 @@
 #include "core/continuation/orbit_equations.hpp"
 
-#include "core/continuation/return_map.hpp"
-
 namespace vines {
 
 namespace {
@@ -68,7 +66,7 @@ std::optional<OrbitValues> OrbitEquations::values(
 std::optional<OrbitGuess> OrbitEquations::by_return(
     const Unknowns& z, const std::vector<double>& approach) const {
     return return_of(
-        *system(z), {0, check(z, approach).measures.at_whole_cycle}, sequence(), family(), length(),
+        *system(z), 0, check(z, approach).measures.at_whole_cycle, sequence(), family(), length(),
         z.tail(std::ssize(family().ranges)));
 }
 

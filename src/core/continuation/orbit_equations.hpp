@@ -1,5 +1,5 @@
 // A periodic orbit as a zero of smooth equations, in two forms: by the times of its impacts
-// (periodic_impacts.hpp), or by its return (return_map.hpp) where it sticks or slides.
+// (periodic_impacts.hpp), or by its return (return_map.cpp) where it sticks or slides.
 //
 // If the second half of an orbit is the first with opposite signs, the equations are those of the
 // first half. The map over it has the square roots of the multipliers: -1 where the symmetry
@@ -158,5 +158,21 @@ private:
     const ParameterFamily& family_;
     const double length_;
 };
+
+/// The equations and the unknowns of an orbit with impacts: by their times, or by its return if it
+/// sticks or slides; empty if it has none. The parameters of `family`, at the orbit, are `values`.
+std::optional<OrbitGuess> orbit_start(
+    const Parameters& p, const PeriodicOrbit& orbit, double length, const ParameterFamily& family,
+    const std::vector<double>& values);
+
+/// An orbit that is given by its return, by the times of its impacts. Empty if it sticks or slides.
+std::optional<OrbitGuess> impacts_of(const OrbitGuess& by_return);
+
+/// The equations by the return of an orbit through a state at tau, with a section far from events
+/// and the impacts of the motion from there; `like` has its period. parameters: in their units.
+/// Empty if the motion cannot be followed.
+std::optional<OrbitGuess> return_of(
+    const Parameters& p, double tau, const State& state, const ImpactSequence& like,
+    const ParameterFamily& family, double length, const Eigen::VectorXd& parameters);
 
 }  // namespace vines

@@ -1,7 +1,5 @@
-#include "core/continuation/orbit_start.hpp"
-
+// The equations of a given orbit.
 #include "core/continuation/periodic_impacts.hpp"
-#include "core/continuation/return_map.hpp"
 #include "core/motion/record.hpp"
 
 namespace vines {
@@ -65,7 +63,7 @@ std::optional<OrbitGuess> orbit_start(
     if (orbit.sticks == 0 && all_near(family, values, slides_freely))
         return by_impacts(p, orbit, mirrored, length, family, scaled);
     return return_of(
-        p, {orbit.tau, orbit.state}, {{}, mirrored, (mirrored ? 1 : 2) * orbit.cycles}, family,
+        p, orbit.tau, orbit.state, {{}, mirrored, (mirrored ? 1 : 2) * orbit.cycles}, family,
         length, scaled);
 }
 

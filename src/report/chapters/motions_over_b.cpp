@@ -6,7 +6,6 @@
 #include <map>
 
 #include "core/continuation/branch.hpp"
-#include "core/continuation/orbit_start.hpp"
 #include "core/sweep/point.hpp"
 #include "report/plots.hpp"
 #include "report/report.hpp"
