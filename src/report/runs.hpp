@@ -39,10 +39,10 @@ struct Both {
 };
 using BothRuns = Both<PaperRun>;
 
-/// A run for parts that need more data than one window, or from another y(0), m.
+/// A run from the paper's initial state or another one.
 PaperRun run_until(
-    const Parameters& parameters, double tau_end, const Parts& parts, std::optional<double> y = {},
-    const ExponentOptions& estimators = qr_alone);
+    const Parameters& parameters, double tau_end, const Parts& parts,
+    const ExponentOptions& estimators = qr_alone, const std::optional<State>& start = {});
 
 /// The results of make(0) to make(count - 1), computed on all cores.
 template <class Make>
@@ -91,7 +91,7 @@ using BothEnsembles = Both<Ensemble>;
 
 /// Regimes reached from random starts (the same ones in every call): |x'|, |x| <= .008 and |y'| <=
 /// .01 (m, and m per unit of tau), y anywhere in the cavity. Judged from tau = 1500 to 3000.
-std::vector<Regime> regimes_of_random_starts(const Parameters& parameters, int starts);
+std::vector<Regime> regimes_of_random_starts(const Parameters& parameters, std::size_t starts);
 
 /// Regimes at several b (m) from the paper's initial state, from tau = 1709 to ten times that.
 std::vector<Regime> long_regimes(const std::vector<double>& b, Damping damping);
