@@ -15,8 +15,7 @@ namespace {
 // Arclengths in scaled unknowns: the first step, the longest and the shortest one, and the one down
 // to which multipliers shorten the step.
 constexpr double first_arc = 1e-3, longest_arc = 0.1, shortest_arc = 1e-10, watched_arc = 1e-6;
-// Largest change of a multiplier in a step: near the unit circle, and in addition per distance from
-// it.
+// Largest change of a multiplier in a step: on the unit circle, and more per distance from it.
 constexpr double multiplier_step = 0.1, multiplier_step_away = 0.3;
 // Cosine of the largest angle between neighbouring tangents, and that up to which steps grow.
 constexpr double most_bend = 0.97, little_bend = 0.997;
@@ -25,8 +24,7 @@ constexpr double growth = 1.5;
 constexpr double at_end = 1e-12;
 // Steps after which the section of a return is moved to the middle of a flight again.
 constexpr int steps_of_section = 10;
-// Steps back to the birth of a sticking phase are at most this multiple of the distance to where
-// the ball did not stick.
+// Largest step back to the birth of a sticking phase, over the distance to where none was.
 constexpr double most_back = 1.5;
 // Special points are bracketed to this arclength; the parameter changes less in it.
 constexpr double special_arc = 1e-13;
@@ -142,8 +140,7 @@ private:
         return std::nullopt;
     }
 
-    /// The node at the end of the parameter's range if the step leads beyond, where there may be no
-    /// system.
+    /// The node at the end of the parameter's range if the step leads beyond.
     std::optional<BranchNode> node_at_end() const {
         const auto end = plan_.family.end_before(0, on_.parameter() + h_ * on_.fold);
         if (!end) return std::nullopt;
@@ -177,8 +174,7 @@ private:
         while (invalid - valid > special_arc) {
             const double middle = 0.5 * (valid + invalid);
             auto node = on_.after(middle);
-            // Beyond the loss of a sticking phase grazing contacts accumulate, where the return has
-            // no derivative.
+            // Grazing contacts accumulate beyond a loss of sticking: no derivative.
             if (!node && on_.is_return()) {
                 invalid = middle;
                 continue;
@@ -195,8 +191,7 @@ private:
         return found;
     }
 
-    /// The sign change of a test between the current node and b, at the arclength h_; empty if it
-    /// cannot be located.
+    /// The sign change of a test between the current node and b, at h_; empty if it is not found.
     std::optional<BranchEvent> located(
         const BranchNode& b, SpecialKind kind,
         const std::function<double(const BranchNode&)>& test) const {

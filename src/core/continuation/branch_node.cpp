@@ -52,8 +52,7 @@ std::optional<BranchNode> node_after(
         equations, point_in_plane(as_curve(*equations), guess, a.tangent, a.tangent.dot(a.z) + h));
 }
 
-/// Calls use(node) for steps from a guess along the branch, short and long, in both directions,
-/// until one gives a result.
+/// The first result of use(node) for steps from a guess along the branch, in both directions.
 template <class Use>
 std::optional<BranchNode> next_to(
     const OrbitGuess& guess, std::span<const double> arcs, const Use& use) {

@@ -14,8 +14,7 @@ namespace {
 // Arclengths of the first, the longest and the shortest step, and the largest angle's cosine.
 constexpr double first_curve_arc = 1e-3, longest_curve_arc = 0.1, shortest_curve_arc = 1e-9;
 constexpr double curve_bend = 0.95, curve_growth = 1.5;
-// Step of the central differences of a test function, whose derivative affects the number of
-// Newton's steps alone.
+// Step of the differences of a test function: they affect the number of Newton's steps alone.
 constexpr double test_step = 1e-6;
 
 /// The test function of a kind of special point; it is zero there.
@@ -69,8 +68,7 @@ OrbitCheck check_special(const SpecialTest& test, const Unknowns& z) {
     return test.equations.check(z, approach);
 }
 
-/// The point where a step first leaves the range of a parameter; empty if it does not. Without
-/// convergence the last point before.
+/// Where a step first leaves the range of a parameter, else empty; a without convergence.
 std::optional<CurvePoint> at_limit(
     const ParameterFamily& family, const CurveEquations& curve, const CurvePoint& a,
     const CurvePoint& b) {

@@ -41,8 +41,6 @@ struct ImpactSequence {
     int cycles() const { return mirrored ? half_cycles : half_cycles / 2; }
     /// The same orbit over twice the duration: without the mirror, or two periods.
     ImpactSequence doubled() const;
-    /// The same orbit from the next impact on.
-    ImpactSequence rotated() const;
 };
 
 /// Systems that depend smoothly on one or two parameters.
@@ -67,8 +65,7 @@ using Unknowns = Eigen::VectorXd;
 /// The orbit's equations, evaluated.
 struct OrbitValues {
     Eigen::VectorXd residual;
-    /// side (x' - y') before impact k + 1, m; > 0 where that impact is possible. Empty for a
-    /// return.
+    /// side (x' - y') before impact k + 1, m; > 0 if that is possible. Empty for a return.
     std::vector<double> approach;
     /// Derivative of the map to the return, with its sign, eq. (30).
     Frame transfer;
@@ -128,8 +125,7 @@ public:
     /// determinant of the exact part vanishes.
     std::optional<OrbitValues> values(const Unknowns& z, Eigen::MatrixXd* jacobian = nullptr) const;
 
-    /// Whether the motion follows the orbit with its sequence, and the orbit's quantities.
-    /// `approach`: OrbitValues::approach.
+    /// Whether the motion follows the orbit. `approach`: OrbitValues::approach.
     virtual OrbitCheck check(const Unknowns& z, const std::vector<double>& approach) const = 0;
 
     /// The same orbit over twice the duration, and its unknowns, or a tangent of them.

@@ -13,8 +13,7 @@ namespace {
 // Two halves of an orbit can be those of its parent if their flights differ by less than this.
 constexpr double similar_half = 0.3;
 
-// Terms of the series over a step whose length times the fastest rate is at most 1: the first
-// omitted one is below 1e-19.
+// Terms of the series over a step of at most 1 over the fastest rate: the next is below 1e-19.
 constexpr int arc_terms = 20;
 
 /// A solution, or a derivative of one: both obey the same linear equations.
@@ -76,8 +75,7 @@ OrbitFlight after_impact(
 /// Derivatives of (theta, x, x', x' - y') as rows, by the unknowns.
 using Derivatives = Eigen::Matrix<double, 4, Eigen::Dynamic, Eigen::RowMajor>;
 
-/// Carries derivatives over a flight and its impact; `approach` is x' - y' before it. Returns the
-/// derivative of x - y at the contact.
+/// Carries derivatives over a flight and its impact. Returns that of x - y at the contact.
 Eigen::RowVectorXd carry_derivatives(
     const Parameters& p, const Flow::Coefficients& law, const OrbitFlight& f, const Arc& arc,
     double approach, int side, Eigen::Index s_column, Derivatives& d) {
@@ -217,14 +215,15 @@ OrbitFlight ImpactEquations::first_flight(const Unknowns& z) const {
     return {z(0), z(1) * length(), z(2) * length(), z(3) * length(), sequence().sides[0], 0};
 }
 
-Unknowns ImpactEquations::rotated(const Unknowns& z) const {
+OrbitGuess ImpactEquations::rotated(const Unknowns& z) const {
     const auto n = static_cast<Eigen::Index>(sequence().size());
-    const Parameters p = *system(z);
-    const OrbitFlight f = flights(z, p)[1];
-    Unknowns next = z;
-    next.head<4>() << f.theta, f.x / length(), f.x_dot / length(), f.relative_speed / length();
-    for (Eigen::Index k = 0; k < n; ++k) next(4 + k) = z(4 + (k + 1) % n);
-    return next;
+    ImpactSequence next = sequence();
+    for (std::size_t k = 0; k < next.size(); ++k) next.sides[k] = sequence().side_after(k);
+    const OrbitFlight f = flights(z, *system(z))[1];
+    Unknowns w = z;
+    w.head<4>() << f.theta, f.x / length(), f.x_dot / length(), f.relative_speed / length();
+    for (Eigen::Index k = 0; k < n; ++k) w(4 + k) = z(4 + (k + 1) % n);
+    return {std::make_shared<ImpactEquations>(next, family(), length()), w};
 }
 
 std::shared_ptr<const OrbitEquations> ImpactEquations::doubled() const {
@@ -250,14 +249,13 @@ std::optional<OrbitGuess> ImpactEquations::half(const Unknowns& z) const {
 }
 
 std::optional<OrbitGuess> ImpactEquations::changed(
-    const Unknowns& at, const SequenceFault& fault) const {
+    const Unknowns& z, const SequenceFault& fault) const {
     ImpactSequence one = sequence();
-    Unknowns z = at;
     const auto guess = [&](const Unknowns& of) {
         return OrbitGuess{std::make_shared<ImpactEquations>(one, family(), length()), of};
     };
-    auto k = static_cast<Eigen::Index>(fault.flight);
-    const auto n = static_cast<Eigen::Index>(one.size());
+    const auto k = static_cast<Eigen::Index>(fault.flight),
+               n = static_cast<Eigen::Index>(one.size());
     Unknowns next;
     if (fault.kind == SequenceFault::Kind::contact) {
         if (!(fault.s > 0 && fault.s < z(4 + k))) return std::nullopt;
@@ -267,11 +265,9 @@ std::optional<OrbitGuess> ImpactEquations::changed(
         return guess(next);
     }
     if (fault.kind != SequenceFault::Kind::missing || n < 2) return std::nullopt;
-    if (k + 1 == n) {
-        // The impact at which the sequence begins.
-        z = ImpactEquations(one, family(), length()).rotated(z);
-        one = one.rotated();
-        k = n - 2;
+    if (k + 1 == n) {  // the impact at which the sequence begins
+        const OrbitGuess later = rotated(z);
+        return later.equations->changed(later.z, {fault.kind, fault.flight - 1});
     }
     one.sides.erase(one.sides.begin() + k + 1);
     next.resize(z.size() - 1);

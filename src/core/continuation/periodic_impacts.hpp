@@ -59,9 +59,6 @@ public:
     }
     std::optional<OrbitGuess> changed(const Unknowns& z, const SequenceFault& fault) const override;
 
-    /// The unknowns of sequence().rotated().
-    Unknowns rotated(const Unknowns& z) const;
-
     /// The flights, and the state after the last impact.
     std::vector<OrbitFlight> flights(const Unknowns& z, const Parameters& p) const;
 
@@ -71,6 +68,8 @@ protected:
         const Unknowns& z, const Parameters& p, Eigen::MatrixXd* jacobian) const override;
 
 private:
+    /// The same orbit from the next impact on.
+    OrbitGuess rotated(const Unknowns& z) const;
     OrbitFlight first_flight(const Unknowns& z) const;
 };
 

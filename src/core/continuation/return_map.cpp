@@ -13,8 +13,7 @@ namespace vines {
 
 namespace {
 
-// Two halves of an orbit can be those of its parent if the state returns to within this, in units
-// of the length.
+// A return after half the period to within this, in units of the length, can be the parent's.
 constexpr double similar_return = 0.3;
 
 /// The events of a period.
@@ -37,8 +36,7 @@ private:
     long slips = 0;
 };
 
-/// Unknowns: x'/length, x/length, y'/length, y/length and the parameters. Residuals: the return of
-/// the state.
+/// Unknowns: (x', x, y', y)/length and the parameters. Residuals: the return of the state.
 class ReturnEquations : public OrbitEquations {
 public:
     /// section: the phase of the state, as a fraction of a forcing cycle after tau = 0.

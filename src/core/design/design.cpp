@@ -25,8 +25,7 @@ constexpr double same_b = 1e-9;
 // Ratio of neighbouring amplitudes with a single b.
 constexpr double amplitude_step = 1.1;
 // Frequencies of step 2 over those of step 1, the most absorbers tried with them, the rounds around
-// the best one, the b tried on each side in each, and the frequencies that step 3 adds around the
-// worst one.
+// the best one, the b tried on each side, and the frequencies added around the worst one in step 3.
 constexpr int finer = 4, most_promising = 12, design_rounds = 3, tries_per_side = 2,
               added_frequencies = 4;
 // Factors of step 3, and the largest excess over the best objective.

@@ -24,8 +24,7 @@ constexpr double bracket_tolerance = 1e-5;
 constexpr int side_points = 15, tuning_rounds = 12;
 constexpr double frequency_range = 1.6, damping_range = 12, narrowing = 0.45;
 
-// Step of the Runge-Kutta method in tau, and over the damper's own frequency: peaks are exact to
-// 3e-4.
+// Step of the Runge-Kutta method in tau, or over the damper's frequency: peaks exact to 3e-4.
 constexpr double linear_step = 0.05;
 
 /// Motion of host and tuned mass damper under a load, in tau and m, at the end of a step.

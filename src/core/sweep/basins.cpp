@@ -20,8 +20,7 @@ constexpr double least_approach = 0.01, contraction_in_test = 1e-4;
 constexpr double within_tested = 0.5;
 // Longest test, and periods beyond those of the linear contraction.
 constexpr double most_tested_cycles = 4000, additional_periods = 20;
-// Irregular motions are the same if z and x_rms agree to this fraction and to this many standard
-// errors.
+// z and x_rms of equal irregular motions agree to this fraction and to this many standard errors.
 constexpr double same_statistics = 0.03, same_errors = 4;
 // Starts that are measured to find the motions, for each value.
 constexpr std::size_t explored_starts = 16;
@@ -35,8 +34,7 @@ constexpr std::size_t fewest_per_cell = 10;
 constexpr int first_halving = 3, pair_distances = 10;
 constexpr double below_saturation = 0.8;
 constexpr double normal_95 = 1.96;
-// Steps of a value are halved down to this part if Newton's method does not find the orbit within
-// this distance.
+// Steps of a value are halved, down to this part, until Newton's method finds the orbit this near.
 constexpr double least_part = 1.0 / 256, branch_reach = 0.1;
 
 /// Radius of a neighbourhood from which motions approach the orbit.
@@ -91,8 +89,7 @@ std::optional<Estimate> mean_of(const std::vector<double>& values) {
     return Estimate{mean, values.size() > 1 ? std::sqrt(squares / (n - 1) / n) : nan};
 }
 
-/// Slope of a weighted straight line through the points; its error is that of the weights, or of
-/// the scatter if that is larger.
+/// Slope of a weighted straight line; its error is that of the weights, or of a larger scatter.
 Estimate slope_of(
     const std::vector<double>& x, const std::vector<double>& y, const std::vector<double>& weight) {
     double w = 0, wx = 0, wy = 0;

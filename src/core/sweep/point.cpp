@@ -13,8 +13,7 @@ namespace vines {
 
 namespace {
 
-// Largest relative difference of x_rms of two runs on the same orbit (same period and contacts).
-// x_rms of irregular motions is a mean over a finite run and varies more by chance.
+// Largest relative difference of x_rms on one orbit, and of equal irregular motions, by chance.
 constexpr double same_orbit = 0.01, same_irregular = 0.25;
 // Cycles between two comparisons of a transient with known motions.
 constexpr double cycles_between_looks = 4;

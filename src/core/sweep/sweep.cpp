@@ -115,8 +115,7 @@ struct Sweep {
         if (!point.system) poll(control);
     }
 
-    /// Runs the point's own start and, at regular intervals, a second one: the middle, or the wall
-    /// if the own start is the middle.
+    /// Runs the point's own start and, at regular intervals, a second one: the middle, or the wall.
     void run_own_starts(SweepPoint& point, std::size_t number) const {
         const auto& [p, first, max_impacts, known, units] = *point.system;
         point.motions.push_back(run_from(*point.system, "", first));
