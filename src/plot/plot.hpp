@@ -1,5 +1,4 @@
-// Plots: their content, their axes, and how they are drawn, as SVG or in the characters of a
-// terminal.
+// Plots: their content, their axes, and their drawing as SVG or in the characters of a terminal.
 #pragma once
 
 #include <optional>
@@ -36,8 +35,7 @@ struct Plot {
     std::string title{};                 ///< above the plot, if not empty
 };
 
-/// Ordinate range of the last three quarters of all curves, and zero, for curves whose first values
-/// vary widely.
+/// Ordinate range of zero and the last three quarters of curves whose first values vary widely.
 Range late_range(const std::vector<Curve>& curves);
 
 /// Colour of each exponent or eigenvalue.
@@ -63,8 +61,7 @@ std::string text(const std::vector<Plot>& plots, const Terminal& terminal);
 
 /// Common abscissa range of all curves of all plots.
 Range x_range(const std::vector<Plot>& plots);
-/// About `count` ticks in steps of 1, 2 or 5 times a power of ten; none if the step is below the
-/// rounding of the values.
+/// About `count` ticks, 1, 2 or 5 times a power of ten apart; none below the values' rounding.
 std::vector<double> ticks(const Range& range, int count);
 std::string tick_label(double tick);
 

@@ -135,8 +135,7 @@ private:
             R"(viewBox="{0:.1f} {1:.1f} {2:.1f} {3:.1f}">)",
             left_, top_, right_ - left_, bottom_ - top_);
         std::string points;
-        // Decimation: in each column of half a pixel the first, lowest, highest and last point give
-        // the same picture.
+        // First, lowest, highest and last point of each half pixel give the same picture.
         for (std::size_t i = 0; i < c.x.size();) {
             if (!std::isfinite(value(c.y[i]))) {
                 polyline(c, points);

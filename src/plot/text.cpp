@@ -194,8 +194,7 @@ private:
         return labels;
     }
 
-    /// Labels by row: each at the row where its curve ends, else at the next free row below, else
-    /// above.
+    /// Labels by row: where the curve ends, else at the next free row below, else above.
     std::map<int, std::string> end_labels() const {
         std::map<int, std::string> labels;
         for (const Curve& c : plot.curves) {

@@ -1,5 +1,4 @@
-// What several chapters use: statements on regimes and exponents, plots, and the numbers of Tables
-// 2 and 3.
+// Statements on regimes and exponents, plots and printed tables that several chapters use.
 #pragma once
 
 #include "core/motion/elementary.hpp"

@@ -212,8 +212,7 @@ void write_markdown(const Report& report, const std::string& folder) {
 namespace {
 
 /// Computes the report and prints its bottom line, summary and table. Writes report.md and its SVG
-/// plots into `folder`, which is created; "" writes nothing. Returns the exit code: 1 if a verdict
-/// differs from the expected one.
+/// plots into `folder` unless it is "". Returns the exit code: 1 if a verdict is not as expected.
 int reproduce(const std::string& folder) {
     // Created first, so that an invalid folder is reported before the long computation.
     if (!folder.empty()) std::filesystem::create_directories(folder);

@@ -32,8 +32,7 @@ enum class ClaimVerdict {
 };
 using enum ClaimVerdict;
 
-/// A statement of the paper, reduced to a quantity. All texts of a finding are one line of Markdown
-/// without a vertical bar.
+/// A statement of the paper, reduced to a quantity. Texts are Markdown without a vertical bar.
 struct Statement {
     std::string where;  ///< place in the paper, "Fig. 5"
     std::string what;   ///< the quantity, or the statement
@@ -79,8 +78,7 @@ struct Finding {
     Criterion criterion;
     /// Verdict found so far. Another verdict is an error: `vines reproduce` fails.
     ClaimVerdict expected = reproduced;
-    /// The number comes from a computed record in place of one of the paper's, which are not
-    /// published; the verdict applies to that record.
+    /// The number comes from a computed record in place of one of the paper's.
     bool computed_record = false;
 
     ClaimVerdict verdict() const;
@@ -121,8 +119,7 @@ std::string summary(const std::vector<Finding>& findings);
 /// Table of the findings, with the numbers and bands that their verdicts rest on.
 std::string markdown_table(const std::vector<Finding>& findings);
 
-/// Writes report.md and the pictures into an existing folder. Throws std::runtime_error if a file
-/// cannot be written.
+/// Writes report.md and the pictures into an existing folder, or throws std::runtime_error.
 void write_markdown(const Report& report, const std::string& folder);
 
 class RunCache;

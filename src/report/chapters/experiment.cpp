@@ -162,8 +162,7 @@ std::vector<IdentifiedImpact> impacts_at(const Experiment& e, int side) {
     return impacts;
 }
 
-/// Scatter of the states (x, x') after impacts of one wall, over the distance between the means of
-/// both.
+/// Scatter of the states (x, x') after impacts of a wall, over the distance to the other wall's.
 double scatter(const Experiment& e) {
     const auto moments_at = [&](int side, double IdentifiedImpact::* member) {
         return moments(values_of(impacts_at(e, side), member));

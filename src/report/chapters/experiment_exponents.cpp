@@ -1,5 +1,4 @@
-// Figs. 19 and 24 and section 5.2: the exponents of the measured responses, and their dependence on
-// the restitution coefficient.
+// Figs. 19 and 24 and section 5.2: the exponents of the measured responses, also with other R.
 #include <fmt/format.h>
 
 #include <limits>

@@ -12,15 +12,6 @@ namespace vines::report {
 
 namespace {
 
-void parameters_of_table_1(Report& report, const Parameters& p) {
-    report.add(
-        {"Table 1", "epsilon = m2/m1", ".84 %"}, result("{:.4f} %", 100 * p.epsilon),
-        {{0.835, 0.845}, "rounds to .84"});
-    report.add(
-        {"Table 1", "lambda = c1/(m2 omega0)", "1.43"}, result("{:.4f}", p.lambda),
-        {{1.425, 1.435}, "rounds to 1.43"});
-}
-
 /// Eqs. (2), (3) and (25) as printed, at the impacts of a run.
 void forms_of_the_equations(Report& report, const PaperRun& r) {
     const Parameters& p = r.parameters;
@@ -53,8 +44,7 @@ void forms_of_the_equations(Report& report, const PaperRun& r) {
         result("{:.0e}", impact), identity);
 }
 
-/// x(tau) by (8) to (11) exactly as printed, with tau_0 = 0. x20 = x(0) and x10 = x'(0), in the
-/// paper's names, like f1, f2, p1 and q1.
+/// x(tau) by (8) to (11) as printed, with the paper's names and tau_0 = 0: x20 = x(0), x10 = x'(0).
 std::function<double(double tau)> printed_closed_form(const Parameters& p, double x20, double x10) {
     using elementary::cos, elementary::exp, elementary::sin;
     const double O = p.Omega, e = p.epsilon, l = p.lambda, A = p.A(), phi = p.phi(),
@@ -155,7 +145,12 @@ void trajectory_difference(Report& report) {
 void model(Report& report, RunCache& runs) {
     report.heading("Table 1 and the equations of motion");
     const Parameters p;
-    parameters_of_table_1(report, p);
+    report.add(
+        {"Table 1", "epsilon = m2/m1", ".84 %"}, result("{:.4f} %", 100 * p.epsilon),
+        {{0.835, 0.845}, "rounds to .84"});
+    report.add(
+        {"Table 1", "lambda = c1/(m2 omega0)", "1.43"}, result("{:.4f}", p.lambda),
+        {{1.425, 1.435}, "rounds to 1.43"});
     forms_of_the_equations(report, runs.paper_run(p.b, Damping::closed_form));
     closed_form(report, p);
     trajectory_difference(report);

@@ -53,8 +53,7 @@ private:
     Curve* last_ = nullptr;  // of the branch
 };
 
-/// The branches from the symmetric motion (Fig. 11), with those that begin where its symmetry
-/// breaks.
+/// The branches from the symmetric motion (Fig. 11), and those where its symmetry breaks.
 BranchCurves branches(Damping damping) {
     const Parameters p = table1(of_start, damping);
     const State settled = simulate(p, default_state(p), {1000 * p.cycle(), 100000, {}}, {}).state;

@@ -1,6 +1,5 @@
-// Figs. 10 to 14: the regimes other than the strongly modulated response. Those of Figs. 12 and 13
-// are found at values of b other than the paper's; at the paper's b no initial state tried reaches
-// them.
+// Figs. 10 to 14: the other regimes. Those of Figs. 12 and 13 are found at values of b other than
+// the paper's; at the paper's b no initial state tried reaches them.
 #include <fmt/format.h>
 
 #include <algorithm>

@@ -123,8 +123,7 @@ std::pair<double, PaperRun> run_without_sticking(const Parameters& p) {
     }
 }
 
-/// Limits of a product in double precision, from y at the start: what it retains of the exponents,
-/// and for how long.
+/// Limits of a product in double precision: what it retains of the exponents, and for how long.
 void limits_of_the_computer(Report& report, double y, const TransferProduct& product) {
     const Exponents qr = product.qr(), raw = product.raw_product();
     const double T = product.end_tau() - product.start_tau(),

@@ -55,8 +55,7 @@ void show(Report& report, const Rows& rows) {
         cells);
 }
 
-/// Deviations of the printed lambda1 from the windows with one damping, for the rows that are
-/// chaotic with it.
+/// Deviations of the printed lambda1 from the windows, for the rows that are chaotic.
 std::vector<double> deviations(const Rows& rows, Damping damping) {
     std::vector<double> all;
     for (const Row& row : rows)

@@ -28,8 +28,7 @@ Plot moduli(
     return plot;
 }
 
-/// Largest deviation of J's moduli from 1, 1 and e^(-zeta Delta tau), without flights that contain
-/// a sticking phase, which removes two deviations.
+/// Largest deviation of J's moduli from 1, 1 and e^(-zeta Delta tau), in flights without sticking.
 double error_of_J(const PaperRun& r) {
     const TransferModuli& moduli = *r.run.moduli;
     double error = 0, tau_before = r.run.impacts.front().tau;
@@ -55,8 +54,7 @@ double factor_of_oscillator(const PaperRun& r) {
     return largest;
 }
 
-/// Median deviation of the moduli of M, computed from its entries, from 1, 1, R, R. Near grazing
-/// the entries are so large that rounding dominates.
+/// Median deviation of M's moduli from 1, 1, R, R: near grazing rounding of its entries dominates.
 double error_of_M(const PaperRun& r) {
     const double R = r.parameters.R_plus;  // of both walls
     std::vector<double> errors;
@@ -224,8 +222,7 @@ void areas_1_and_2(Report& report, RunCache& runs) {
         {{4, infinity}, "several times as much"});
 }
 
-/// Long enough for several synchronised stretches at each b; at 22 mm no orbit has captured the
-/// motion yet.
+/// Long enough for several synchronised stretches, before an orbit captures the motion at 22 mm.
 constexpr double tau_of_stretches = 10000;
 
 /// "The essence of chaotic is the irregular and desynchronized impacts": at each b of Type II.
@@ -351,8 +348,7 @@ std::vector<Modulation> modulations(const PaperRun& r) {
     return found;
 }
 
-/// "Area1 and area2 are two typical examples": counts the synchronised stretches that begin with
-/// such an area 2.
+/// "Two typical examples": counts the synchronised stretches that begin with such an area 2.
 void example_of_area_2(Report& report, const PaperRun& r) {
     double examples = 0, stretches = 0;
     for (const auto& [from, to] : synchronised_stretches(r)) {
