@@ -8,7 +8,6 @@
 #include "api/json_text.hpp"
 #include "api/schema/tables.hpp"
 #include "api/version.hpp"
-#include "core/continuation/orbit_start.hpp"
 #include "core/motion/elementary.hpp"
 
 namespace vines::api {

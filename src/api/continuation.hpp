@@ -7,7 +7,7 @@
 
 #include "api/properties.hpp"
 #include "api/system.hpp"
-#include "core/continuation/curve.hpp"
+#include "core/continuation/branch.hpp"
 #include "core/sweep/sweep.hpp"
 
 namespace vines::api {

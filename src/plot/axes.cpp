@@ -31,15 +31,6 @@ Range widened(const Range& r, double share) {
 
 }  // namespace
 
-double on_ordinate(const Plot& plot, double y) {
-    return plot.logarithmic ? std::log10(std::max(y, 0.)) : y;
-}
-
-Range error_bar(const Plot& plot, const Curve& curve, std::size_t i) {
-    const double y = curve.y[i], error = curve.error.empty() ? 0 : curve.error[i];
-    return {on_ordinate(plot, y - error), on_ordinate(plot, y + error)};
-}
-
 Range x_range(const std::vector<Plot>& plots) {
     Range x = nothing;
     bool dots = false;
@@ -62,19 +53,32 @@ Range late_range(const std::vector<Curve>& curves) {
     return {range.first - margin, range.second + margin};
 }
 
-Range y_range(const Plot& plot) {
-    if (plot.y_range)
-        return {on_ordinate(plot, plot.y_range->first), on_ordinate(plot, plot.y_range->second)};
-    Range y = nothing;
-    for (const Curve& c : plot.curves) {
-        for (std::size_t i = 0; i < c.x.size(); ++i) {
-            const double v = on_ordinate(plot, c.y[i]);
-            const auto [low, high] = error_bar(plot, c, i);
-            if (std::isfinite(v)) y = extended(y, std::isfinite(low) ? low : v, high);
-        }
-    }
-    if (y.first > y.second) y = {0, 1};
-    return widened(y, 0.06);
+Axes::Axes(const Plot& of, const Range& common_abscissa)
+    : plot(of),
+      abscissa(common_abscissa),
+      ordinate([this] {
+          if (plot.y_range) return Range{value(plot.y_range->first), value(plot.y_range->second)};
+          Range y = nothing;
+          for (const Curve& c : plot.curves)
+              for (std::size_t i = 0; i < c.x.size(); ++i) {
+                  const double v = value(c.y[i]);
+                  const auto [low, high] = error_bar(c, i);
+                  if (std::isfinite(v)) y = extended(y, std::isfinite(low) ? low : v, high);
+              }
+          if (y.first > y.second) y = {0, 1};
+          return widened(y, 0.06);
+      }()) {}
+
+double Axes::value(double y) const { return plot.logarithmic ? std::log10(std::max(y, 0.)) : y; }
+
+Range Axes::error_bar(const Curve& curve, std::size_t i) const {
+    const double y = curve.y[i], error = curve.error.empty() ? 0 : curve.error[i];
+    return {value(y - error), value(y + error)};
+}
+
+bool Axes::contain(double x, double v) const {
+    return x >= abscissa.first && x <= abscissa.second && v >= ordinate.first &&
+           v <= ordinate.second;
 }
 
 std::vector<double> ticks(const Range& r, int count) {
@@ -91,15 +95,15 @@ std::vector<double> ticks(const Range& r, int count) {
     return list;
 }
 
-std::vector<double> y_ticks(const Plot& plot, const Range& range, int count) {
-    std::vector<double> list = ticks(range, count);
+std::string tick_label(double t) { return fmt::format("{:.10g}", t == 0 ? 0 : t); }
+
+std::vector<double> Axes::y_ticks(int count) const {
+    std::vector<double> list = ticks(ordinate, count);
     if (plot.logarithmic) std::erase_if(list, [](double t) { return t != std::floor(t); });
     return list;
 }
 
-std::string tick_label(double t) { return fmt::format("{:.10g}", t == 0 ? 0 : t); }
-
-std::string y_tick_label(const Plot& plot, double tick) {
+std::string Axes::y_tick_label(double tick) const {
     return (plot.logarithmic ? "1e" : "") + tick_label(tick);
 }
 

@@ -1,5 +1,4 @@
-// Plots: their content, their axes, and how they are drawn, as SVG or in the characters of a
-// terminal.
+// Plots: their content, their axes, and their drawing as SVG or in the characters of a terminal.
 #pragma once
 
 #include <optional>
@@ -36,8 +35,7 @@ struct Plot {
     std::string title{};                 ///< above the plot, if not empty
 };
 
-/// Ordinate range of the last three quarters of all curves, and zero, for curves whose first values
-/// vary widely.
+/// Ordinate range of zero and the last three quarters of curves whose first values vary widely.
 Range late_range(const std::vector<Curve>& curves);
 
 /// Colour of each exponent or eigenvalue.
@@ -61,24 +59,27 @@ struct Terminal {
 /// are omitted.
 std::string text(const std::vector<Plot>& plots, const Terminal& terminal);
 
-// Axes: ranges and ticks.
-
 /// Common abscissa range of all curves of all plots.
 Range x_range(const std::vector<Plot>& plots);
-/// Ordinate range of a plot: fixed, or of curves and error bars; log10 if logarithmic.
-Range y_range(const Plot& plot);
-
-/// Position of a value on the ordinate: y, or log10 y; -infinity for the logarithm of a y <= 0.
-double on_ordinate(const Plot& plot, double y);
-/// Positions of the ends of a point's error bar; equal without errors.
-Range error_bar(const Plot& plot, const Curve& curve, std::size_t i);
-
-/// About `count` ticks in steps of 1, 2 or 5 times a power of ten; none if the step is below the
-/// rounding of the values.
+/// About `count` ticks, 1, 2 or 5 times a power of ten apart; none below the values' rounding.
 std::vector<double> ticks(const Range& range, int count);
-/// Ticks of the ordinate; powers of ten if logarithmic.
-std::vector<double> y_ticks(const Plot& plot, const Range& range, int count);
 std::string tick_label(double tick);
-std::string y_tick_label(const Plot& plot, double tick);
+
+/// The axes of a plot. v is a position on the ordinate: y, or log10 y if it is logarithmic.
+struct Axes {
+    Axes(const Plot& of, const Range& common_abscissa);
+
+    const Plot& plot;
+    const Range abscissa, ordinate;  ///< ordinate: of v, fixed, or of curves and error bars
+
+    /// v of a value; -infinity for the logarithm of a y <= 0.
+    double value(double y) const;
+    /// v of the ends of a point's error bar; equal without errors.
+    Range error_bar(const Curve& curve, std::size_t i) const;
+    bool contain(double x, double v) const;
+    /// Ticks of the ordinate; powers of ten if logarithmic.
+    std::vector<double> y_ticks(int count) const;
+    std::string y_tick_label(double tick) const;
+};
 
 }  // namespace vines::plot

@@ -27,47 +27,42 @@ std::string dashed(const Curve& c) {
     return c.dash.empty() ? "" : fmt::format(R"( stroke-dasharray="{}")", c.dash);
 }
 
-class SvgPlot {
+class SvgPlot : Axes {
 public:
-    SvgPlot(const Plot& plot, const Range& x, int width, int height, int top)
-        : plot_(plot),
+    SvgPlot(const Plot& of, const Range& x, int width, int height, int top)
+        : Axes(of, x),
           left_(62),
           right_(width - 12),
           legend_(top + (plot.title.empty() ? 4 : 22)),
-          top_(legend_ + (is_labelled(plot) ? 20 : 6)),
-          bottom_(top + height - 38),
-          x_(x),
-          y_(y_range(plot)) {}
+          top_(legend_ + (is_labelled() ? 20 : 6)),
+          bottom_(top + height - 38) {}
 
     std::string draw() {
         shade_bands();
         draw_grid();
         mark_levels_and_times();
         frame();
-        for (const Curve& c : plot_.curves) {
+        for (const Curve& c : plot.curves) {
             c.dots ? dots(c) : line(c);
             arrows(c);
         }
         legend();
-        if (!plot_.title.empty()) text(left_, legend_ - 2, "start", plot_.title);
+        if (!plot.title.empty()) text(left_, legend_ - 2, "start", plot.title);
         return std::move(out_);
     }
 
 private:
-    double value(double y) const { return on_ordinate(plot_, y); }
     double px(double x) const {
         // Points at the ends of the range keep this distance from the frame.
         constexpr double inset = 6;
         return left_ + inset +
-               (x - x_.first) / (x_.second - x_.first) * (right_ - left_ - 2 * inset);
+               (x - abscissa.first) / (abscissa.second - abscissa.first) *
+                   (right_ - left_ - 2 * inset);
     }
     double py(double v) const {
-        return bottom_ - (v - y_.first) / (y_.second - y_.first) * (bottom_ - top_);
+        return bottom_ -
+               (v - ordinate.first) / (ordinate.second - ordinate.first) * (bottom_ - top_);
     }
-    bool inside(double x, double v) const {
-        return x >= x_.first && x <= x_.second && v >= y_.first && v <= y_.second;
-    }
-
     template <class... Values>
     void add(fmt::format_string<Values...> pattern, Values&&... values) {
         fmt::format_to(std::back_inserter(out_), pattern, std::forward<Values>(values)...);
@@ -91,7 +86,7 @@ private:
     }
 
     void shade_bands() {
-        for (const auto& [from, to] : plot_.bands) {
+        for (const auto& [from, to] : plot.bands) {
             const double a = std::max(px(from), left_), b = std::min(px(to), right_);
             if (b > a)
                 box(a, top_, std::max(b - a, 0.5), bottom_ - top_,
@@ -100,30 +95,31 @@ private:
     }
 
     void draw_grid() {
-        for (double t : ticks(x_, 8)) {
+        for (double t : ticks(abscissa, 8)) {
             rule(px(t), top_, px(t), bottom_, grid);
             text(px(t), bottom_ + 15, "middle", tick_label(t));
         }
-        for (double t : y_ticks(plot_, y_, plot_.logarithmic ? 4 : 5)) {
+        for (double t : y_ticks(plot.logarithmic ? 4 : 5)) {
             rule(left_, py(t), right_, py(t), grid);
-            text(left_ - 6, py(t) + 4, "end", y_tick_label(plot_, t));
+            text(left_ - 6, py(t) + 4, "end", y_tick_label(t));
         }
     }
 
     void mark_levels_and_times() {
-        for (double level : plot_.levels)
-            if (inside(x_.first, value(level)))
+        for (double level : plot.levels)
+            if (contain(abscissa.first, value(level)))
                 rule(left_, py(value(level)), right_, py(value(level)), level_line);
-        for (double m : plot_.marked_times)
-            if (m >= x_.first && m <= x_.second) rule(px(m), top_, px(m), bottom_, time_line);
+        for (double m : plot.marked_times)
+            if (m >= abscissa.first && m <= abscissa.second)
+                rule(px(m), top_, px(m), bottom_, time_line);
     }
 
     void frame() {
         box(left_, top_, right_ - left_, bottom_ - top_, R"(fill="none" stroke="#b9c0c6")");
-        text(0.5 * (left_ + right_), bottom_ + 31, "middle", plot_.x_label);
+        text(0.5 * (left_ + right_), bottom_ + 31, "middle", plot.x_label);
         const double middle = 0.5 * (top_ + bottom_);
         text(
-            14, middle, "middle", plot_.y_label,
+            14, middle, "middle", plot.y_label,
             fmt::format(" transform=\"rotate(-90 14 {:.1f})\"", middle));
     }
 
@@ -139,8 +135,7 @@ private:
             R"(viewBox="{0:.1f} {1:.1f} {2:.1f} {3:.1f}">)",
             left_, top_, right_ - left_, bottom_ - top_);
         std::string points;
-        // Decimation: in each column of half a pixel the first, lowest, highest and last point give
-        // the same picture.
+        // First, lowest, highest and last point of each half pixel give the same picture.
         for (std::size_t i = 0; i < c.x.size();) {
             if (!std::isfinite(value(c.y[i]))) {
                 polyline(c, points);
@@ -175,7 +170,7 @@ private:
         int before = 0;
         for (std::size_t i = 0; i < c.x.size(); ++i) {
             const double v = value(c.y[i]), x = px(c.x[i]);
-            const int side = !std::isfinite(v) ? 0 : (v > y_.second) - (v < y_.first);
+            const int side = !std::isfinite(v) ? 0 : (v > ordinate.second) - (v < ordinate.first);
             double& free = free_from[side > 0];
             if (side != 0 && side != before && x >= free) {
                 add(R"(<path d="M{:.1f},{:.1f}h{}l{},{}z" fill="{}"/>)", x - width / 2,
@@ -191,24 +186,24 @@ private:
         const char* const radius = c.x.size() > 100 ? "1.3" : "3";
         for (std::size_t i = 0; i < c.x.size(); ++i) {
             const double x = px(c.x[i]), v = value(c.y[i]);
-            if (!std::isfinite(v) || !inside(c.x[i], v)) continue;
-            const auto [low, high] = error_bar(plot_, c, i);
+            if (!contain(c.x[i], v)) continue;
+            const auto [low, high] = error_bar(c, i);
             if (!c.error.empty())
                 rule(
-                    x, py(std::max(low, y_.first)), x, py(std::min(high, y_.second)),
+                    x, py(std::max(low, ordinate.first)), x, py(std::min(high, ordinate.second)),
                     fmt::format(R"(stroke="{}")", c.colour));
             dot(x, py(v), radius, c.colour);
         }
     }
 
-    static bool is_labelled(const Plot& plot) {
+    bool is_labelled() const {
         return std::ranges::any_of(plot.curves, [](const Curve& c) { return !c.label.empty(); });
     }
 
     /// Above the frame, where no curve is.
     void legend() {
         double x = left_;
-        for (const Curve& c : plot_.curves) {
+        for (const Curve& c : plot.curves) {
             if (c.label.empty()) continue;
             if (c.dots) dot(x + 7, legend_ + 8, "3", c.colour);
             else
@@ -220,9 +215,7 @@ private:
         }
     }
 
-    const Plot& plot_;
     const double left_, right_, legend_, top_, bottom_;
-    const Range x_, y_;
     std::string out_;
 };
 

@@ -1,5 +1,5 @@
 // Plots as text. Each character holds 2 x 4 Braille dots (in ASCII it is a "*"); coordinates count
-// dots from the upper left. v is an ordinate on the axis: y, or log10 y (on_ordinate).
+// dots from the upper left.
 #include "plot/plot.hpp"
 
 #include <fmt/format.h>
@@ -53,10 +53,7 @@ int length(const std::string& text) {
 }
 
 int lines_of(const Terminal& terminal) { return std::max(terminal.height, min_height); }
-
-std::vector<double> ordinate_ticks(const Plot& plot, const Terminal& terminal) {
-    return y_ticks(plot, y_range(plot), std::max(lines_of(terminal) / 3, 2));
-}
+int y_ticks_of(const Terminal& terminal) { return std::max(lines_of(terminal) / 3, 2); }
 
 /// Widths of the frame in characters.
 struct Layout {
@@ -68,25 +65,23 @@ struct Layout {
 constexpr std::array unicode_marks = {"•", "×", "+", "◦", "▪", "▵", "◇"};
 constexpr std::array ascii_marks = {"o", "x", "+", "#", "@", "%", "&"};
 
-class TextPlot {
+class TextPlot : Axes {
 public:
-    TextPlot(const Plot& plot, const Range& x, const Layout& layout, const Terminal& terminal)
-        : plot_(plot),
+    TextPlot(const Plot& of, const Range& x, const Layout& layout, const Terminal& terminal)
+        : Axes(of, x),
           terminal_(terminal),
-          x_(x),
-          y_(y_range(plot)),
           left_(layout.left),
           width_(layout.width),
           height_(lines_of(terminal)),
           cells_(static_cast<std::size_t>(width_ * height_)) {
-        for (double level : plot.levels) rule_across(on_ordinate(plot_, level));
+        for (double level : plot.levels) rule_across(value(level));
         for (const Curve& c : plot.curves) c.dots ? draw_points(c) : draw_line(c);
     }
 
     std::string draw() {
         std::string out;
-        if (!plot_.title.empty()) out += plot_.title + "\n";
-        out += plot_.y_label + "\n";
+        if (!plot.title.empty()) out += plot.title + "\n";
+        out += plot.y_label + "\n";
         const std::map<int, std::string> at_ticks = tick_labels(), at_ends = end_labels();
         for (int row = 0; row < height_; ++row) {
             const auto tick = at_ticks.find(row), end = at_ends.find(row);
@@ -118,19 +113,16 @@ private:
 
     /// Dot coordinates from the left and from the top.
     int across(double x) const {
-        return static_cast<int>(
-            std::lround((x - x_.first) / (x_.second - x_.first) * (width_ * dots_across - 1)));
+        return static_cast<int>(std::lround(
+            (x - abscissa.first) / (abscissa.second - abscissa.first) *
+            (width_ * dots_across - 1)));
     }
     int down(double v) const {
-        const double bounded = std::clamp(v, y_.first, y_.second);
+        const double bounded = std::clamp(v, ordinate.first, ordinate.second);
         return static_cast<int>(std::lround(
-            (y_.second - bounded) / (y_.second - y_.first) * (height_ * dots_down - 1)));
+            (ordinate.second - bounded) / (ordinate.second - ordinate.first) *
+            (height_ * dots_down - 1)));
     }
-    bool inside(double x, double v) const {
-        return std::isfinite(v) && x >= x_.first && x <= x_.second && v >= y_.first &&
-               v <= y_.second;
-    }
-
     void dot(int from_left, int from_top, const Curve& curve) {
         Cell& c = cell(from_left / dots_across, from_top / dots_down);
         c.dots |= braille_dot(from_left % dots_across, from_top % dots_down);
@@ -138,7 +130,7 @@ private:
     }
 
     void rule_across(double v) {
-        if (!inside(x_.first, v)) return;
+        if (!contain(abscissa.first, v)) return;
         for (int column = 0; column < width_; ++column)
             cell(column, down(v) / dots_down).mark = terminal_.ascii ? "-" : "┄";
     }
@@ -154,9 +146,9 @@ private:
 
     void draw_line(const Curve& c) {
         for (std::size_t i = 0; i < c.x.size(); ++i) {
-            const double v = on_ordinate(plot_, c.y[i]);
+            const double v = value(c.y[i]);
             if (!std::isfinite(v)) continue;
-            const double before = i > 0 ? on_ordinate(plot_, c.y[i - 1]) : v;
+            const double before = i > 0 ? value(c.y[i - 1]) : v;
             const std::size_t from = i > 0 && std::isfinite(before) ? i - 1 : i;
             // A value next to a gap is drawn as a single dot.
             stroke(c.x[from], from == i ? v : before, c.x[i], v, c);
@@ -166,9 +158,9 @@ private:
     void draw_points(const Curve& c) {
         const bool is_marked = has_marks(c);
         for (std::size_t i = 0; i < c.x.size(); ++i) {
-            const double x = c.x[i], v = on_ordinate(plot_, c.y[i]);
-            if (!inside(x, v)) continue;
-            const auto [low, high] = error_bar(plot_, c, i);
+            const double x = c.x[i], v = value(c.y[i]);
+            if (!contain(x, v)) continue;
+            const auto [low, high] = error_bar(c, i);
             stroke(x, low, x, high, c);
             if (!is_marked) continue;
             Cell& at = cell(across(x) / dots_across, down(v) / dots_down);
@@ -181,7 +173,7 @@ private:
     }
     const char* point_mark(const Curve& c) const {
         const auto& marks = terminal_.ascii ? ascii_marks : unicode_marks;
-        const auto k = static_cast<std::size_t>(&c - plot_.curves.data());
+        const auto k = static_cast<std::size_t>(&c - plot.curves.data());
         return marks[terminal_.colours ? 0 : k % marks.size()];
     }
 
@@ -197,21 +189,19 @@ private:
 
     std::map<int, std::string> tick_labels() const {
         std::map<int, std::string> labels;
-        for (double t : ordinate_ticks(plot_, terminal_))
-            labels[down(t) / dots_down] = y_tick_label(plot_, t);
+        for (double t : y_ticks(y_ticks_of(terminal_)))
+            labels[down(t) / dots_down] = y_tick_label(t);
         return labels;
     }
 
-    /// Labels by row: each at the row where its curve ends, else at the next free row below, else
-    /// above.
+    /// Labels by row: where the curve ends, else at the next free row below, else above.
     std::map<int, std::string> end_labels() const {
         std::map<int, std::string> labels;
-        for (const Curve& c : plot_.curves) {
+        for (const Curve& c : plot.curves) {
             if (c.label.empty()) continue;
             int row = height_ - 1;
             for (std::size_t i = 0; i < c.x.size(); ++i)
-                if (std::isfinite(on_ordinate(plot_, c.y[i])))
-                    row = down(on_ordinate(plot_, c.y[i])) / dots_down;
+                if (std::isfinite(value(c.y[i]))) row = down(value(c.y[i])) / dots_down;
             const int wanted = row;
             while (labels.contains(row) && row < height_) ++row;
             if (row == height_) row = wanted;
@@ -221,9 +211,7 @@ private:
         return labels;
     }
 
-    const Plot& plot_;
     const Terminal& terminal_;
-    const Range x_, y_;
     const int left_, width_, height_;
     std::vector<Cell> cells_;
 };
@@ -238,9 +226,11 @@ int longest_label(const std::vector<Plot>& plots) {
 
 Layout layout_of(const std::vector<Plot>& plots, const Terminal& terminal) {
     int label_width = min_label_width;
-    for (const Plot& p : plots)
-        for (double t : ordinate_ticks(p, terminal))
-            label_width = std::max(label_width, length(y_tick_label(p, t)));
+    for (const Plot& p : plots) {
+        const Axes axes(p, {});
+        for (double t : axes.y_ticks(y_ticks_of(terminal)))
+            label_width = std::max(label_width, length(axes.y_tick_label(t)));
+    }
     const int left = label_width + 2, label = longest_label(plots);
     return {left, std::max(terminal.width - 1 - left - (label > 0 ? label + 1 : 0), min_width)};
 }

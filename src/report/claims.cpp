@@ -6,20 +6,7 @@
 #include <cmath>
 #include <span>
 
-#include "core/motion/elementary.hpp"
-#include "report/statistics.hpp"
-
 namespace vines::report {
-
-std::string in_words(const Exponents& lambda) {
-    return fmt::format(
-        "{:.4f}, {:.4f}, {:.4f}, {:.4f}", lambda[0], lambda[1], lambda[2], lambda[3]);
-}
-
-Exponents exponents_of(const PaperRun& r) {
-    const auto& orbit = r.regime().orbit;
-    return orbit ? orbit->exponents(r.parameters) : r.product().qr();
-}
 
 namespace {
 
@@ -55,7 +42,28 @@ std::string with_error(const WindowExponents& e) {
     return fmt::format("{:.4f} +- {:.4f}", e.product.qr()[0], e.growth.standard_error[0]);
 }
 
+/// The four exponents of a history.
+Plot plot_of(const ExponentHistory& h, const char* label) {
+    Plot p{.x_label = "tau", .y_label = label, .levels = {0}};
+    for (int k = 0; k < 4; ++k) {
+        Curve c{.x = h.tau, .colour = colours[k], .label = fmt::format("lambda{}", k + 1)};
+        for (const Exponents& lambda : h.lambda) c.y.push_back(lambda[k]);
+        p.curves.push_back(std::move(c));
+    }
+    return p;
+}
+
 }  // namespace
+
+std::string in_words(const Exponents& lambda) {
+    return fmt::format(
+        "{:.4f}, {:.4f}, {:.4f}, {:.4f}", lambda[0], lambda[1], lambda[2], lambda[3]);
+}
+
+Exponents exponents_of(const PaperRun& r) {
+    const auto& orbit = r.regime().orbit;
+    return orbit ? orbit->exponents(r.parameters) : r.product().qr();
+}
 
 void positive_exponents(Report& report, const PositiveExponents& paper, const BothRuns& runs) {
     const auto &here = *runs.here.run.exponents, &other = *runs.by_equation.run.exponents;
@@ -80,7 +88,7 @@ void positive_exponents(Report& report, const PositiveExponents& paper, const Bo
         {paper.where, "positive exponents (qr)", paper.positive, rounding_cause},
         {positive(lambda), positive(other.product.qr()),
          fmt::format("{}: {}", positive(lambda), in_words(lambda)) + paper.other_start},
-        {exactly(4), "all four"}, ClaimVerdict::not_reproduced);
+        {exactly(4), "all four"}, not_reproduced);
 }
 
 Result result_of(const Typical& here, int decimals) {
@@ -111,6 +119,43 @@ double late_change(const ExponentHistory& h, int k) {
         if (std::isfinite(lambda[k])) values.push_back(lambda[k]);
     const double last = values.back();
     return (quantile(values, 0.95) - quantile(values, 0.05)) / std::abs(last);
+}
+
+Plot displacement(const Series& series, double to) {
+    Curve c;
+    for (std::size_t i = 0; i < series.tau.size() && series.tau[i] <= to; ++i)
+        c.add(series.tau[i], 1000 * series.x[i]);
+    return {.x_label = "tau", .y_label = "x (mm)", .curves = {std::move(c)}};
+}
+
+Plot relative_displacement(const PaperRun& r, double from, double to) {
+    Curve c;
+    const auto add = [&](double tau, double gap) {
+        if (tau >= from && tau <= to) c.add(tau, 1000 * gap);
+    };
+    const double b = r.parameters.b;
+    auto impact = r.run.impacts.begin();
+    for (std::size_t k = 0; k < r.run.series->tau.size(); ++k) {
+        for (; impact != r.run.impacts.end() && impact->tau <= r.run.series->tau[k]; ++impact)
+            add(impact->tau, -impact->side * b);
+        add(r.run.series->tau[k], r.run.series->y[k] - r.run.series->x[k]);
+    }
+    return {
+        .x_label = "tau",
+        .y_label = "y - x (mm)",
+        .curves = {std::move(c)},
+        .levels = {-1000 * b, 1000 * b}};
+}
+
+std::vector<Plot> exponent_histories(const TransferProduct& product) {
+    const ExponentHistory& raw = product.raw_product_history();
+    Plot as_paper = plot_of(raw, "raw_product"), reference = plot_of(product.qr_history(), "qr");
+    Curve floor{.x = raw.tau, .colour = grey, .label = "rounding floor", .dash = "5 4"};
+    for (std::size_t i = 0; i < raw.tau.size(); ++i)
+        floor.y.push_back(rounding_floor(raw.lambda[i][0], raw.tau[i] - product.start_tau()));
+    as_paper.curves.push_back(std::move(floor));
+    for (Plot* p : {&as_paper, &reference}) p->y_range = plot::late_range(p->curves);
+    return {as_paper, reference};
 }
 
 }  // namespace vines::report

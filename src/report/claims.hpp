@@ -1,6 +1,8 @@
-// Statements on regimes and exponents that several chapters use, and the numbers of Tables 2 and 3.
+// Statements on regimes and exponents, plots and printed tables that several chapters use.
 #pragma once
 
+#include "core/motion/elementary.hpp"
+#include "plot/plot.hpp"
 #include "report/report.hpp"
 #include "report/runs.hpp"
 
@@ -14,7 +16,7 @@ Exponents exponents_of(const PaperRun& response);
 /// Adds the finding on the regime of a figure. `words`: both results.
 void same_regime(
     Report& report, const std::string& where, RegimeType type, const BothRuns& runs,
-    const std::string& words, ClaimVerdict expected = ClaimVerdict::reproduced);
+    const std::string& words, ClaimVerdict expected = reproduced);
 
 /// The result that a median decides; `decimals` of the words.
 Result result_of(const Typical& here, int decimals);
@@ -36,6 +38,15 @@ void positive_exponents(Report& report, const PositiveExponents& paper, const Bo
 double late_change(const ExponentHistory& history, int k);
 /// late_change() of what the paper calls almost constant.
 inline const Criterion almost_constant = {{0, 0.1}, "a tenth; in part: a fifth", Band{0, 0.2}};
+
+using plot::Curve, plot::Plot, plot::colours, plot::grey, plot::red;
+
+Plot displacement(const Series& series, double to = infinity);  ///< x in mm up to a time
+/// y - x in mm over an interval of tau, with the walls.
+Plot relative_displacement(const PaperRun& response, double from, double to);
+/// Two plots. Above: the four exponents as the paper computed them (33), with their rounding floor.
+/// Below: the exponents by QR.
+std::vector<Plot> exponent_histories(const TransferProduct& product);
 
 /// Table 2: exponents at b = 22 mm over three windows of one run.
 struct Table2Row {

@@ -90,22 +90,19 @@ std::string text_of(const Result& r) {
 }
 
 std::string text_of(ClaimVerdict verdict, bool computed_record) {
-    using enum ClaimVerdict;
-    if (computed_record) switch (verdict) {
-            case reproduced: return "holds for the computed record";
-            case partly: return "holds in part for the computed record";
-            default: return "**does not hold for the computed record**";
-        }
-    switch (verdict) {
-        case reproduced: return "reproduced";
-        case by_closed_form: return "reproduced, with the closed-form damping alone";
-        case by_equation_of_motion: return "reproduced, with the damping of eq. (1) alone";
-        case partly: return "in part";
-        case partly_by_closed_form: return "in part, with the closed-form damping alone";
-        case partly_by_equation_of_motion: return "in part, with the damping of eq. (1) alone";
-        case not_reproduced: return "**not reproduced**";
-    }
-    return "";
+    if (computed_record)
+        return verdict == reproduced ? "holds for the computed record"
+               : verdict == partly   ? "holds in part for the computed record"
+                                     : "**does not hold for the computed record**";
+    constexpr const char* texts[] = {
+        "reproduced",
+        "reproduced, with the closed-form damping alone",
+        "reproduced, with the damping of eq. (1) alone",
+        "in part",
+        "in part, with the closed-form damping alone",
+        "in part, with the damping of eq. (1) alone",
+        "**not reproduced**"};
+    return texts[static_cast<std::size_t>(verdict)];
 }
 
 /// Places in the paper with verdict `a` or `b`, each once, in order.
@@ -121,7 +118,6 @@ std::string places_of(const std::vector<Finding>& findings, ClaimVerdict a, Clai
 }  // namespace
 
 ClaimVerdict Finding::verdict() const {
-    using enum ClaimVerdict;
     // `both`, or the verdict of the damping with which alone the number is in the band.
     const auto within = [&](const Band& band, ClaimVerdict both, ClaimVerdict by_form,
                             ClaimVerdict by_motion) {
@@ -140,7 +136,6 @@ std::string bottom_line(const Report& report) {
         return std::ranges::count_if(
             report.findings, [=](const Finding& f) { return ((f.verdict() == verdicts) || ...); });
     };
-    using enum ClaimVerdict;
     std::map<std::string, int> causes;
     for (const Finding& f : report.findings)
         if (f.verdict() == not_reproduced && !f.statement.shared_cause.empty())
@@ -169,11 +164,8 @@ std::string summary(const std::vector<Finding>& findings) {
     return fmt::format(
         "{}\nThe paper's two dampings contradict each other. Statements that hold, at least in "
         "part, with the closed form alone: {}. With eq. (1) alone: {}.\n\n",
-        text,
-        places_of(findings, ClaimVerdict::by_closed_form, ClaimVerdict::partly_by_closed_form),
-        places_of(
-            findings, ClaimVerdict::by_equation_of_motion,
-            ClaimVerdict::partly_by_equation_of_motion));
+        text, places_of(findings, by_closed_form, partly_by_closed_form),
+        places_of(findings, by_equation_of_motion, partly_by_equation_of_motion));
 }
 
 std::string markdown_table(const std::vector<Finding>& findings) {
@@ -195,9 +187,9 @@ void Report::add_of_record(Statement s, Result r, Criterion c, ClaimVerdict expe
     findings.push_back({std::move(s), std::move(r), std::move(c), expected, true});
 }
 
-void Report::table(const DataTable& table) {
-    body += head(table.columns);
-    for (const auto& cells : table.rows) body += row(cells);
+void Report::table(const std::vector<std::string>& columns, const Rows& rows) {
+    body += head(columns);
+    for (const auto& cells : rows) body += row(cells);
     body += "\n";
 }
 
@@ -220,8 +212,7 @@ void write_markdown(const Report& report, const std::string& folder) {
 namespace {
 
 /// Computes the report and prints its bottom line, summary and table. Writes report.md and its SVG
-/// plots into `folder`, which is created; "" writes nothing. Returns the exit code: 1 if a verdict
-/// differs from the expected one.
+/// plots into `folder` unless it is "". Returns the exit code: 1 if a verdict is not as expected.
 int reproduce(const std::string& folder) {
     // Created first, so that an invalid folder is reported before the long computation.
     if (!folder.empty()) std::filesystem::create_directories(folder);

@@ -30,9 +30,9 @@ enum class ClaimVerdict {
     partly_by_equation_of_motion,
     not_reproduced
 };
+using enum ClaimVerdict;
 
-/// A statement of the paper, reduced to a quantity. All texts of a finding are one line of Markdown
-/// without a vertical bar.
+/// A statement of the paper, reduced to a quantity. Texts are Markdown without a vertical bar.
 struct Statement {
     std::string where;  ///< place in the paper, "Fig. 5"
     std::string what;   ///< the quantity, or the statement
@@ -77,19 +77,14 @@ struct Finding {
     Result result;
     Criterion criterion;
     /// Verdict found so far. Another verdict is an error: `vines reproduce` fails.
-    ClaimVerdict expected = ClaimVerdict::reproduced;
-    /// The number comes from a computed record in place of one of the paper's, which are not
-    /// published; the verdict applies to that record.
+    ClaimVerdict expected = reproduced;
+    /// The number comes from a computed record in place of one of the paper's.
     bool computed_record = false;
 
     ClaimVerdict verdict() const;
     bool as_expected() const { return verdict() == expected; }
 };
 
-struct DataTable {
-    std::vector<std::string> columns;
-    std::vector<std::vector<std::string>> rows{};
-};
 struct Picture {
     std::string name;               ///< file name without ".svg"
     std::vector<plot::Plot> plots;  ///< drawn above each other with a common abscissa
@@ -102,14 +97,14 @@ struct Report {
     std::string body;         ///< Markdown
     std::vector<Picture> pictures;
 
-    void add(Statement, Result, Criterion, ClaimVerdict expected = ClaimVerdict::reproduced);
+    void add(Statement, Result, Criterion, ClaimVerdict expected = reproduced);
     /// The same for a number that comes from a computed record.
-    void add_of_record(
-        Statement, Result, Criterion, ClaimVerdict expected = ClaimVerdict::reproduced);
+    void add_of_record(Statement, Result, Criterion, ClaimVerdict expected = reproduced);
     // These are added to the body.
     void heading(const std::string& text) { body += "\n## " + text + "\n\n"; }
     void paragraph(const std::string& text) { body += text + "\n\n"; }
-    void table(const DataTable& table);
+    using Rows = std::vector<std::vector<std::string>>;
+    void table(const std::vector<std::string>& columns, const Rows& rows);
     void picture(
         const std::string& name, const std::string& caption, std::vector<plot::Plot> plots,
         int height = 210);
@@ -124,8 +119,7 @@ std::string summary(const std::vector<Finding>& findings);
 /// Table of the findings, with the numbers and bands that their verdicts rest on.
 std::string markdown_table(const std::vector<Finding>& findings);
 
-/// Writes report.md and the pictures into an existing folder. Throws std::runtime_error if a file
-/// cannot be written.
+/// Writes report.md and the pictures into an existing folder, or throws std::runtime_error.
 void write_markdown(const Report& report, const std::string& folder);
 
 class RunCache;

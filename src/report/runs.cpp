@@ -58,16 +58,9 @@ State start_beside(const Parameters& p, std::size_t k) {
 // Number of neighbouring runs: the standard error of their median is a fifth of the scatter.
 constexpr std::size_t neighbour_runs = 50;
 
-Ensemble::Window concluded(const TransferProduct& product) {
-    const double T = product.end_tau() - product.start_tau();
-    const Exponents raw = product.raw_product();
-    return {T, product.qr(), std::isfinite(raw[2]) ? (raw[0] - raw[2]) * T : nan};
-}
-
 Ensemble one_run(const Parameters& p, const State& start, WindowsOf size) {
-    const Regime regime =
-        *analyse(run_to(p, start, Ensemble::tau_end, {.regime = true, .before_capture = true}))
-             .regime;
+    constexpr Parts parts = {.regime = true, .before_capture = true};
+    const Regime regime = run_until(p, Ensemble::tau_end, parts, qr_alone, start).regime();
 
     Ensemble e;
     const bool captured = regime.capture && regime.capture->chaotic_before == true;
@@ -82,18 +75,19 @@ Ensemble one_run(const Parameters& p, const State& start, WindowsOf size) {
     AnalysisRequest exponents = run_to(p, start, until, {}, qr_and_raw_product);
     exponents.windows = windows_of(size, p, start, until);
     for (const WindowExponents& w : analyse(exponents).windows)
-        if (!std::isnan(w.product.qr()[0])) e.windows.push_back(concluded(w.product));
+        if (const Exponents qr = w.product.qr(); !std::isnan(qr[0])) {
+            const double T = w.product.end_tau() - w.product.start_tau();
+            const Exponents raw = w.product.raw_product();
+            e.windows.push_back({T, qr, std::isfinite(raw[2]) ? (raw[0] - raw[2]) * T : nan});
+        }
     return e;
 }
 
-/// A run of which only the regime in the window is wanted.
-AnalysisRequest regime_run(const Parameters& p, const State& start, const Interval& window) {
+/// The regime in a window, at the end of a run.
+Regime regime_in(const Interval& window, const Parameters& p, const State& start) {
     AnalysisRequest wanted = run_to(p, start, window.to, {.regime = true});
     wanted.window.from = window.from;
-    return wanted;
-}
-std::vector<Regime> regimes_of(const std::vector<AnalysisRequest>& runs) {
-    return in_parallel(runs.size(), [&](std::size_t i) { return *analyse(runs[i]).regime; });
+    return *analyse(wanted).regime;
 }
 
 Ensemble make_ensemble(double b, WindowsOf size, Damping damping) {
@@ -138,11 +132,9 @@ double positive(const Exponents& lambda) {
 }
 
 PaperRun run_until(
-    const Parameters& p, double tau_end, const Parts& parts, std::optional<double> y,
-    const ExponentOptions& estimators) {
-    State start = default_state(p);
-    start.y = y.value_or(start.y);
-    return {p, analyse(run_to(p, start, tau_end, parts, estimators))};
+    const Parameters& p, double tau_end, const Parts& parts, const ExponentOptions& estimators,
+    const std::optional<State>& start) {
+    return {p, analyse(run_to(p, start.value_or(default_state(p)), tau_end, parts, estimators))};
 }
 
 Moments Ensemble::lambda(int k) const {
@@ -156,24 +148,22 @@ Moments Ensemble::duration() const {
 }
 
 std::vector<Regime> long_regimes(const std::vector<double>& b, Damping damping) {
-    std::vector<AnalysisRequest> runs;
-    for (const double half_width : b) {
-        const Parameters p = table1(half_width, damping);
-        runs.push_back(regime_run(p, default_state(p), {window_end, 10 * window_end}));
-    }
-    return regimes_of(runs);
+    return in_parallel(b.size(), [&](std::size_t i) {
+        const Parameters p = table1(b[i], damping);
+        return regime_in({window_end, 10 * window_end}, p, default_state(p));
+    });
 }
 
-std::vector<Regime> regimes_of_random_starts(const Parameters& p, int starts) {
+std::vector<Regime> regimes_of_random_starts(const Parameters& p, std::size_t starts) {
     std::mt19937_64 engine(2018);
     const auto within = [&](double size) { return uniform(engine, -size, size); };
-    std::vector<AnalysisRequest> runs;
-    for (int i = 0; i < starts; ++i) {
-        State start{within(0.008), within(0.008), within(0.01), 0};
+    std::vector<State> states;
+    while (states.size() < starts) {
+        State& start = states.emplace_back(State{within(0.008), within(0.008), within(0.01), 0});
         start.y = start.x + within(p.b);
-        runs.push_back(regime_run(p, start, {1500, 3000}));
     }
-    return regimes_of(runs);
+    return in_parallel(
+        starts, [&](std::size_t i) { return regime_in({1500, 3000}, p, states[i]); });
 }
 
 std::string Typical::in_words(int decimals) const {
@@ -186,7 +176,6 @@ std::string Typical::in_words(int decimals) const {
 
 const PaperRun& RunCache::paper_run(double b, Damping damping) {
     return cached(responses_, {b, damping}, [&] {
-        const Parameters p = table1(b, damping);
         constexpr Parts all = {
             .series = true,
             .impacts = true,
@@ -196,7 +185,7 @@ const PaperRun& RunCache::paper_run(double b, Damping damping) {
             .regime = true,
             .before_capture = true,
             .manifold = true};
-        return PaperRun{p, analyse(run_to(p, default_state(p), window_end, all, all_estimators))};
+        return run_until(table1(b, damping), window_end, all, all_estimators);
     });
 }
 
@@ -204,11 +193,10 @@ const std::vector<PaperRun>& RunCache::neighbours(double b, Damping damping) {
     return cached(neighbours_, {b, damping}, [&] {
         const Parameters p = table1(b, damping);
         return in_parallel(neighbour_runs, [&](std::size_t k) {
-            return PaperRun{
-                p, analyse(run_to(
-                       p, start_beside(p, k), window_end,
-                       {.series = true, .exponents = true, .moduli = true, .regime = true},
-                       {.qr = true, .raw_product = true}))};
+            constexpr Parts parts = {
+                .series = true, .exponents = true, .moduli = true, .regime = true};
+            return run_until(
+                p, window_end, parts, {.qr = true, .raw_product = true}, start_beside(p, k));
         });
     });
 }

@@ -39,10 +39,10 @@ struct Both {
 };
 using BothRuns = Both<PaperRun>;
 
-/// A run for parts that need more data than one window, or from another y(0), m.
+/// A run from the paper's initial state or another one.
 PaperRun run_until(
-    const Parameters& parameters, double tau_end, const Parts& parts, std::optional<double> y = {},
-    const ExponentOptions& estimators = qr_alone);
+    const Parameters& parameters, double tau_end, const Parts& parts,
+    const ExponentOptions& estimators = qr_alone, const std::optional<State>& start = {});
 
 /// The results of make(0) to make(count - 1), computed on all cores.
 template <class Make>
@@ -91,13 +91,12 @@ using BothEnsembles = Both<Ensemble>;
 
 /// Regimes reached from random starts (the same ones in every call): |x'|, |x| <= .008 and |y'| <=
 /// .01 (m, and m per unit of tau), y anywhere in the cavity. Judged from tau = 1500 to 3000.
-std::vector<Regime> regimes_of_random_starts(const Parameters& parameters, int starts);
+std::vector<Regime> regimes_of_random_starts(const Parameters& parameters, std::size_t starts);
 
 /// Regimes at several b (m) from the paper's initial state, from tau = 1709 to ten times that.
 std::vector<Regime> long_regimes(const std::vector<double>& b, Damping damping);
 
-/// A quantity of each of several chaotic runs, which sample one motion: its value for the paper's
-/// start, median and quartiles.
+/// A quantity of several chaotic runs: its value for the paper's start, median and quartiles.
 struct Typical {
     double first, median, lower_quartile, upper_quartile;
 
@@ -119,9 +118,8 @@ public:
     /// The run to window_end, with all parts, exponents by all estimators.
     const PaperRun& paper_run(double b, Damping damping = Damping::closed_form);
     BothRuns both(double b) { return {paper_run(b), paper_run(b, Damping::equation_of_motion)}; }
-    /// That run, and runs from slightly different starts: in chaos each soon differs from the
-    /// others, like a run on another computer. Only series, moduli, regime, and the exponents by qr
-    /// and raw_product.
+    /// That run and others from slightly different starts, which soon differ, like runs on other
+    /// computers. Only series, moduli, regime, and the exponents by qr and raw_product.
     const std::vector<PaperRun>& neighbours(double b, Damping damping = Damping::closed_form);
     const Ensemble& ensemble(double b, WindowsOf size, Damping damping = Damping::closed_form);
     BothEnsembles both_ensembles(double b, WindowsOf size) {

@@ -9,8 +9,7 @@
 
 namespace vines {
 
-/// Residual of m equations at z and, unless null, their m x (m + 1) Jacobian; false outside of
-/// their domain.
+/// Residual of m equations and, unless null, their m x (m + 1) Jacobian; false outside the domain.
 using CurveEquations =
     std::function<bool(const Eigen::VectorXd& z, Eigen::VectorXd& residual, Eigen::MatrixXd* J)>;
 

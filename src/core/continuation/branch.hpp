@@ -2,13 +2,13 @@
 // and the reason why a branch ends.
 //
 // Points are found by arclength.hpp on the equations of periodic_impacts.hpp, and each is checked
-// by a simulation (orbit_check.hpp). Between two points, special points are sign changes of
+// by a simulation (orbit_check.cpp). Between two points, special points are sign changes of
 //   fold: the tangent's component along the parameter;
 //   flip, symmetry breaking: the product of (multiplier + 1), of the half map if it is mirrored;
 //   torus: the product of (multiplier_i multiplier_j - 1), i < j, if a complex pair has modulus 1.
 // At a grazing contact the sequence gains or loses an impact, and the branch is followed with the
 // new sequence if that exists on one side. Where a chatter becomes complete, grazing contacts
-// accumulate; beyond, the ball sticks, and the branch is followed by its return (return_map.hpp).
+// accumulate; beyond, the ball sticks, and the branch is followed by its return (return_map.cpp).
 #pragma once
 
 #include "core/continuation/arclength.hpp"
@@ -91,5 +91,11 @@ struct BranchPlan {
 
 /// Follows the branch of an orbit in both directions, and branches from it. False if stopped.
 bool follow_branches(const BranchPlan& plan, const OrbitGuess& start, BranchSink& sink);
+
+/// Follows the curve through a special point that was found along the first parameter, with the
+/// second one at `second`, in both directions, as branches from `number` on. Kinds: fold, flip,
+/// symmetry_breaking, torus, grazing, stick. False if stopped.
+bool follow_curve(
+    const BranchPlan& plan, const SpecialPoint& point, double second, int number, BranchSink& sink);
 
 }  // namespace vines

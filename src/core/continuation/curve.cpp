@@ -1,9 +1,10 @@
-#include "core/continuation/curve.hpp"
-
+// Curves of special points in two parameters: the equations of an orbit together with the test
+// function of the special point, along their common arclength.
 #include <Eigen/LU>
 #include <algorithm>
 #include <utility>
 
+#include "core/continuation/branch.hpp"
 #include "core/continuation/branch_node.hpp"
 
 namespace vines {
@@ -13,8 +14,7 @@ namespace {
 // Arclengths of the first, the longest and the shortest step, and the largest angle's cosine.
 constexpr double first_curve_arc = 1e-3, longest_curve_arc = 0.1, shortest_curve_arc = 1e-9;
 constexpr double curve_bend = 0.95, curve_growth = 1.5;
-// Step of the central differences of a test function, whose derivative affects the number of
-// Newton's steps alone.
+// Step of the differences of a test function: they affect the number of Newton's steps alone.
 constexpr double test_step = 1e-6;
 
 /// The test function of a kind of special point; it is zero there.
@@ -68,8 +68,7 @@ OrbitCheck check_special(const SpecialTest& test, const Unknowns& z) {
     return test.equations.check(z, approach);
 }
 
-/// The point where a step first leaves the range of a parameter; empty if it does not. Without
-/// convergence the last point before.
+/// Where a step first leaves the range of a parameter, else empty; a without convergence.
 std::optional<CurvePoint> at_limit(
     const ParameterFamily& family, const CurveEquations& curve, const CurvePoint& a,
     const CurvePoint& b) {
@@ -115,9 +114,9 @@ public:
             {plan_.family.ranges[0]}};
         const auto equations = over_both_->over(along);
         const auto sticking_at = [&](const Unknowns& near, double parameter) {
-            auto node = node_at_parameter(*equations, near, parameter, 1);
-            if (node && equations->check(node->at.z, {}).fault) node.reset();
-            return node ? std::optional(node->at.z) : std::nullopt;
+            const auto node = node_at_parameter({equations, near}, parameter, 1);
+            if (!node || node->check().fault) return std::optional<Unknowns>();
+            return std::optional(node->at.z);
         };
         const Unknowns near = guess.head(guess.size() - 1);
         const double at = near(near.size() - 1);

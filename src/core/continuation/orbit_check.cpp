@@ -13,8 +13,6 @@ namespace vines {
 
 namespace {
 
-using OrbitFlight = ImpactEquations::BetweenImpacts;
-
 // Largest difference of a contact's tau between the equations and the search, in cycles: far above
 // rounding, also at grazing, far below a flight.
 constexpr double same_contact = 1e-6;
@@ -78,8 +76,6 @@ std::optional<SequenceFault> sequence_fault(
     return std::nullopt;
 }
 
-Oscillation opposite(const Oscillation& o) { return {-o.x, -o.x_dot, -o.sin_theta, -o.cos_theta}; }
-
 /// Passes the flights and impacts of a period, which begins at tau, to the observer.
 void replay(
     const ImpactEquations& equations, const Parameters& p, const std::vector<OrbitFlight>& flights,
@@ -92,7 +88,8 @@ void replay(
         if (sign < 0 && !sequence.mirrored) return;
         for (std::size_t k = 0; k < sequence.size(); ++k) {
             const OrbitFlight& f = flights[k];
-            const Oscillation start = sign > 0 ? f.oscillation() : opposite(f.oscillation());
+            Oscillation start = f.oscillation();
+            if (sign < 0) start = {-start.x, -start.x_dot, -start.sin_theta, -start.cos_theta};
             const Ball ball = ball_at(p, f, 0), ball_after = ball_at(p, f, f.s);
             observer.on_stretch(
                 {*flow, tau, f.s, start, sign * ball.y, sign * ball.y_dot, 0,

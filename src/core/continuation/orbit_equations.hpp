@@ -1,5 +1,5 @@
 // A periodic orbit as a zero of smooth equations, in two forms: by the times of its impacts
-// (periodic_impacts.hpp), or by its return (return_map.hpp) where it sticks or slides.
+// (periodic_impacts.hpp), or by its return (return_map.cpp) where it sticks or slides.
 //
 // If the second half of an orbit is the first with opposite signs, the equations are those of the
 // first half. The map over it has the square roots of the multipliers: -1 where the symmetry
@@ -41,8 +41,6 @@ struct ImpactSequence {
     int cycles() const { return mirrored ? half_cycles : half_cycles / 2; }
     /// The same orbit over twice the duration: without the mirror, or two periods.
     ImpactSequence doubled() const;
-    /// The same orbit from the next impact on.
-    ImpactSequence rotated() const;
 };
 
 /// Systems that depend smoothly on one or two parameters.
@@ -67,8 +65,7 @@ using Unknowns = Eigen::VectorXd;
 /// The orbit's equations, evaluated.
 struct OrbitValues {
     Eigen::VectorXd residual;
-    /// side (x' - y') before impact k + 1, m; > 0 where that impact is possible. Empty for a
-    /// return.
+    /// side (x' - y') before impact k + 1, m; > 0 if that is possible. Empty for a return.
     std::vector<double> approach;
     /// Derivative of the map to the return, with its sign, eq. (30).
     Frame transfer;
@@ -128,8 +125,7 @@ public:
     /// determinant of the exact part vanishes.
     std::optional<OrbitValues> values(const Unknowns& z, Eigen::MatrixXd* jacobian = nullptr) const;
 
-    /// Whether the motion follows the orbit with its sequence, and the orbit's quantities.
-    /// `approach`: OrbitValues::approach.
+    /// Whether the motion follows the orbit. `approach`: OrbitValues::approach.
     virtual OrbitCheck check(const Unknowns& z, const std::vector<double>& approach) const = 0;
 
     /// The same orbit over twice the duration, and its unknowns, or a tangent of them.
@@ -158,5 +154,21 @@ private:
     const ParameterFamily& family_;
     const double length_;
 };
+
+/// The equations and the unknowns of an orbit with impacts: by their times, or by its return if it
+/// sticks or slides; empty if it has none. The parameters of `family`, at the orbit, are `values`.
+std::optional<OrbitGuess> orbit_start(
+    const Parameters& p, const PeriodicOrbit& orbit, double length, const ParameterFamily& family,
+    const std::vector<double>& values);
+
+/// An orbit that is given by its return, by the times of its impacts. Empty if it sticks or slides.
+std::optional<OrbitGuess> impacts_of(const OrbitGuess& by_return);
+
+/// The equations by the return of an orbit through a state at tau, with a section far from events
+/// and the impacts of the motion from there; `like` has its period. parameters: in their units.
+/// Empty if the motion cannot be followed.
+std::optional<OrbitGuess> return_of(
+    const Parameters& p, double tau, const State& state, const ImpactSequence& like,
+    const ParameterFamily& family, double length, const Eigen::VectorXd& parameters);
 
 }  // namespace vines

@@ -13,8 +13,7 @@ namespace {
 // Two halves of an orbit can be those of its parent if their flights differ by less than this.
 constexpr double similar_half = 0.3;
 
-// Terms of the series over a step whose length times the fastest rate is at most 1: the first
-// omitted one is below 1e-19.
+// Terms of the series over a step of at most 1 over the fastest rate: the next is below 1e-19.
 constexpr int arc_terms = 20;
 
 /// A solution, or a derivative of one: both obey the same linear equations.
@@ -45,15 +44,13 @@ Excess advance(ArcColumn& c, const Flow::Coefficients& law, double h) {
     return excess;
 }
 
-using BetweenImpacts = ImpactEquations::BetweenImpacts;
-
 /// Increase of x - y over a flight divided by its duration, without cancellation.
-double mean_relative_speed(const Parameters& p, const BetweenImpacts& f, const Arc& arc) {
+double mean_relative_speed(const Parameters& p, const OrbitFlight& f, const Arc& arc) {
     return f.relative_speed + arc.bend - 0.5 * p.gravity * f.s;
 }
 
 /// x' - y' at the end of a flight.
-double relative_speed_at_end(const Parameters& p, const BetweenImpacts& f, const Arc& arc) {
+double relative_speed_at_end(const Parameters& p, const OrbitFlight& f, const Arc& arc) {
     return f.relative_speed + arc.gain - p.gravity * f.s;
 }
 
@@ -63,8 +60,8 @@ double x_ddot_at_end(const Flow::Coefficients& law, const Arc& arc) {
 }
 
 /// The flight after an impact at its end.
-BetweenImpacts after_impact(
-    const Parameters& p, const BetweenImpacts& f, const Arc& arc, int side, double approach,
+OrbitFlight after_impact(
+    const Parameters& p, const OrbitFlight& f, const Arc& arc, int side, double approach,
     double R) {
     return {
         f.theta + p.Omega * f.s,
@@ -78,10 +75,9 @@ BetweenImpacts after_impact(
 /// Derivatives of (theta, x, x', x' - y') as rows, by the unknowns.
 using Derivatives = Eigen::Matrix<double, 4, Eigen::Dynamic, Eigen::RowMajor>;
 
-/// Carries derivatives over a flight and its impact; `approach` is x' - y' before it. Returns the
-/// derivative of x - y at the contact.
+/// Carries derivatives over a flight and its impact. Returns that of x - y at the contact.
 Eigen::RowVectorXd carry_derivatives(
-    const Parameters& p, const Flow::Coefficients& law, const BetweenImpacts& f, const Arc& arc,
+    const Parameters& p, const Flow::Coefficients& law, const OrbitFlight& f, const Arc& arc,
     double approach, int side, Eigen::Index s_column, Derivatives& d) {
     const Transfer& a = arc.transfer;
     const Eigen::RowVectorXd theta = d.row(0), x = d.row(1), x_dot = d.row(2), r = d.row(3);
@@ -103,7 +99,7 @@ Eigen::RowVectorXd carry_derivatives(
 
 /// Applies the transfer matrix of a flight and its impact (30).
 void carry_transfer(
-    const Parameters& p, const Flow::Coefficients& law, const BetweenImpacts& f, const Arc& arc,
+    const Parameters& p, const Flow::Coefficients& law, const OrbitFlight& f, const Arc& arc,
     double approach, int side, Frame& transfer) {
     carry(transfer, Leg{arc.transfer, f.s, -law[1] * f.s, 1, false}, p.epsilon);
     const Impact impact =
@@ -156,7 +152,7 @@ std::optional<OrbitValues> ImpactEquations::evaluated(
     if (p.friction != 0) return std::nullopt;
     const auto n = static_cast<Eigen::Index>(sequence().size());
     const Flow::Coefficients law = Flow::free_coefficients(p);
-    BetweenImpacts f = first_flight(z);
+    OrbitFlight f = first_flight(z);
     Derivatives d = Derivatives::Zero(4, equations());
     d(0, 0) = 1, d(1, 1) = d(2, 2) = d(3, 3) = length();
     OrbitValues out{Eigen::VectorXd(equations()), {}, Frame::Identity()};
@@ -196,12 +192,11 @@ std::optional<OrbitValues> ImpactEquations::evaluated(
     return out;
 }
 
-std::vector<ImpactEquations::BetweenImpacts> ImpactEquations::flights(
-    const Unknowns& z, const Parameters& p) const {
+std::vector<OrbitFlight> ImpactEquations::flights(const Unknowns& z, const Parameters& p) const {
     const Flow::Coefficients law = Flow::free_coefficients(p);
-    std::vector<BetweenImpacts> all = {first_flight(z)};
+    std::vector<OrbitFlight> all = {first_flight(z)};
     for (std::size_t i = 0; i < sequence().size(); ++i) {
-        BetweenImpacts& f = all.back();
+        OrbitFlight& f = all.back();
         f.s = z(4 + static_cast<Eigen::Index>(i));
         const int side = sequence().side_after(i);
         const Arc arc = arc_over(law, f.oscillation(), f.s);
@@ -212,22 +207,23 @@ std::vector<ImpactEquations::BetweenImpacts> ImpactEquations::flights(
     return all;
 }
 
-Oscillation ImpactEquations::BetweenImpacts::oscillation() const {
+Oscillation OrbitFlight::oscillation() const {
     return {x, x_dot, elementary::sin(theta), elementary::cos(theta)};
 }
 
-ImpactEquations::BetweenImpacts ImpactEquations::first_flight(const Unknowns& z) const {
+OrbitFlight ImpactEquations::first_flight(const Unknowns& z) const {
     return {z(0), z(1) * length(), z(2) * length(), z(3) * length(), sequence().sides[0], 0};
 }
 
-Unknowns ImpactEquations::rotated(const Unknowns& z) const {
+OrbitGuess ImpactEquations::rotated(const Unknowns& z) const {
     const auto n = static_cast<Eigen::Index>(sequence().size());
-    const Parameters p = *system(z);
-    const BetweenImpacts f = flights(z, p)[1];
-    Unknowns next = z;
-    next.head<4>() << f.theta, f.x / length(), f.x_dot / length(), f.relative_speed / length();
-    for (Eigen::Index k = 0; k < n; ++k) next(4 + k) = z(4 + (k + 1) % n);
-    return next;
+    ImpactSequence next = sequence();
+    for (std::size_t k = 0; k < next.size(); ++k) next.sides[k] = sequence().side_after(k);
+    const OrbitFlight f = flights(z, *system(z))[1];
+    Unknowns w = z;
+    w.head<4>() << f.theta, f.x / length(), f.x_dot / length(), f.relative_speed / length();
+    for (Eigen::Index k = 0; k < n; ++k) w(4 + k) = z(4 + (k + 1) % n);
+    return {std::make_shared<ImpactEquations>(next, family(), length()), w};
 }
 
 std::shared_ptr<const OrbitEquations> ImpactEquations::doubled() const {
@@ -253,14 +249,13 @@ std::optional<OrbitGuess> ImpactEquations::half(const Unknowns& z) const {
 }
 
 std::optional<OrbitGuess> ImpactEquations::changed(
-    const Unknowns& at, const SequenceFault& fault) const {
+    const Unknowns& z, const SequenceFault& fault) const {
     ImpactSequence one = sequence();
-    Unknowns z = at;
     const auto guess = [&](const Unknowns& of) {
         return OrbitGuess{std::make_shared<ImpactEquations>(one, family(), length()), of};
     };
-    auto k = static_cast<Eigen::Index>(fault.flight);
-    const auto n = static_cast<Eigen::Index>(one.size());
+    const auto k = static_cast<Eigen::Index>(fault.flight),
+               n = static_cast<Eigen::Index>(one.size());
     Unknowns next;
     if (fault.kind == SequenceFault::Kind::contact) {
         if (!(fault.s > 0 && fault.s < z(4 + k))) return std::nullopt;
@@ -270,11 +265,9 @@ std::optional<OrbitGuess> ImpactEquations::changed(
         return guess(next);
     }
     if (fault.kind != SequenceFault::Kind::missing || n < 2) return std::nullopt;
-    if (k + 1 == n) {
-        // The impact at which the sequence begins.
-        z = ImpactEquations(one, family(), length()).rotated(z);
-        one = one.rotated();
-        k = n - 2;
+    if (k + 1 == n) {  // the impact at which the sequence begins
+        const OrbitGuess later = rotated(z);
+        return later.equations->changed(later.z, {fault.kind, fault.flight - 1});
     }
     one.sides.erase(one.sides.begin() + k + 1);
     next.resize(z.size() - 1);

@@ -32,6 +32,15 @@ struct Arc {
 /// step.
 Arc arc_over(const Flow::Coefficients& law, const Oscillation& start, double s);
 
+/// A flight between two impacts: state after the first one, the wall that it leaves, duration.
+struct OrbitFlight {
+    double theta, x, x_dot, relative_speed;
+    int side;
+    double s;
+
+    Oscillation oscillation() const;
+};
+
 /// Unknowns: theta, x/length, x'/length, (x' - y')/length, s_0, ..., s_(n-1) and the parameters.
 /// Residuals: n contacts, return of x, x', x' - y' and theta.
 class ImpactEquations : public OrbitEquations {
@@ -50,19 +59,8 @@ public:
     }
     std::optional<OrbitGuess> changed(const Unknowns& z, const SequenceFault& fault) const override;
 
-    /// The unknowns of sequence().rotated().
-    Unknowns rotated(const Unknowns& z) const;
-
-    /// A flight between two impacts: state after the first one, the wall that it leaves, duration.
-    struct BetweenImpacts {
-        double theta, x, x_dot, relative_speed;
-        int side;
-        double s;
-
-        Oscillation oscillation() const;
-    };
     /// The flights, and the state after the last impact.
-    std::vector<BetweenImpacts> flights(const Unknowns& z, const Parameters& p) const;
+    std::vector<OrbitFlight> flights(const Unknowns& z, const Parameters& p) const;
 
 protected:
     /// Empty with friction or a flight of no duration.
@@ -70,7 +68,9 @@ protected:
         const Unknowns& z, const Parameters& p, Eigen::MatrixXd* jacobian) const override;
 
 private:
-    BetweenImpacts first_flight(const Unknowns& z) const;
+    /// The same orbit from the next impact on.
+    OrbitGuess rotated(const Unknowns& z) const;
+    OrbitFlight first_flight(const Unknowns& z) const;
 };
 
 }  // namespace vines

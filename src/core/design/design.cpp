@@ -25,8 +25,7 @@ constexpr double same_b = 1e-9;
 // Ratio of neighbouring amplitudes with a single b.
 constexpr double amplitude_step = 1.1;
 // Frequencies of step 2 over those of step 1, the most absorbers tried with them, the rounds around
-// the best one, the b tried on each side in each, and the frequencies that step 3 adds around the
-// worst one.
+// the best one, the b tried on each side, and the frequencies added around the worst one in step 3.
 constexpr int finer = 4, most_promising = 12, design_rounds = 3, tries_per_side = 2,
               added_frequencies = 4;
 // Factors of step 3, and the largest excess over the best objective.
@@ -37,28 +36,35 @@ constexpr double most_amplitude = 4, least_amplitude = 1.0 / 32;
 constexpr int amplitude_count = 36;
 constexpr long most_impacts_per_cycle = 200;
 
-/// Objectives of the worst and the best start by position: rows of b, columns of f. Receives them
-/// from a sweep.
+/// Responses of absorbers over b (rows) and f (columns). Receives them from a sweep.
 struct DesignMap : SweepSink {
+    struct Cell {
+        double worst = -infinity, best = infinity;  ///< objectives of the worst and the best start
+        State start;                                ///< of the worst motion
+        Extremes extremes;                          ///< impacts of all motions
+    };
+    double R;
+    SiParameters si;
     std::vector<double> b, f;
-    std::vector<double> worst, best;
-    std::vector<State> start;       ///< of the worst motion
-    std::vector<Extremes> extreme;  ///< impacts of all motions
+    std::vector<Cell> cells;
 
-    std::size_t at(std::size_t row, std::size_t column) const { return column * b.size() + row; }
     std::size_t row_of(double value) const {
         const auto after = std::ranges::lower_bound(b, value * (1 - same_b));
         return static_cast<std::size_t>(after - b.begin());
     }
+    const Cell& at(std::size_t row, std::size_t column) const {
+        return cells[column * b.size() + row];
+    }
 
     void point(std::size_t line, const SweepPoint& point) override {
-        worst[line] = point.motions.empty() ? infinity : -infinity, best[line] = infinity;
+        Cell& cell = cells[line];
+        if (point.motions.empty()) cell.worst = infinity;
         for (const Motion& m : point.motions) {
             const double value = m.result.measured ? m.result.objective : infinity;
-            if (value > worst[line]) worst[line] = value, start[line] = m.from;
-            best[line] = std::min(best[line], value);
+            if (value > cell.worst) cell.worst = value, cell.start = m.from;
+            cell.best = std::min(cell.best, value);
             if (!m.result.measured) continue;
-            Extremes& e = extreme[line];
+            Extremes& e = cell.extremes;
             for (double Extremes::* of :
                  {&Extremes::impact_speed, &Extremes::impulse, &Extremes::impact_rate})
                 e.*of = std::max(e.*of, m.result.extremes.*of);
@@ -126,13 +132,11 @@ struct DesignSearch {
         const std::vector<double>& bs, const std::vector<double>& amplitudes,
         std::vector<double> fs, double R, const SiParameters& si) const {
         DesignMap m;
-        m.f = std::move(fs);
+        m.R = R, m.si = si, m.f = std::move(fs);
         for (const double b : bs)
             for (const double a : amplitudes) m.b.push_back(b / a);
         sort_unique(m.b);
-        const std::size_t size = m.b.size() * m.f.size();
-        m.worst.resize(size), m.best.resize(size), m.start.resize(size);
-        m.extreme.resize(size);
+        m.cells.resize(m.b.size() * m.f.size());
         const auto load = load_on(si);
         SweepPlan sweep;
         sweep.grid.steps = {m.b.size(), m.f.size()};
@@ -145,7 +149,7 @@ struct DesignSearch {
             if (!validate(p, start).empty()) return std::nullopt;
             return PointSystem{p, start, options().max_impacts, nullptr, {si.omega0(), si.m1}};
         };
-        for (std::size_t line = 0; line < size; ++line) sweep.lines.push_back(line);
+        for (std::size_t line = 0; line < m.cells.size(); ++line) sweep.lines.push_back(line);
         run_sweep(sweep, threads, control, m);
         poll(control);
         return m;
@@ -157,14 +161,12 @@ struct DesignSearch {
         return plan.objective == Objective::decay_time ? 1 : amplitude;
     }
     /// Worst case, or mean, over the frequencies of a map and the amplitudes.
-    DesignPoint judged(
-        const DesignMap& m, double b, const std::vector<double>& amplitudes, double R,
-        double m2) const {
-        DesignPoint p{b, R, m2, 0, m.f[0], 1};
+    DesignPoint judged(const DesignMap& m, double b, const std::vector<double>& amplitudes) const {
+        DesignPoint p{b, m.R, m.si.m2, 0, m.f[0], 1};
         double most = -infinity, sum = 0;
         for (const double a : amplitudes)
             for (std::size_t j = 0; j < m.f.size(); ++j) {
-                const double value = scale(a) * m.worst[m.at(m.row_of(b / a), j)];
+                const double value = scale(a) * m.at(m.row_of(b / a), j).worst;
                 sum += value;
                 if (value > most) most = value, p.f = m.f[j], p.amplitude = a;
             }
@@ -196,39 +198,37 @@ struct DesignSearch {
         return f;
     }
 
+    /// Absorbers with several b, each at `parts` times the frequencies of step 1.
+    std::vector<DesignPoint> tried(
+        const std::vector<double>& bs, int parts, double R, double m2) const {
+        const DesignMap m = map(bs, amplitudes(), frequencies(parts), R, host_with(m2));
+        std::vector<DesignPoint> points;
+        for (const double b : bs) sink(points.emplace_back(judged(m, b, amplitudes())));
+        return points;
+    }
+
     /// Step 1: all absorbers of the maps, the best first.
     std::vector<DesignPoint> search_maps() const {
         const std::vector<double> row = geometric(plan.b.from, plan.b.to, plan.b_count);
         std::vector<DesignPoint> all;
         for (const double m2 : plan.m2)
-            for (const double R : plan.R) {
-                const DesignMap m = map(row, amplitudes(), frequencies(), R, host_with(m2));
-                for (const double b : row)
-                    sink(all.emplace_back(judged(m, b, amplitudes(), R, m2)));
-            }
+            for (const double R : plan.R)
+                for (const DesignPoint& p : tried(row, 1, R, m2)) all.push_back(p);
         std::ranges::stable_sort(all, {}, &DesignPoint::objective);
         return all;
     }
 
-    /// Absorbers at the finer frequencies.
-    void try_finely(
-        std::optional<DesignPoint>& best, const std::vector<double>& bs, double R,
-        double m2) const {
-        const DesignMap m = map(bs, amplitudes(), frequencies(finer), R, host_with(m2));
-        for (const double b : bs) {
-            const DesignPoint p = judged(m, b, amplitudes(), R, m2);
-            sink(p);
-            if (!best || p.objective < best->objective) best = p;
-        }
-    }
-
     /// Step 2.
     void refine(const std::vector<DesignPoint>& all, std::optional<DesignPoint>& best) const {
-        int tried = 0;
+        const auto try_finely = [&](const std::vector<double>& bs, double R, double m2) {
+            for (const DesignPoint& p : tried(bs, finer, R, m2))
+                if (!best || p.objective < best->objective) best = p;
+        };
+        int count = 0;
         for (const DesignPoint& p : all) {
-            if (best && (p.objective >= best->objective || tried == most_promising)) break;
-            try_finely(best, {p.b}, p.R, p.m2);
-            ++tried;
+            if (best && (p.objective >= best->objective || count == most_promising)) break;
+            try_finely({p.b}, p.R, p.m2);
+            ++count;
         }
         double width = plan.b_count > 1 ? row_step() : 1;
         for (int round = 0; round < design_rounds; ++round) {
@@ -238,7 +238,7 @@ struct DesignSearch {
                 if (const double b = best->b * elementary::pow(width, k);
                     k != 0 && width > 1 && b >= plan.b.from && b <= plan.b.to)
                     tries.push_back(b);
-            if (!tries.empty()) try_finely(best, tries, best->R, best->m2);
+            if (!tries.empty()) try_finely(tries, best->R, best->m2);
         }
     }
 
@@ -258,8 +258,7 @@ struct DesignSearch {
     double objective_with(const DesignPoint& p, const BuiltAbsorber& a) const {
         const std::vector<double> at =
             p.amplitude < 1 ? std::vector{1, p.amplitude} : std::vector{1.0};
-        const DesignMap m = map({a.b}, at, denser_frequencies(p.f), a.R, a.si);
-        return judged(m, a.b, at, a.R, a.si.m2).objective;
+        return judged(map({a.b}, at, denser_frequencies(p.f), a.R, a.si), a.b, at).objective;
     }
 
     /// Larger and larger changes of a value, up and down, while the objective stays within both
@@ -299,19 +298,18 @@ struct DesignSearch {
     void set_amplitudes(Design& d) const {
         const DesignPoint& p = d.best;
         const SiParameters si = host_with(p.m2);
-        const std::vector<double> all = geometric(least_amplitude, most_amplitude, amplitude_count);
-        std::vector<double> with_one = all;
-        with_one.push_back(1);
-        sort_unique(with_one);
-        const DesignMap m = map({p.b}, with_one, frequencies(), p.R, si);
+        std::vector<double> all = geometric(least_amplitude, most_amplitude, amplitude_count);
+        all.push_back(1);
+        sort_unique(all);
+        const DesignMap m = map({p.b}, all, frequencies(), p.R, si);
         const auto ratio = [&](double a) {
-            return judged(m, p.b, {a}, p.R, p.m2).objective / scale(a) / d.without.value;
+            return judged(m, p.b, {a}).objective / scale(a) / d.without.value;
         };
         const double limit = 0.5 * (1 + ratio(1));
-        const auto here = std::ranges::find(with_one, 1.0);
+        const auto here = std::ranges::find(all, 1.0);
         auto low = here, high = here;
-        while (low != with_one.begin() && ratio(low[-1]) <= limit) --low;
-        while (high + 1 != with_one.end() && ratio(high[1]) <= limit) ++high;
+        while (low != all.begin() && ratio(low[-1]) <= limit) --low;
+        while (high + 1 != all.end() && ratio(high[1]) <= limit) ++high;
         d.works = {*low, *high};
         if (p.R < 1 && plan.host.is_harmonic()) {
             const Parameters system = this->system(p.b, p.R, si, d.without.f, nullptr);
@@ -323,30 +321,25 @@ struct DesignSearch {
     void set_response(Design& d, const LinearResponse& linear) const {
         const DesignPoint& p = d.best;
         const DesignMap m = map({p.b}, {1}, denser_frequencies(p.f), p.R, host_with(p.m2));
-        const SiParameters si = host_with(p.m2);
-        for (std::size_t j = 0; j < m.f.size(); ++j)
+        const double omega0 = m.si.omega0();
+        for (std::size_t j = 0; j < m.f.size(); ++j) {
+            const auto& [worst, best, start, extremes] = m.at(0, j);
             d.response.push_back(
-                {m.f[j], m.worst[j], m.best[j], linear({}, m.f[j]),
-                 linear(d.tuned_mass_damper, m.f[j]), m.extreme[j].impact_speed * si.omega0(),
-                 si.m1 * m.extreme[j].impulse * si.omega0(),
-                 m.extreme[j].impact_rate * si.omega0()});
+                {m.f[j], worst, best, linear({}, m.f[j]), linear(d.tuned_mass_damper, m.f[j]),
+                 extremes.impact_speed * omega0, m.si.m1 * extremes.impulse * omega0,
+                 extremes.impact_rate * omega0});
+        }
     }
 
     /// The motion of the worst case, with its regime, from the start that led to it.
-    PointResult worst_motion(
-        const DesignMap& m, const DesignPoint& p, const SiParameters& si) const {
+    PointResult worst_motion(const DesignMap& m, const DesignPoint& p) const {
         PointOptions whole = options();
         whole.amplitudes_alone = whole.carry = false;
         const std::size_t row = m.row_of(p.b / p.amplitude);
         const auto column = std::ranges::find(m.f, p.f) - m.f.begin();
-        const Parameters system = this->system(m.b[row], p.R, si, p.f, load_on(si));
-        const State& start = m.start[m.at(row, static_cast<std::size_t>(column))];
+        const Parameters system = this->system(m.b[row], p.R, m.si, p.f, load_on(m.si));
+        const State& start = m.at(row, static_cast<std::size_t>(column)).start;
         return run_point({system, start, whole.max_impacts}, start, whole, control);
-    }
-    void set_worst_motion(Design& d) const {
-        const DesignPoint& p = d.best;
-        const SiParameters si = host_with(p.m2);
-        d.at_worst = worst_motion(map({p.b}, {p.amplitude}, {p.f}, p.R, si), p, si);
     }
 
     ToleranceSample sample(const DesignPoint& best, std::size_t index) const {
@@ -355,9 +348,8 @@ struct DesignSearch {
         std::vector<double> all = amplitudes();
         for (double& a : all) a *= built.amplitude;
         const DesignMap m = map({built.b}, all, frequencies(), built.R, built.si);
-        ToleranceSample s{
-            index, built, judged(m, built.b, all, built.R, built.si.m2), std::nullopt};
-        if (std::isfinite(s.point.objective)) s.worst = worst_motion(m, s.point, built.si);
+        ToleranceSample s{index, built, judged(m, built.b, all), std::nullopt};
+        if (std::isfinite(s.point.objective)) s.worst = worst_motion(m, s.point);
         return s;
     }
 
@@ -410,14 +402,13 @@ std::optional<Design> find_design(
     const DesignSearch search{plan, threads, control, sink};
     std::vector<DesignPoint> all;
     std::optional<DesignPoint> best;
-    std::optional<Design> design;
     try {
         all = search.search_maps();
         search.refine(all, best);
     } catch (const Stopped&) {}
     if (!best && all.empty()) return std::nullopt;
     if (!best) best = all.front();
-    Design& d = design.emplace();
+    Design d{};
     d.best = *best;
     const LinearResponse linear = linear_response_of(plan, plan.objective);
     const auto response = [&](const LinearAbsorber& t) {
@@ -432,14 +423,17 @@ std::optional<Design> find_design(
     d.with_den_hartog = response(d.den_hartog);
     try {
         search.set_response(d, linear);
-        search.set_worst_motion(d);
+        d.at_worst = search.worst_motion(
+            search.map(
+                {best->b}, {best->amplitude}, {best->f}, best->R, search.host_with(best->m2)),
+            *best);
         search.set_amplitudes(d);
         search.set_margins(d);
         search.set_samples(d, sample_sink);
     } catch (const Stopped&) {
         d.complete = false;
     }
-    return design;
+    return d;
 }
 
 }  // namespace vines

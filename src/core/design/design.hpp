@@ -46,8 +46,7 @@ struct DesignResponse {
     double impacts_per_second;
 };
 
-/// Factors on a value within which the objective exceeds its best by at most a given fraction, as
-/// far as tried.
+/// Factors on a value with which the objective exceeds its best by this fraction, as far as tried.
 struct DesignMargin {
     Interval five_percent, twenty_percent;
 };
@@ -88,8 +87,7 @@ LinearResponse linear_response_of(const DesignPlan& plan, Objective objective);
 /// Number of motions of the first map and of the samples; others are a few more.
 std::size_t design_runs(const DesignPlan& plan);
 
-/// Searches on `threads` threads. Stopped by `control`, it returns the best absorber so far, empty
-/// if there is none.
+/// Searches on `threads` threads. After a stop: the best absorber so far, empty without one.
 std::optional<Design> find_design(
     const DesignPlan& plan, int threads, RunControl& control, const DesignSink& sink,
     const SampleSink& sample_sink = {});

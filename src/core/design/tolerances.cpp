@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <utility>
 
 #include "core/motion/elementary.hpp"
 
@@ -36,14 +35,6 @@ void set(BuiltAbsorber& a, Toleranced what, double value) {
     else si.c1 = 2 * value * si.m1 * si.omega0();
 }
 
-/// The smallest and the largest value.
-std::pair<double, double> valid_values(Toleranced what) {
-    const bool can_be_0 =
-        what == Toleranced::R || what == Toleranced::c1 || what == Toleranced::damping_ratio;
-    return {
-        can_be_0 ? 0 : std::numeric_limits<double>::min(), what == Toleranced::R ? 1 : infinity};
-}
-
 }  // namespace
 
 double value_of(const BuiltAbsorber& absorber, Toleranced what) {
@@ -59,7 +50,10 @@ BuiltAbsorber drawn(
     for (const Tolerance& t : tolerances) {
         RandomSequence random =
             RandomSequence(seed).part(index).part(static_cast<std::uint64_t>(t.what));
-        const auto [least, most] = valid_values(t.what);
+        const bool is_R = t.what == Toleranced::R, can_be_0 = is_R || t.what == Toleranced::c1 ||
+                                                              t.what == Toleranced::damping_ratio;
+        const double least = can_be_0 ? 0 : std::numeric_limits<double>::min(),
+                     most = is_R ? 1 : infinity;
         const double unit = t.is_factor ? value_of(nominal, t.what) : 1;
         double value = nan;
         for (int k = 0; k < most_draws && !(value >= least && value <= most); ++k)

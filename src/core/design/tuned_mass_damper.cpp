@@ -1,7 +1,7 @@
 #include "core/design/tuned_mass_damper.hpp"
 
+#include <Eigen/Core>
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <complex>
 #include <vector>
@@ -24,77 +24,53 @@ constexpr double bracket_tolerance = 1e-5;
 constexpr int side_points = 15, tuning_rounds = 12;
 constexpr double frequency_range = 1.6, damping_range = 12, narrowing = 0.45;
 
-// Step of the Runge-Kutta method in tau, and over the damper's own frequency: peaks are exact to
-// 3e-4.
+// Step of the Runge-Kutta method in tau, or over the damper's frequency: peaks exact to 3e-4.
 constexpr double linear_step = 0.05;
 
-/// Host and tuned mass damper under a load, in tau and m.
-class LinearMotion {
-public:
-    LinearMotion(const Host& host, const Load* load, const LinearAbsorber& t)
-        : mu_(t.m2 / host.si.m1),
-          nu_(t.m2 > 0 ? t.frequency_ratio : 0),
-          own_damping_(2 * t.damping_ratio * nu_),
-          load_damping_(host.si.c1 / (host.si.m1 * host.si.omega0())),
-          damping_(host.damping == Damping::closed_form ? 2 * load_damping_ : load_damping_),
-          x_dot_(host.initial_velocity / host.si.omega0()),
-          load_(load) {}
-
-    struct Seen {
-        double tau, x, x_ddot;  ///< x relative to the base, which a load can move far away
-        double energy;          ///< per m1, in m^2
-    };
-    /// Calls see(Seen) at the ends of all steps.
-    template <class See>
-    void run(double until, const See& see) {
-        std::array<double, 4> z{0, x_dot_};  // x, x', and position and velocity of the damper
-        std::size_t interval = load_ ? load_->interval_at(0) : 0;
-        for (double tau = 0; tau < until; ++interval) {
-            const double end = load_ ? std::min(load_->end_of(interval), until) : until,
-                         length = end - tau;
-            const Polynomial force =
-                                 load_ ? load_->force(interval, tau, load_damping_) : Polynomial{},
-                             base = load_ ? load_->base(interval, tau) : Polynomial{};
-            const auto steps = static_cast<int>(
-                std::max(1.0, std::ceil(length * std::max(1.0, nu_) / linear_step)));
-            const double h = length / steps;
-            for (int k = 0; k < steps; ++k) {
-                z = after(z, force, k * h, h);
-                const double s = (k + 1) * h;
-                see(Seen{tau + s, z[0] - base.at(s), rates(z, force.at(s))[1], energy_of(z)});
-            }
-            tau = end;
-        }
-    }
-
-private:
-    double energy_of(const std::array<double, 4>& z) const {
-        const double stretch = nu_ * (z[0] - z[2]);
-        return 0.5 * (z[0] * z[0] + z[1] * z[1] + mu_ * (z[3] * z[3] + stretch * stretch));
-    }
-    std::array<double, 4> rates(const std::array<double, 4>& z, double force) const {
-        const double link = nu_ * nu_ * (z[0] - z[2]) + own_damping_ * (z[1] - z[3]);
-        return {z[1], force - damping_ * z[1] - z[0] - mu_ * link, z[3], link};
-    }
-    std::array<double, 4> after(
-        const std::array<double, 4>& z, const Polynomial& force, double s, double h) const {
-        const auto moved = [&](const std::array<double, 4>& rate, double by) {
-            std::array<double, 4> to = z;
-            for (std::size_t i = 0; i < to.size(); ++i) to[i] += by * rate[i];
-            return to;
-        };
-        const double middle = force.at(s + 0.5 * h);
-        const auto a = rates(z, force.at(s)), b = rates(moved(a, 0.5 * h), middle),
-                   c = rates(moved(b, 0.5 * h), middle), d = rates(moved(c, h), force.at(s + h));
-        std::array<double, 4> mean{};
-        for (std::size_t i = 0; i < mean.size(); ++i)
-            mean[i] = (a[i] + 2 * b[i] + 2 * c[i] + d[i]) / 6;
-        return moved(mean, h);
-    }
-
-    const double mu_, nu_, own_damping_, load_damping_, damping_, x_dot_;
-    const Load* const load_;
+/// Motion of host and tuned mass damper under a load, in tau and m, at the end of a step.
+struct LinearState {
+    double tau, x, x_ddot;  ///< x relative to the base, which a load can move far away
+    double energy;          ///< per m1, in m^2
 };
+
+/// Calls see(LinearState) at the ends of all steps.
+template <class See>
+void follow_linear_motion(
+    const Host& host, const Load* load, const LinearAbsorber& t, double until, const See& see) {
+    const double mu = t.m2 / host.si.m1, nu = t.m2 > 0 ? t.frequency_ratio : 0,
+                 own_damping = 2 * t.damping_ratio * nu,
+                 load_damping = host.si.c1 / (host.si.m1 * host.si.omega0()),
+                 damping = host.damping == Damping::closed_form ? 2 * load_damping : load_damping;
+    const auto energy_of = [&](const Eigen::Vector4d& z) {
+        const double stretch = nu * (z[0] - z[2]);
+        return 0.5 * (z[0] * z[0] + z[1] * z[1] + mu * (z[3] * z[3] + stretch * stretch));
+    };
+    const auto rates = [&](const Eigen::Vector4d& z, double force) {
+        const double link = nu * nu * (z[0] - z[2]) + own_damping * (z[1] - z[3]);
+        return Eigen::Vector4d(z[1], force - damping * z[1] - z[0] - mu * link, z[3], link);
+    };
+    // x, x', and position and velocity of the damper
+    Eigen::Vector4d z(0, host.initial_velocity / host.si.omega0(), 0, 0);
+    std::size_t interval = load ? load->interval_at(0) : 0;
+    for (double tau = 0; tau < until; ++interval) {
+        const double end = load ? std::min(load->end_of(interval), until) : until,
+                     length = end - tau;
+        const Polynomial force = load ? load->force(interval, tau, load_damping) : Polynomial{},
+                         base = load ? load->base(interval, tau) : Polynomial{};
+        const auto steps =
+            static_cast<int>(std::max(1.0, std::ceil(length * std::max(1.0, nu) / linear_step)));
+        const double h = length / steps;
+        for (int k = 0; k < steps; ++k) {
+            const double s = (k + 1) * h, middle = force.at(k * h + 0.5 * h);
+            const Eigen::Vector4d a = rates(z, force.at(k * h)), b = rates(z + 0.5 * h * a, middle),
+                                  c = rates(z + 0.5 * h * b, middle),
+                                  d = rates(z + h * c, force.at(k * h + h));
+            z += h * ((a + 2 * b + 2 * c + d) / 6);
+            see(LinearState{tau + s, z[0] - base.at(s), rates(z, force.at(s))[1], energy_of(z)});
+        }
+        tau = end;
+    }
+}
 
 }  // namespace
 
@@ -105,7 +81,7 @@ double linear_response(
     double most = 0, most_acceleration = 0, squares = 0, last = measured.from,
            level = elementary::log(0.05 * x_dot * x_dot),
            before = elementary::log(0.5 * x_dot * x_dot), tenth = infinity;
-    LinearMotion(host, load, t).run(measured.to, [&](const LinearMotion::Seen& at) {
+    follow_linear_motion(host, load, t, measured.to, [&](const LinearState& at) {
         if (at.tau < measured.from) return;
         most = std::max(most, std::abs(at.x));
         most_acceleration = std::max(most_acceleration, std::abs(at.x_ddot));

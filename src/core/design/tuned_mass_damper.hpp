@@ -31,8 +31,7 @@ struct Host {
     bool is_harmonic() const { return !load && initial_velocity == 0; }
 };
 
-/// The objective of the steady motion at a frequency: an amplitude in m or m/s^2; NaN for those of
-/// impacts.
+/// The objective of the steady motion at a frequency, m or m/s^2; NaN for those of impacts.
 double linear_response(
     const Host& host, const LinearAbsorber& absorber, Objective objective, double f);
 /// The same of the motion from rest under a load, or without one after the host's impulse, measured

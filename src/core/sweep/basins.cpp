@@ -20,8 +20,7 @@ constexpr double least_approach = 0.01, contraction_in_test = 1e-4;
 constexpr double within_tested = 0.5;
 // Longest test, and periods beyond those of the linear contraction.
 constexpr double most_tested_cycles = 4000, additional_periods = 20;
-// Irregular motions are the same if z and x_rms agree to this fraction and to this many standard
-// errors.
+// z and x_rms of equal irregular motions agree to this fraction and to this many standard errors.
 constexpr double same_statistics = 0.03, same_errors = 4;
 // Starts that are measured to find the motions, for each value.
 constexpr std::size_t explored_starts = 16;
@@ -35,6 +34,8 @@ constexpr std::size_t fewest_per_cell = 10;
 constexpr int first_halving = 3, pair_distances = 10;
 constexpr double below_saturation = 0.8;
 constexpr double normal_95 = 1.96;
+// Steps of a value are halved, down to this part, until Newton's method finds the orbit this near.
+constexpr double least_part = 1.0 / 256, branch_reach = 0.1;
 
 /// Radius of a neighbourhood from which motions approach the orbit.
 double tested_radius(
@@ -76,6 +77,59 @@ bool has_same_statistics(const PointResult& one, const PointResult& other) {
 /// Number of components that vary in a box.
 long dimensions_of(const StartBox& box) {
     return std::ranges::count_if(box, [](const Interval& i) { return i.from != i.to; });
+}
+
+/// Mean and its standard error; empty without values.
+std::optional<Estimate> mean_of(const std::vector<double>& values) {
+    if (values.empty()) return std::nullopt;
+    const double n = static_cast<double>(values.size());
+    double mean = 0, squares = 0;
+    for (const double v : values) mean += v / n;
+    for (const double v : values) squares += (v - mean) * (v - mean);
+    return Estimate{mean, values.size() > 1 ? std::sqrt(squares / (n - 1) / n) : nan};
+}
+
+/// Slope of a weighted straight line; its error is that of the weights, or of a larger scatter.
+Estimate slope_of(
+    const std::vector<double>& x, const std::vector<double>& y, const std::vector<double>& weight) {
+    double w = 0, wx = 0, wy = 0;
+    for (std::size_t i = 0; i < x.size(); ++i)
+        w += weight[i], wx += weight[i] * x[i], wy += weight[i] * y[i];
+    double xx = 0, xy = 0, residual = 0;
+    for (std::size_t i = 0; i < x.size(); ++i) {
+        xx += weight[i] * (x[i] - wx / w) * (x[i] - wx / w);
+        xy += weight[i] * (x[i] - wx / w) * (y[i] - wy / w);
+    }
+    const double slope = xy / xx;
+    for (std::size_t i = 0; i < x.size(); ++i) {
+        const double off = y[i] - wy / w - slope * (x[i] - wx / w);
+        residual += weight[i] * off * off;
+    }
+    const double freedom = static_cast<double>(x.size()) - 2;
+    return {slope, std::sqrt(std::max(1.0, residual / freedom) / xx)};
+}
+
+/// The same orbit at another value; empty if it is lost on the way.
+std::optional<PeriodicOrbit> continued(
+    const BasinPlan& plan, const PeriodicOrbit& from, double a, double b) {
+    PeriodicOrbit orbit = from;
+    auto before = plan.system_at(a);
+    for (double part = 0, step = 1; part < 1;) {
+        const double next = std::min(1.0, part + step);
+        const auto system = plan.system_at(a + next * (b - a));
+        if (!system || !before) return std::nullopt;
+        const Parameters& p = system->parameters;
+        const std::vector<State> states = whole_cycle_states(before->parameters, orbit);
+        const State guess = carried(states.back(), before->parameters, p);
+        const auto found = find_orbit(p, guess, from.cycles, scale_of(p, states), branch_reach, {});
+        if (found && found->cycles == from.cycles) {
+            orbit = *found, before = system, part = next;
+            step *= 2;
+        } else if ((step *= 0.5) < least_part) {
+            return std::nullopt;
+        }
+    }
+    return orbit;
 }
 
 bool is_chaotic(const PointResult& r) { return r.name.motion.starts_with("chaotic"); }
@@ -248,74 +302,6 @@ Interval binomial_interval(double k, double n) {
     return {std::max(0.0, middle - half), std::min(1.0, middle + half)};
 }
 
-namespace {
-
-/// Mean and its standard error; empty without values.
-std::optional<Estimate> mean_of(const std::vector<double>& values) {
-    if (values.empty()) return std::nullopt;
-    const double n = static_cast<double>(values.size());
-    double mean = 0, squares = 0;
-    for (const double v : values) mean += v / n;
-    for (const double v : values) squares += (v - mean) * (v - mean);
-    return Estimate{mean, values.size() > 1 ? std::sqrt(squares / (n - 1) / n) : nan};
-}
-
-/// Slope of a weighted straight line through the points; its error is that of the weights, or of
-/// the scatter if that is larger.
-Estimate slope_of(
-    const std::vector<double>& x, const std::vector<double>& y, const std::vector<double>& weight) {
-    double w = 0, wx = 0, wy = 0;
-    for (std::size_t i = 0; i < x.size(); ++i)
-        w += weight[i], wx += weight[i] * x[i], wy += weight[i] * y[i];
-    double xx = 0, xy = 0, residual = 0;
-    for (std::size_t i = 0; i < x.size(); ++i) {
-        xx += weight[i] * (x[i] - wx / w) * (x[i] - wx / w);
-        xy += weight[i] * (x[i] - wx / w) * (y[i] - wy / w);
-    }
-    const double slope = xy / xx;
-    for (std::size_t i = 0; i < x.size(); ++i) {
-        const double off = y[i] - wy / w - slope * (x[i] - wx / w);
-        residual += weight[i] * off * off;
-    }
-    const double freedom = static_cast<double>(x.size()) - 2;
-    return {slope, std::sqrt(std::max(1.0, residual / freedom) / xx)};
-}
-
-/// An orbit that is followed from value to value; no longer after `orbit` is lost.
-struct OpenBranch {
-    int number;
-    PeriodicOrbit orbit;
-};
-
-// Steps of a value are halved down to this part if Newton's method does not find the orbit within
-// this distance.
-constexpr double least_part = 1.0 / 256, branch_reach = 0.1;
-
-/// The same orbit at another value; empty if it is lost on the way.
-std::optional<PeriodicOrbit> continued(
-    const BasinPlan& plan, const PeriodicOrbit& from, double a, double b) {
-    PeriodicOrbit orbit = from;
-    auto before = plan.system_at(a);
-    for (double part = 0, step = 1; part < 1;) {
-        const double next = std::min(1.0, part + step);
-        const auto system = plan.system_at(a + next * (b - a));
-        if (!system || !before) return std::nullopt;
-        const Parameters& p = system->parameters;
-        const std::vector<State> states = whole_cycle_states(before->parameters, orbit);
-        const State guess = carried(states.back(), before->parameters, p);
-        const auto found = find_orbit(p, guess, from.cycles, scale_of(p, states), branch_reach, {});
-        if (found && found->cycles == from.cycles) {
-            orbit = *found, before = system, part = next;
-            step *= 2;
-        } else if ((step *= 0.5) < least_part) {
-            return std::nullopt;
-        }
-    }
-    return orbit;
-}
-
-}  // namespace
-
 void Basins::add_entropy(std::size_t value, BasinsAt& at) const {
     const long varied = dimensions_of(plan_.box);
     const auto per_side = static_cast<int>(std::max(
@@ -402,18 +388,19 @@ BasinsAt Basins::basins_at(std::size_t value) const {
 
 std::vector<BasinsAt> Basins::result() const {
     std::vector<BasinsAt> all;
-    std::vector<OpenBranch> open;
+    // Orbits that are followed from value to value by the numbers of their branches, until lost.
+    std::map<int, PeriodicOrbit> open;
     int numbers = 0;
     for (std::size_t value = 0; value < values(); ++value) {
         all.push_back(basins_at(value));
         std::map<std::string, int> number_of;
-        std::vector<OpenBranch> still_open;
-        for (const OpenBranch& branch : open)
-            if (auto orbit =
-                    continued(plan_, branch.orbit, plan_.values[value - 1], plan_.values[value])) {
+        std::map<int, PeriodicOrbit> still_open;
+        for (const auto& [number, orbit] : open)
+            if (const auto here =
+                    continued(plan_, orbit, plan_.values[value - 1], plan_.values[value])) {
                 number_of.try_emplace(
-                    name_of(systems_[value].parameters, *orbit, {}).motion, branch.number);
-                still_open.push_back({branch.number, std::move(*orbit)});
+                    name_of(systems_[value].parameters, *here, {}).motion, number);
+                still_open.emplace(number, *here);
             }
         for (Basin& basin : all.back().basins) {
             if (!basin.motion.regime.orbit) continue;
@@ -421,7 +408,7 @@ std::vector<BasinsAt> Basins::result() const {
             basin.branch = known->second;
             if (!is_new) continue;
             ++numbers;
-            still_open.push_back({*basin.branch, *basin.motion.regime.orbit});
+            still_open.emplace(*basin.branch, *basin.motion.regime.orbit);
         }
         open = std::move(still_open);
     }

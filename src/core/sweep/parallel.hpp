@@ -22,8 +22,7 @@ public:
     virtual void begin() {}
     /// Returns the permit of the matching begin().
     virtual void end() {}
-    /// Called between runs and every few events within them. Returns true to stop the computation;
-    /// can block to let other work run.
+    /// Called every few events. Returns true to stop the computation; can block for other work.
     virtual bool stop_or_yield() { return false; }
 
     std::atomic<std::size_t> runs = 0;     ///< completed runs, out of SweepPlan::runs()

@@ -13,8 +13,7 @@ namespace vines {
 
 namespace {
 
-// Largest relative difference of x_rms of two runs on the same orbit (same period and contacts).
-// x_rms of irregular motions is a mean over a finite run and varies more by chance.
+// Largest relative difference of x_rms on one orbit, and of equal irregular motions, by chance.
 constexpr double same_orbit = 0.01, same_irregular = 0.25;
 // Cycles between two comparisons of a transient with known motions.
 constexpr double cycles_between_looks = 4;
@@ -116,6 +115,21 @@ double objective_of(const PointResult& r, Objective objective, const ObjectiveUn
     return nan;
 }
 
+/// Mean of a Poisson distribution whose probability of at most `count` events is `probability`.
+double poisson_mean(int count, double probability) {
+    const auto at_most = [count](double mean) {
+        double term = elementary::exp(-mean), sum = term;
+        for (int k = 1; k <= count; ++k) sum += term *= mean / k;
+        return sum;
+    };
+    double low = 0, high = 50;
+    for (int step = 0; step < 60; ++step) {
+        const double middle = 0.5 * (low + high);
+        (at_most(middle) > probability ? low : high) = middle;
+    }
+    return 0.5 * (low + high);
+}
+
 /// Exponents, verdict and regime.
 void set_conclusions(PointResult& r, Analysis& a, double cycle) {
     r.lambda = a.exponents->product.qr();
@@ -196,15 +210,6 @@ PointResult run_point(
     return result;
 }
 
-std::vector<Motion> run_starts(
-    const PointSystem& system, const std::vector<NamedStart>& starts, const PointOptions& options,
-    RunControl& control) {
-    std::vector<Motion> motions;
-    for (const auto& [name, state] : starts)
-        motions.push_back({name, state, run_point(system, state, options, control)});
-    return motions;
-}
-
 bool differs_in_steady_state(const PointResult& one, const PointResult& other) {
     const Regime &a = one.regime, &b = other.regime;
     // The motion without impacts is unique.
@@ -234,27 +239,6 @@ State carried(const State& s, const Parameters& from, const Parameters& to) {
     return next;
 }
 
-namespace {
-
-double peak_of(const Motion& m) { return m.result.objective; }
-
-/// Mean of a Poisson distribution whose probability of at most `count` events is `probability`.
-double poisson_mean(int count, double probability) {
-    const auto at_most = [count](double mean) {
-        double term = elementary::exp(-mean), sum = term;
-        for (int k = 1; k <= count; ++k) sum += term *= mean / k;
-        return sum;
-    };
-    double low = 0, high = 50;
-    for (int step = 0; step < 60; ++step) {
-        const double middle = 0.5 * (low + high);
-        (at_most(middle) > probability ? low : high) = middle;
-    }
-    return 0.5 * (low + high);
-}
-
-}  // namespace
-
 Lifetime lifetime_of(std::span<const Motion> motions) {
     constexpr double outside = 0.025;
     Lifetime life{};
@@ -278,32 +262,29 @@ std::vector<const Motion*> ranked(const SweepPoint& point) {
     std::vector<const Motion*> motions;
     for (const Motion& m : point.motions)
         if (m.result.measured) motions.push_back(&m);
-    std::ranges::stable_sort(
-        motions, [](const Motion* a, const Motion* b) { return peak_of(*a) < peak_of(*b); });
+    std::ranges::stable_sort(motions, {}, [](const Motion* m) { return m->result.objective; });
     return motions;
-}
-
-bool depends_on_start(const std::vector<const Motion*>& motions) {
-    return std::ranges::any_of(motions, [&](const Motion* m) {
-        return differs_in_steady_state(motions.back()->result, m->result);
-    });
 }
 
 std::optional<bool> depends_on_start(const SweepPoint& point, bool default_set) {
     const auto motions = ranked(point);
-    if (default_set) return depends_on_start(motions);
-    if (!point.second) return std::nullopt;
-    return !motions.empty() && point.second->result.measured &&
-           differs_in_steady_state(motions.back()->result, point.second->result);
+    const auto is_elsewhere = [&](const Motion& m) {
+        return !motions.empty() && m.result.measured &&
+               differs_in_steady_state(motions.back()->result, m.result);
+    };
+    if (default_set) return std::ranges::any_of(point.motions, is_elsewhere);
+    return point.second ? std::optional(is_elsewhere(*point.second)) : std::nullopt;
 }
 
 RowSummary summary_of(std::span<const SweepPoint> row, bool largest, bool default_set) {
     RowSummary s;
+    s.points = row.size();
     auto beats = [largest](double one, double other) {
         return largest ? one > other : one < other;
     };
     auto offer = [&](Peak& peak, std::size_t at, const Motion* m) {
-        if (m && (!peak.motion || beats(peak_of(*m), peak_of(*peak.motion)))) peak = {at, m};
+        if (m && (!peak.motion || beats(m->result.objective, peak.motion->result.objective)))
+            peak = {at, m};
     };
     auto peak_from = [&](const std::string& start) -> Peak& {
         const auto known = std::ranges::find(s.starts, start, &RowSummary::FromStart::start);
@@ -311,7 +292,6 @@ RowSummary summary_of(std::span<const SweepPoint> row, bool largest, bool defaul
         s.starts.push_back({start, {}});
         return s.starts.back().peak;
     };
-    s.points = row.size();
     for (std::size_t k = 0; k < row.size(); ++k) {
         const SweepPoint& point = row[k];
         for (const Motion& m : point.motions)

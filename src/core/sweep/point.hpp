@@ -35,8 +35,7 @@ std::vector<NamedStart> default_starts(const Parameters& parameters);
 /// Starts per point: default_starts() and the last states of both neighbours.
 inline constexpr std::size_t most_starts = 6;
 
-/// State at which a run with other parameters takes over: the same motion, with the ball at the
-/// same relative position in its cavity.
+/// State at which a run with other parameters takes over: the ball keeps its place in the cavity.
 State carried(const State& state, const Parameters& from, const Parameters& to);
 
 class KnownMotions;
@@ -104,8 +103,7 @@ struct PointResult {
     Sections sections;  ///< of the requested kind
 };
 
-/// Limit of impacts per cycle in the transient: far more than any motion has except endless chatter
-/// (R = 1).
+/// Limit of impacts per cycle in the transient, which only endless chatter (R = 1) reaches.
 inline constexpr long transient_impacts_per_cycle = 1000;
 
 /// Runs one point from a state at tau = 0. Invalid once `stop` (as in Limits) returned true.
@@ -141,8 +139,8 @@ struct SweepPoint {
     std::optional<PointSystem> system;  ///< empty: the values make no valid system
     /// The neighbour had no last state at a whole cycle to continue from.
     bool afresh = false;
-    std::vector<Motion> motions;
-    std::optional<Motion> second;  ///< from a second start, to detect dependence on the start
+    std::vector<Motion> motions = {};
+    std::optional<Motion> second = {};  ///< from a second start, to detect dependence on the start
 };
 
 /// Lifetime of chaotic transients, in forcing cycles, from motions of which some were captured.
@@ -151,15 +149,12 @@ struct Lifetime {
     std::optional<double> low, high;  ///< 95 % interval; `high` and `mean` empty without a capture
     int captured, runs;
 };
-/// Lifetime from all motions with shown chaos, for captures at a constant rate; empty values if
-/// there are none.
+/// Lifetime for captures at a constant rate; empty values without a motion of shown chaos.
 Lifetime lifetime_of(std::span<const Motion> motions);
 
 /// Measured motions in ascending order of the objective: the worst is the last.
 std::vector<const Motion*> ranked(const SweepPoint& point);
 
-/// True if one of the motions differs from the worst one in its steady state.
-bool depends_on_start(const std::vector<const Motion*>& ranked);
 /// True if the point's steady state depends on the start. Empty if only one start was tried.
 std::optional<bool> depends_on_start(const SweepPoint& point, bool default_set);
 
@@ -187,13 +182,8 @@ struct RowSummary {
 /// Summary of a row: the largest peaks, or without `largest` the smallest.
 RowSummary summary_of(std::span<const SweepPoint> row, bool largest, bool default_set);
 
-/// Computes a motion by measure() on the calling thread, with a permit. Throws Stopped on a stop
-/// request.
+/// Computes a motion by measure(), with a permit. Throws Stopped on a stop request.
 PointResult run_point(
     const PointSystem& system, const State& start, PointOptions options, RunControl& control);
-/// The same from each of the starts, in their order.
-std::vector<Motion> run_starts(
-    const PointSystem& system, const std::vector<NamedStart>& starts, const PointOptions& options,
-    RunControl& control);
 
 }  // namespace vines

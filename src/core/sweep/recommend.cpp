@@ -39,26 +39,16 @@ constexpr int halvings = 3;
 // The robust b differs from the best one if its tolerance_ratio is smaller by this factor.
 constexpr double robust_gain = 0.9;
 
-/// A try of one b, up to its regime.
-using Try = Recommendation;
-
-class StoppedFromOutside : public RunControl {
-public:
-    explicit StoppedFromOutside(const StopRequest& stop) : stop_(stop) {}
-    bool stop_or_yield() override { return stop_ && stop_(); }
-
-private:
-    const StopRequest& stop_;
-};
-
-/// A b with the worst of the motions there. A motion that is not measured, for too many impacts,
-/// excludes its b.
-Try worst_of(double b, const std::vector<Motion>& motions) {
-    Try t{b};
-    for (const Motion& m : motions) {
-        const PointResult& r = m.result;
+/// A try of a b, up to its regime: the worst of the motions from all starts. A motion that is not
+/// measured, for too many impacts, excludes its b.
+Recommendation tried(Parameters p, double b, const StopRequest& stop) {
+    p.b = b;
+    Recommendation t{b};
+    for (const auto& [name, start] : default_starts(p)) {
+        const PointResult r = measure(p, start, length_of_try, stop);
+        if (stop && stop()) throw Stopped();
         const double ratio = r.measured ? r.x_rms_ratio : infinity;
-        if (ratio > t.x_rms_ratio) t = {b, ratio, m.start, r.x_max, r.regime.type};
+        if (ratio > t.x_rms_ratio) t = {b, ratio, name, r.x_max, r.regime.type};
     }
     return t;
 }
@@ -67,30 +57,19 @@ Try worst_of(double b, const std::vector<Motion>& motions) {
 struct Search {
     const Parameters parameters;
     const double C;  // amplitude without absorber
-    RunControl& control;
-    std::vector<Try> tries = {};  // at the given frequency
-
-    std::vector<Try> tried(Parameters p, const std::vector<double>& bs) const {
-        std::vector<Try> result;
-        for (const double b : bs) {
-            p.b = b;
-            const PointSystem system{p, {}, length_of_try.max_impacts};
-            result.push_back(
-                worst_of(b, run_starts(system, default_starts(p), length_of_try, control)));
-        }
-        return result;
-    }
+    const StopRequest& stop;
+    std::vector<Recommendation> tries = {};  // at the given frequency
 
     double top() const { return below_C * C; }
 
-    const Try& best() const {
-        return *std::ranges::min_element(
-            tries, {}, [&](const Try& t) { return t.b <= top() ? t.x_rms_ratio : infinity; });
+    const Recommendation& best() const {
+        return *std::ranges::min_element(tries, {}, [&](const Recommendation& t) {
+            return t.b <= top() ? t.x_rms_ratio : infinity;
+        });
     }
 
     void try_b(const std::vector<double>& bs) {
-        const std::vector<Try> more = tried(parameters, bs);
-        tries.insert(tries.end(), more.begin(), more.end());
+        for (const double b : bs) tries.push_back(tried(parameters, b, stop));
     }
 
     /// Steps 1 and 2; returns the b of the row.
@@ -119,7 +98,7 @@ struct Search {
 /// Tries at one frequency.
 struct AtFrequency {
     double C;  // amplitude without absorber there
-    std::vector<Try> tries;
+    std::vector<Recommendation> tries;
 };
 
 Parameters at_frequency(Parameters p, double factor) {
@@ -133,7 +112,7 @@ double tolerance_ratio(double b, const std::vector<AtFrequency>& rows) {
     double C_most = 0, worst = 0;
     for (const AtFrequency& row : rows) {
         C_most = std::max(C_most, row.C);
-        for (const Try& t : row.tries)
+        for (const Recommendation& t : row.tries)
             if (t.b < b * factor && t.b > b / factor)
                 worst = std::max(worst, t.x_rms_ratio * row.C);
     }
@@ -141,8 +120,8 @@ double tolerance_ratio(double b, const std::vector<AtFrequency>& rows) {
 }
 
 /// Factors on F: with F/s, b does what s b does with F. `by_b`: the tries in the order of b.
-Interval margin_of_F(const std::vector<Try>& by_b, double b, double limit) {
-    auto low = std::ranges::find(by_b, b, &Try::b), high = low;
+Interval margin_of_F(const std::vector<Recommendation>& by_b, double b, double limit) {
+    auto low = std::ranges::find(by_b, b, &Recommendation::b), high = low;
     while (low != by_b.begin() && low[-1].x_rms_ratio <= limit) --low;
     while (high + 1 != by_b.end() && high[1].x_rms_ratio <= limit) ++high;
     return {b / high->b, b / low->b};
@@ -152,7 +131,7 @@ Interval margin_of_F(const std::vector<Try>& by_b, double b, double limit) {
 double f_margin(const Search& s, double b, double limit, bool upwards) {
     auto holds = [&](double change) {
         const Parameters p = at_frequency(s.parameters, 1 + (upwards ? change : -change));
-        return s.tried(p, {b})[0].x_rms_ratio <= limit;
+        return tried(p, b, s.stop).x_rms_ratio <= limit;
     };
     double within = 0, beyond = first_change;
     for (; holds(beyond); beyond *= 2)
@@ -164,11 +143,11 @@ double f_margin(const Search& s, double b, double limit, bool upwards) {
     return within;
 }
 
-Recommendation completed(const Search& s, Try t, const std::vector<AtFrequency>& rows) {
+Recommendation completed(const Search& s, Recommendation t, const std::vector<AtFrequency>& rows) {
     const Parameters& p = s.parameters;
     const double limit = (1 + t.x_rms_ratio) / 2;
-    std::vector<Try> by_b = s.tries;
-    std::ranges::sort(by_b, {}, &Try::b);
+    std::vector<Recommendation> by_b = s.tries;
+    std::ranges::sort(by_b, {}, &Recommendation::b);
     t.fold_share = manifold_fold(p.R_plus, p.Omega, t.b).C / s.C;
     t.tolerance_ratio = tolerance_ratio(t.b, rows);
     t.margin_F = margin_of_F(by_b, t.b, limit);
@@ -180,14 +159,16 @@ Recommendations recommendations(Search& s, const std::vector<double>& row) {
     std::vector<AtFrequency> rows = {{s.C, s.tries}};
     for (const double factor : {1 - f_tolerance, 1 + f_tolerance}) {
         const Parameters p = at_frequency(s.parameters, factor);
-        // Undamped resonance has no amplitude to refer to.
-        if (const auto C = free_amplitude(p)) rows.push_back({*C, s.tried(p, row)});
+        const auto C = free_amplitude(p);
+        if (!C) continue;  // undamped resonance has no amplitude to refer to
+        rows.push_back({*C, {}});
+        for (const double b : row) rows.back().tries.push_back(tried(p, b, s.stop));
     }
-    auto tolerance_of = [&](const Try& t) { return tolerance_ratio(t.b, rows); };
+    auto tolerance_of = [&](const Recommendation& t) { return tolerance_ratio(t.b, rows); };
     // The b of the row that stay within it when changed by the factor F_tolerance.
-    const std::span<const Try> candidates(
+    const std::span<const Recommendation> candidates(
         s.tries.data() + steps_above, row.size() - steps_above - 2);
-    const Try& robust = *std::ranges::min_element(candidates, {}, tolerance_of);
+    const Recommendation& robust = *std::ranges::min_element(candidates, {}, tolerance_of);
     Recommendations r{completed(s, s.best(), rows), {}};
     if (tolerance_of(robust) < robust_gain * r.best->tolerance_ratio && robust.x_rms_ratio < 1)
         r.robust = completed(s, robust, rows);
@@ -201,9 +182,8 @@ Recommendations recommended_b(const Parameters& p, const StopRequest& stop) {
     if (!p.has_straight_flights() || !p.has_constant_R() || !p.has_equal_walls() || p.R_plus == 1 ||
         !C || *C == 0)
         return {};
-    StoppedFromOutside control(stop);
     try {
-        Search search{p, *C, control};
+        Search search{p, *C, stop};
         const std::vector<double> row = search.run();
         if (!(search.best().x_rms_ratio < 1)) return {};
         return recommendations(search, row);

@@ -9,11 +9,12 @@
 #include <bit>
 #include <cassert>
 
-#include "core/sweep/point.hpp"
-
 namespace vines {
 
 namespace {
+
+/// A second start is tried at about this many points of a sweep with a single start.
+constexpr std::size_t second_starts = 16;
 
 /// Positions per axis of the coarsest grid, or up to twice as many: enough to recognise a picture.
 constexpr std::size_t coarsest = 8;
@@ -41,14 +42,11 @@ Place Grid::place_of(std::size_t line) const {
         line /= n;
         return at;
     };
-    bool starts_counted = false;
-    for (std::size_t a = 0; a < steps.size(); ++a) {
-        if (a == reduced) continue;
-        place.at[a] = take(steps[a]);
-        if (!starts_counted) place.start = take(starts);
-        starts_counted = true;
-    }
-    if (!starts_counted) place.start = take(starts);
+    const std::size_t first = reduced == 0 ? 1 : 0;
+    if (first < steps.size()) place.at[first] = take(steps[first]);
+    place.start = take(starts);
+    for (std::size_t a = first + 1; a < steps.size(); ++a)
+        if (a != reduced) place.at[a] = take(steps[a]);
     return place;
 }
 
@@ -60,9 +58,6 @@ std::size_t Grid::level(const Place& place) const {
 }
 
 namespace {
-
-/// A second start is tried at about this many points of a sweep with a single start.
-constexpr std::size_t second_starts = 16;
 
 /// Points along the inner axis, and the requested lines among them.
 struct Row {
@@ -82,12 +77,6 @@ struct Sweep {
         if (plan.by_rows()) return run_rows();
         const std::vector<std::size_t> lines = plan.in_order ? plan.lines : coarse_to_fine();
         parallel(lines.size(), threads, [&](std::size_t i) { run_single(lines[i]); });
-    }
-
-    SweepPoint begun(const Place& place) const {
-        SweepPoint point;
-        point.system = plan.system_at(place);
-        return point;
     }
 
     /// Requested lines, ordered so that the whole picture appears early. Points with the same flow
@@ -119,34 +108,26 @@ struct Sweep {
                    Flow::free_coefficients(next->parameters);
     }
 
-    PointResult run_from(const PointSystem& system, const State& start) {
-        return run_point(system, start, plan.options, control);
-    }
-
     void run_single(std::size_t line) {
-        SweepPoint point = begun(plan.grid.place_of(line));
+        SweepPoint point{plan.system_at(plan.grid.place_of(line))};
         if (point.system) run_own_starts(point, line);
         hand_out(line, point);
         if (!point.system) poll(control);
     }
 
-    /// The point's own start and, at regular intervals, a second one: the middle, or the wall if
-    /// the own start is the middle.
-    std::vector<NamedStart> starts_of(const PointSystem& system, std::size_t point) const {
-        const State& first = system.start;
-        std::vector<NamedStart> starts = {{"", first}};
-        if (system.parameters.load || !plan.tries_second_start(point)) return starts;
+    /// Runs the point's own start and, at regular intervals, a second one: the middle, or the wall.
+    void run_own_starts(SweepPoint& point, std::size_t number) const {
+        const auto& [p, first, max_impacts, known, units] = *point.system;
+        point.motions.push_back(run_from(*point.system, "", first));
+        if (p.load || !plan.tries_second_start(number)) return;
         const bool from_middle =
             first.x == 0 && first.x_dot == 0 && first.y == 0 && first.y_dot == 0;
-        starts.push_back(default_starts(system.parameters)[from_middle ? 1 : 0]);
-        return starts;
+        const NamedStart second = default_starts(p)[from_middle ? 1 : 0];
+        point.second = run_from(*point.system, second.name, second.state);
     }
 
-    void run_own_starts(SweepPoint& point, std::size_t number) const {
-        auto motions =
-            run_starts(*point.system, starts_of(*point.system, number), plan.options, control);
-        if (motions.size() > 1) point.second = std::move(motions[1]);
-        point.motions.push_back(std::move(motions[0]));
+    Motion run_from(const PointSystem& system, const char* name, const State& start) const {
+        return {name, start, run_point(system, start, plan.options, control)};
     }
 
     void run_rows() {
@@ -190,20 +171,17 @@ struct Sweep {
         const std::size_t n = plan.grid.row();
         for (Row& row : rows) row.points.resize(n);
         parallel(rows.size() * n, threads, [&](std::size_t task) {
-            run_fresh(rows[task / n], task % n);
+            Row& row = rows[task / n];
+            const std::size_t k = task % n;
+            Place place = row.place;
+            place.at[plan.grid.inner()] = k;
+            SweepPoint& point = row.points[k] = {plan.system_at(place)};
+            if (!point.system || plan.carry != Carry::none) return poll(control);
+            if (plan.default_set)
+                for (const auto& [name, start] : default_starts(point.system->parameters))
+                    point.motions.push_back(run_from(*point.system, name, start));
+            else run_own_starts(point, row.wanted[0] * n + k);
         });
-    }
-
-    /// The same for the k-th point of a row.
-    void run_fresh(Row& row, std::size_t k) {
-        Place place = row.place;
-        place.at[plan.grid.inner()] = k;
-        SweepPoint& point = row.points[k] = begun(place);
-        if (!point.system || plan.carry != Carry::none) return poll(control);
-        if (plan.default_set)
-            point.motions = run_starts(
-                *point.system, default_starts(point.system->parameters), plan.options, control);
-        else run_own_starts(point, row.wanted[0] * plan.grid.row() + k);
     }
 
     /// Passes up and down are independent of each other and run at the same time.
@@ -242,7 +220,7 @@ struct Sweep {
                 point.afresh = step > 0 && !before;
                 const State start =
                     before ? carried(before->state, before->parameters, p) : point.system->start;
-                point.motions.push_back({"", start, run_from(*point.system, start)});
+                point.motions.push_back(run_from(*point.system, "", start));
                 const auto& end = point.motions[0].result.at_end;
                 before = end ? std::optional(Carried{p, *end}) : std::nullopt;
             }
@@ -266,8 +244,7 @@ struct Sweep {
             const Parameters& p = points[k].system->parameters;
             if (before) {
                 const State start = carried(before->state, before->parameters, p);
-                found[k] =
-                    Motion{up ? "previous" : "next", start, run_from(*points[k].system, start)};
+                found[k] = run_from(*points[k].system, up ? "previous" : "next", start);
             }
             const Motion* worst = found[k] && found[k]->result.at_end ? &*found[k] : nullptr;
             for (const Motion& m : points[k].motions)

@@ -68,8 +68,7 @@ private:
     std::size_t runs_per_point() const { return default_set ? most_starts : 1; }
 };
 
-/// Receives results, from several threads at once: one point per line or, only with a reduced axis,
-/// a summary per row.
+/// Receives points or, with a reduced axis, summaries of rows; from several threads at once.
 class SweepSink {
 public:
     virtual ~SweepSink() = default;

@@ -1,12 +1,10 @@
 // Section 5: the responses of the experimental oscillator, measured and identified.
-//
-// experiment.cpp sets up the oscillator of Table 4, records its responses and compares the signals
-// with the paper; experiment_exponents.cpp evaluates the exponents.
+// experiment.cpp compares their signals with the paper, experiment_exponents.cpp their exponents.
 #pragma once
 
 #include "core/measurement/measurement.hpp"
 #include "core/measurement/synthetic_record.hpp"
-#include "report/report.hpp"
+#include "report/claims.hpp"
 
 namespace vines::report {
 
@@ -23,18 +21,11 @@ struct Experiment {
     double seconds(double tau) const { return (tau - truth.begin) / truth.omega0; }
 };
 
-struct MeasuredResponses {
-    Experiment irregular;  ///< b = 15 mm, settled
-    Experiment regular;    ///< b = 9 mm, settled
-    Experiment from_rest;  ///< b = 9 mm, from the start of the motion
-};
-
 /// Fig. 19. `of_figure_11`: largest exponent of the simulated regular motion.
 void exponents_of_regular_response(
-    Report& report, const MeasuredResponses& responses, double of_figure_11);
-/// Fig. 24.
+    Report& report, const Experiment& settled, const Experiment& from_rest, double of_figure_11);
+/// Fig. 24, and section 5.2: verdicts with other restitution coefficients.
 void exponents_of_irregular_response(Report& report, const Experiment& irregular);
-/// Section 5.2: verdicts with other restitution coefficients.
-void vary_restitution(Report& report, const MeasuredResponses& responses);
+void vary_restitution(Report& report, const Experiment& irregular, const Experiment& regular);
 
 }  // namespace vines::report

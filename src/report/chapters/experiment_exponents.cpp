@@ -1,13 +1,10 @@
-// Figs. 19 and 24 and section 5.2: the exponents of the measured responses, and their dependence on
-// the restitution coefficient.
+// Figs. 19 and 24 and section 5.2: the exponents of the measured responses, also with other R.
 #include <fmt/format.h>
 
 #include <limits>
 #include <list>
 
 #include "report/chapters/experiment.hpp"
-#include "report/claims.hpp"
-#include "report/plots.hpp"
 
 namespace vines::report {
 
@@ -78,13 +75,12 @@ void from_rest_on(Report& report, const Experiment& from_rest) {
         {exactly(1),
          "all of it; in part: half. It depends on the record's length and on where it begins",
          Band{0.5, 1}},
-        ClaimVerdict::partly);
+        partly);
     report.add_of_record(
         {"Fig. 19", "the same: fraction of the impacts at which lambda1 by (33) rises",
          "decreasing continuously"},
         result("{:.2f}", rising_share(found)),
-        {exactly(0), "none; in part: fewer than those at which it falls", Band{0, 0.5}},
-        ClaimVerdict::partly);
+        {exactly(0), "none; in part: fewer than those at which it falls", Band{0, 0.5}}, partly);
 }
 
 /// Fig. 19 for a settled motion, also from the direct estimate: noise causes no decay.
@@ -100,7 +96,7 @@ void settled_motion(Report& report, const Experiment& settled, double of_figure_
              "{:.4f})",
              last(settled.history_by_eq_33()), early(settled.history_by_eq_33()), last(direct),
              early(direct))},
-        {{0, infinity}, "positive"}, ClaimVerdict::not_reproduced);
+        {{0, infinity}, "positive"}, not_reproduced);
     const IdentifiedExponents& judged = settled.result.judged;
     report.add_of_record(
         {"Fig. 19",
@@ -113,7 +109,7 @@ void settled_motion(Report& report, const Experiment& settled, double of_figure_
         {{0, infinity},
          "zero is in the interval; in part: as small as Fig. 11's exponent by eq. (1)",
          Band{of_figure_11, infinity}},
-        ClaimVerdict::partly);
+        partly);
 }
 
 /// Exponents of a record with transfer matrices of given parameters.
@@ -122,12 +118,6 @@ IdentifiedExponents judged_by(const Experiment& e, const Parameters& p) {
         p, given_unknowns(p), e.result.found.impacts, e.result.continuity.stretches, qr_alone);
     return judge_exponents(exponents, e.result.found.impacts);
 }
-IdentifiedExponents by_closed_form(const Experiment& e) {
-    Parameters p = e.result.parameters;
-    p.damping = Damping::closed_form;
-    return judged_by(e, p);
-}
-
 constexpr int following = 40;
 
 /// late_change() of the true motion's lambda1 by (33), over following stretches of equal length.
@@ -151,15 +141,7 @@ std::vector<double> late_changes_after(const Experiment& e) {
     return changes;
 }
 
-const char* word_of(vines::Verdict verdict) {
-    switch (verdict) {
-        case vines::Verdict::chaotic: return "chaotic";
-        case vines::Verdict::regular: return "regular";
-        case vines::Verdict::not_decided: return "not decided";
-        case vines::Verdict::none: return "none";
-    }
-    return "";
-}
+constexpr const char* verdict_words[] = {"chaotic", "regular", "not decided", "none"};
 
 const std::vector<std::pair<double, double>> other_walls = {{0.6, 0.6}, {0.7, 0.7},   {0.8, 0.8},
                                                             {0.9, 0.9}, {0.95, 0.95}, {0.8, 0.9},
@@ -168,15 +150,17 @@ const std::vector<std::pair<double, double>> other_walls = {{0.6, 0.6}, {0.7, 0.
 }  // namespace
 
 void exponents_of_regular_response(
-    Report& report, const MeasuredResponses& responses, double of_figure_11) {
-    histories(report, responses.from_rest, 19, ", of a motion from rest on");
-    from_rest_on(report, responses.from_rest);
-    settled_motion(report, responses.regular, of_figure_11);
+    Report& report, const Experiment& settled, const Experiment& from_rest, double of_figure_11) {
+    histories(report, from_rest, 19, ", of a motion from rest on");
+    from_rest_on(report, from_rest);
+    settled_motion(report, settled, of_figure_11);
 }
 
 void exponents_of_irregular_response(Report& report, const Experiment& e) {
     histories(report, e, 24);
     const IdentifiedExponents& judged = e.result.judged;
+    Parameters closed_form = e.result.parameters;
+    closed_form.damping = Damping::closed_form;
     report.add_of_record(
         {"Fig. 24", "b = 15 mm: lower end of the 90 % interval of lambda1, from the fitted motion",
          "the transient exponents are positive"},
@@ -185,7 +169,7 @@ void exponents_of_irregular_response(Report& report, const Experiment& e) {
              "{:.4f} to {:.4f}, slope {:.4f}; from the direct estimate {:.4f}; with the damping of "
              "(19) to (21) {:.4f}; the true motion's {:.4f}",
              judged.slope.low, judged.slope.high, judged.slope.value,
-             e.result.direct->exponents.all().qr()[0], by_closed_form(e).slope.value,
+             e.result.direct->exponents.all().qr()[0], judged_by(e, closed_form).slope.value,
              e.truth.exponents.qr()[0])},
         {{0, infinity}, "positive"});
     const Exponents lambda = e.result.exponents.all().qr();
@@ -194,7 +178,7 @@ void exponents_of_irregular_response(Report& report, const Experiment& e) {
          "the transient exponents are positive", rounding_cause},
         {positive(lambda), fmt::format("{}: {}", positive(lambda), in_words(lambda))},
         {exactly(4), "all four, as in Fig. 5, with which the paper calls it consistent"},
-        ClaimVerdict::not_reproduced);
+        not_reproduced);
     const double change = late_change(e.history_by_eq_33(), 0),
                  typical_change = median(late_changes_after(e));
     Result stable(
@@ -211,31 +195,31 @@ void exponents_of_irregular_response(Report& report, const Experiment& e) {
         stable,
         {almost_constant.band, almost_constant.because + ". It depends on the record's length",
          almost_constant.partly},
-        ClaimVerdict::not_reproduced);
+        not_reproduced);
 }
 
-void vary_restitution(Report& report, const MeasuredResponses& responses) {
-    DataTable table{{"b (mm)", "assumed R", "slope", "90 % interval", "verdict"}};
+void vary_restitution(Report& report, const Experiment& irregular, const Experiment& regular) {
+    Report::Rows rows;
     double same = 0;
-    for (const Experiment* const e : {&responses.regular, &responses.irregular})
+    for (const Experiment* const e : {&regular, &irregular})
         for (const auto& [R_plus, R_minus] : other_walls) {
             Parameters p = e->result.parameters;
             p.R_plus = R_plus, p.R_minus = R_minus;
             const IdentifiedExponents judged = judged_by(*e, p);
             same += judged.verdict == e->result.judged.verdict;
-            table.rows.push_back(
+            rows.push_back(
                 {fmt::format("{:g}", 1000 * p.b), fmt::format("{:g}, {:g}", R_plus, R_minus),
                  fmt::format("{:.4f}", judged.slope.value),
                  fmt::format("{:.4f} to {:.4f}", judged.slope.low, judged.slope.high),
-                 word_of(judged.verdict)});
+                 verdict_words[static_cast<std::size_t>(judged.verdict)]});
         }
-    const auto all = static_cast<double>(table.rows.size());
+    const auto all = static_cast<double>(rows.size());
     report.add_of_record(
         {"Section 5.2", "verdicts on the two records that stay the same with another assumed R",
          "the same conclusion"},
         {same, fmt::format("{} of {}", same, all)},
         {exactly(all), "all; in part: half or more", Band{all / 2, all}});
-    report.table(table);
+    report.table({"b (mm)", "assumed R", "slope", "90 % interval", "verdict"}, rows);
 }
 
 }  // namespace vines::report

@@ -1,16 +1,14 @@
 // The motions over the paper's range of b: what runs from its start come to, and the branches of
-// periodic orbits, stable and unstable, on which the regular ones lie.
-#include <fmt/format.h>
+// periodic orbits, stable and unstable, on which the regular ones lie. Questions left open by the
+// paper: the borders of the regimes, and the steady state at 22 mm.
+#include <fmt/ranges.h>
 
 #include <cmath>
 #include <map>
 
 #include "core/continuation/branch.hpp"
-#include "core/continuation/orbit_start.hpp"
 #include "core/sweep/point.hpp"
-#include "report/plots.hpp"
-#include "report/report.hpp"
-#include "report/runs.hpp"
+#include "report/claims.hpp"
 
 namespace vines::report {
 
@@ -55,8 +53,7 @@ private:
     Curve* last_ = nullptr;  // of the branch
 };
 
-/// The branches from the symmetric motion (Fig. 11), with those that begin where its symmetry
-/// breaks.
+/// The branches from the symmetric motion (Fig. 11), and those where its symmetry breaks.
 BranchCurves branches(Damping damping) {
     const Parameters p = table1(of_start, damping);
     const State settled = simulate(p, default_state(p), {1000 * p.cycle(), 100000, {}}, {}).state;
@@ -113,7 +110,7 @@ void symmetric_impacts(Report& report, const BranchCurves& here) {
              "{}; by eq. (1) {:.6f}",
              end, std::cos(half_angle), std::sin(half_angle), compared_with_runs(end / 1000),
              other_end)},
-        {{15, 16.5}, "between the two"}, ClaimVerdict::by_closed_form);
+        {{15, 16.5}, "between the two"}, by_closed_form);
     report.paragraph(fmt::format(
         "Where two symmetric impacts per cycle (Fig. 11) become asymmetric (Fig. 12), a multiplier "
         "of half a cycle is -1 and the symmetry breaks: at b = {:.6f} mm, by eq. (1) at {:.6f} mm. "
@@ -152,6 +149,87 @@ void motions_over_b(Report& report, RunCache&) {
         "Largest |x| over b: runs from the paper's start (dots) and the orbits that exist (solid: "
         "stable, broken: unstable)",
         {{.x_label = "b (mm)", .y_label = "largest |x| (mm)", .curves = curves}}, 330);
+}
+
+namespace {
+
+/// The equidistant b, mm, at which the regime of a long run is so.
+std::vector<double> mm_where(double from, double to, int steps, Damping damping, auto&& is_so) {
+    std::vector<double> b, found;
+    const auto mm = [&](int i) { return from + (to - from) * i / steps; };
+    for (int i = 0; i <= steps; ++i) b.push_back(mm(i) / 1000);
+    const std::vector<Regime> regimes = long_regimes(b, damping);
+    for (int i = 0; i <= steps; ++i)
+        if (is_so(regimes[static_cast<std::size_t>(i)])) found.push_back(mm(i));
+    return found;
+}
+
+std::string listed(const std::vector<double>& numbers) {
+    return numbers.empty() ? "none" : fmt::format("{:g}", fmt::join(numbers, ", "));
+}
+
+void borders(Report& report) {
+    const auto of_type_I = [](Damping damping) {
+        return mm_where(
+            31, 34, 12, damping, [](const Regime& r) { return r.type == RegimeType::I; });
+    };
+    const auto lowest = [](const std::vector<double>& mm) { return mm.empty() ? nan : mm.front(); };
+    const std::vector<double> here = of_type_I(Damping::closed_form),
+                              other = of_type_I(Damping::equation_of_motion);
+    report.add(
+        {"Table 3", "31 to 34 mm in steps of .25, runs of 17,000: lowest b of Type I",
+         "II at 31, I at 34"},
+        {lowest(here), lowest(other),
+         fmt::format("at {}; by eq. (1) {}", listed(here), listed(other))},
+        {{31.25, 34}, "between the two"}, by_closed_form);
+    // "Then b is decreased to 0.004 m, three impacts per cycle is obtained": the b at which it is.
+    const auto where = [](Damping damping) {
+        return listed(mm_where(3, 9, 60, damping, [](const Regime& r) {
+            return r.type == RegimeType::V && r.orbit->contacts == 3L * r.orbit->cycles;
+        }));
+    };
+    report.paragraph(fmt::format(
+        "Three impacts per cycle, periodic (Type V, Fig. 13), for b from 3 to 9 mm in steps of .1, "
+        "runs of 17,000: at {} mm; by eq. (1) at {} mm.",
+        where(Damping::closed_form), where(Damping::equation_of_motion)));
+}
+
+/// Tests whether the chaos at b = 22 mm is a (long) transient.
+void captures(Report& report, RunCache& runs) {
+    const Ensemble& e = runs.ensemble(0.022, WindowsOf::tau_1690);
+    const auto captured = std::ssize(e.capture_tau);
+    report.paragraph(fmt::format(
+        "\"In this period, the transient response has disappeared\" (of Fig. 5): of {} runs at b = "
+        "22 mm to tau = {:g} a periodic orbit captures {}, at tau = {:.0f}, which were chaotic "
+        "until then by lambda1 and its standard error; the other {} are chaotic to their ends. "
+        "Runs of this length do not decide whether their chaos persists.",
+        Ensemble::runs, Ensemble::tau_end, captured, fmt::join(e.capture_tau, ", "),
+        Ensemble::runs - captured));
+}
+
+}  // namespace
+
+void open_questions(Report& report, RunCache& runs) {
+    report.heading("What the paper leaves open");
+    captures(report, runs);
+    borders(report);
+    report.paragraph(
+        "Without a row in the table: Fig. 1, a drawing; (12) to (24), which the row on Fig. 2 "
+        "uses, as it does (27) at both walls; that velocity differences fall by R at an impact "
+        "(Fig. 7), an eigenvalue of M; that Fig. 24 and Fig. 5 are \"consistent\", for which the "
+        "paper gives no measure (each has its own rows); that irregular impacts are the \"common "
+        "base\" of all chaotic regimes (section 6), of which one is tested (section 4.1); friction "
+        "and the walls' materials (section 6), which are in no equation.");
+    report.heading("Misprints in the paper");
+    report.paragraph(
+        "Below eq. (1) lambda_1 stands for lambda, the damping. In (7) tau = 0 stands for tau_0. "
+        "The forced part of (8) to (10) is that of (6) for tau_0 = 0 alone: elsewhere its phase is "
+        "Omega tau_0 + phi. By (26) M_i belongs to the impact at tau_(i+1), so the products (31), "
+        "(32) end there; in (33) u_i is u_k. (37) and (38) are the derivatives of the state "
+        "variables, as columns. (41) is another condition than (40), not a simpler form of it. "
+        "\"When b is further increased\" before Fig. 14: b falls from 4 to 3 mm. \"The evolution "
+        "of eigenvalues\" of Fig. 13 is that of exponents. Epsilon of Table 4 is .77 %. b = 0.09 m "
+        "below Fig. 17 is 0.009 m, |x - b| = b below Fig. 23 is |x - y| = b.");
 }
 
 }  // namespace vines::report

@@ -2,15 +2,15 @@
 // several runs (as for Table 2).
 //
 // The paper does not state the windows. But its printed lambda3 is rounding
-// (exponents_at_22_mm.cpp): lambda1 - lambda3 is about 36/T, which reveals each window's length T.
+// (strongly_modulated.cpp): lambda1 - lambda3 is about 36/T, which reveals each window's length T.
 // The windows are 1400 to 5000 long and hold about 400 contacts, whatever b.
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
+#include <ranges>
 
 #include "report/claims.hpp"
-#include "report/plots.hpp"
 
 namespace vines::report {
 
@@ -36,14 +36,12 @@ struct Row {
 using Rows = std::vector<Row>;  // in descending order of b
 
 void show(Report& report, const Rows& rows) {
-    DataTable table{
-        {"b (mm)", "printed lambda1", "closed form", "sd off", "eq. (1)", "sd off",
-         "printed lambda1 - lambda3", "implied T", "implied contacts"}};
+    Report::Rows cells;
     for (const Row& row : rows) {
         const Moments l = row.here.lambda(0), o = row.by_equation.lambda(0);
         const double printed = row.printed.lambda1;
         const std::optional<double>& periodic = row.by_equation.periodic;
-        table.rows.push_back(
+        cells.push_back(
             {fmt::format("{:g}", 1000 * row.printed.b), fmt::format("{:g}", printed), l.in_words(4),
              fmt::format("{:.1f}", l.deviations_of(printed)),
              periodic ? fmt::format("periodic, {:.4f}", *periodic) : o.in_words(4),
@@ -51,11 +49,13 @@ void show(Report& report, const Rows& rows) {
              fmt::format("{:.5f}", row.printed.difference()), fmt::format("{:.0f}", row.length()),
              fmt::format("{:.0f}", row.contacts_in(row.length()))});
     }
-    report.table(table);
+    report.table(
+        {"b (mm)", "printed lambda1", "closed form", "sd off", "eq. (1)", "sd off",
+         "printed lambda1 - lambda3", "implied T", "implied contacts"},
+        cells);
 }
 
-/// Deviations of the printed lambda1 from the windows with one damping, for the rows that are
-/// chaotic with it.
+/// Deviations of the printed lambda1 from the windows, for the rows that are chaotic.
 std::vector<double> deviations(const Rows& rows, Damping damping) {
     std::vector<double> all;
     for (const Row& row : rows)
@@ -71,7 +71,7 @@ double highest_mean(const Rows& rows, int k) {
     return highest;
 }
 
-void lambda1(Report& report, const Rows& rows) {
+void exponents(Report& report, const Rows& rows) {
     const std::vector<double> other = deviations(rows, Damping::equation_of_motion);
     const double sum = sum_of_squares(deviations(rows, Damping::closed_form)),
                  other_sum = sum_of_squares(other);
@@ -83,8 +83,7 @@ void lambda1(Report& report, const Rows& rows) {
          fmt::format(
              "{:.1f}; by eq. (1) {:.0f} over the {} that are chaotic with it", sum, other_sum,
              other.size())},
-        {{2.6, 23.2}, "98 % of chi squared with ten degrees of freedom"},
-        ClaimVerdict::by_closed_form);
+        {{2.6, 23.2}, "98 % of chi squared with ten degrees of freedom"}, by_closed_form);
     report.bottom_line.insert(
         0,
         fmt::format(
@@ -92,15 +91,11 @@ void lambda1(Report& report, const Rows& rows) {
             "that of its eq. (1) (chi squared of Table 3's ten values {:.1f}, {:.0f} by eq. (1)); "
             "no other exponent is positive (their highest lambda2 is {:.3f}).",
             sum, other_sum, highest_mean(rows, 1)));
-}
-
-void lambda3(Report& report, const Rows& rows) {
     const double highest = highest_mean(rows, 2);
     report.add(
         {"Table 3", "lambda3 (qr), the highest mean of the ten", ".011 to .139, positive",
          rounding_cause},
-        result("{:.3f}", highest), {{0, infinity}, "positive, as printed"},
-        ClaimVerdict::not_reproduced);
+        result("{:.3f}", highest), {{0, infinity}, "positive, as printed"}, not_reproduced);
 }
 
 /// Infers the windows, which the paper does not state, from lambda1 - lambda3: no verdict.
@@ -132,13 +127,6 @@ void windows(Report& report, const Rows& rows) {
         at_22_mm.length()));
 }
 
-/// Values in ascending order of b.
-std::vector<double> ascending(const Rows& rows, auto&& value) {
-    std::vector<double> values;
-    for (const Row& row : rows) values.insert(values.begin(), value(row));
-    return values;
-}
-
 constexpr std::size_t of_type_II = 8;  // number of rows of Type II, at the lowest of the ten b
 double falls_in_type_II(const std::vector<double>& lambda1) {
     double falls = 0;
@@ -165,13 +153,12 @@ double rise_over_error(const Rows& rows, Damping damping) {
 /// "With the increase of b ... transient Lyapunov exponents increase": for the strongly modulated
 /// responses, and for Type I, which is in the same table and where they fall.
 void order(Report& report, const Rows& rows) {
-    const std::vector<double> printed = ascending(
-                                  rows, [](const Row& row) { return row.printed.lambda1; }),
-                              here = ascending(
-                                  rows, [](const Row& row) { return row.here.lambda(0).mean; }),
-                              other = ascending(rows, [](const Row& row) {
-                                  return row.by_equation.lambda(0).mean;
-                              });
+    std::vector<double> printed, here, other;  // in ascending order of b
+    for (const Row& row : rows | std::views::reverse) {
+        printed.push_back(row.printed.lambda1);
+        here.push_back(row.here.lambda(0).mean);
+        other.push_back(row.by_equation.lambda(0).mean);
+    }
     report.add(
         {"Section 4.2", "lambda1 rises with b, Type II (16.5 to 31 mm): steps at which it falls",
          fmt::format("increases ({} of the printed steps fall)", falls_in_type_II(printed))},
@@ -179,7 +166,7 @@ void order(Report& report, const Rows& rows) {
          fmt::format(
              "{} of {}; by eq. (1) {}", falls_in_type_II(here), of_type_II - 1,
              falls_in_type_II(other))},
-        {exactly(0), "none"}, ClaimVerdict::by_closed_form);
+        {exactly(0), "none"}, by_closed_form);
     report.add(
         {"Table 3", "the higher lambda1 of Type I (34 and 40 mm) minus that of 31 mm",
          fmt::format(
@@ -192,7 +179,7 @@ void order(Report& report, const Rows& rows) {
         {{-infinity, -2.58},
          "a fall, as printed: of the means over windows, in standard errors, by more "
          "than chance gives once in 100 times"},
-        ClaimVerdict::by_closed_form);
+        by_closed_form);
 }
 
 /// Mean duration of the synchronised stretches.
@@ -263,8 +250,7 @@ void table_3(Report& report, RunCache& runs) {
         rows.push_back({printed, here, by_equation});
     }
     show(report, rows);
-    lambda1(report, rows);
-    lambda3(report, rows);
+    exponents(report, rows);
     windows(report, rows);
     order(report, rows);
     durations(report, runs);

@@ -6,10 +6,10 @@
 #include <algorithm>
 #include <cmath>
 #include <functional>
+#include <numeric>
 #include <span>
 
 #include "report/claims.hpp"
-#include "report/plots.hpp"
 
 namespace vines::report {
 
@@ -28,8 +28,7 @@ Plot moduli(
     return plot;
 }
 
-/// Largest deviation of J's moduli from 1, 1 and e^(-zeta Delta tau), without flights that contain
-/// a sticking phase, which removes two deviations.
+/// Largest deviation of J's moduli from 1, 1 and e^(-zeta Delta tau), in flights without sticking.
 double error_of_J(const PaperRun& r) {
     const TransferModuli& moduli = *r.run.moduli;
     double error = 0, tau_before = r.run.impacts.front().tau;
@@ -55,8 +54,7 @@ double factor_of_oscillator(const PaperRun& r) {
     return largest;
 }
 
-/// Median deviation of the moduli of M, computed from its entries, from 1, 1, R, R. Near grazing
-/// the entries are so large that rounding dominates.
+/// Median deviation of M's moduli from 1, 1, R, R: near grazing rounding of its entries dominates.
 double error_of_M(const PaperRun& r) {
     const double R = r.parameters.R_plus;  // of both walls
     std::vector<double> errors;
@@ -111,15 +109,14 @@ void figures_6_to_8(Report& report, const PaperRun& r) {
          "\"the initial difference of displacement will not be changed ... by themselves\""},
         result("{:.4f}: R, as that of x' - y'", factor_of_displacement(r)),
         {{0.999, 1.001}, "1 if unchanged; the factor of each impact is exact except for rounding"},
-        ClaimVerdict::not_reproduced);
+        not_reproduced);
     report.add(
         {"Fig. 8", "largest modulus of T, at its largest", "very large"},
         result("{:.1f}", maximum_of_T(r, 0)), {{10, infinity}, "an order above 1"});
     report.add(
         {"Fig. 8", "second modulus of T, at its largest", "very large"},
         result("{:.2f}", maximum_of_T(r, 1)),
-        {{10, infinity}, "an order above 1; in part: above 1", Band{1, infinity}},
-        ClaimVerdict::partly);
+        {{10, infinity}, "an order above 1; in part: above 1", Band{1, infinity}}, partly);
 }
 
 using Intervals = std::vector<std::pair<double, double>>;
@@ -131,118 +128,106 @@ Intervals synchronised_stretches(const PaperRun& r) {
     return stretches;
 }
 
-bool is_inside(const Intervals& stretches, double tau) {
-    return std::ranges::any_of(
-        stretches, [tau](const auto& s) { return tau > s.first && tau <= s.second; });
-}
+/// The synchronised impacts of a run, or the others, and the growth of ln of the largest deviation
+/// (qr) up to them.
+struct ImpactGroup {
+    /// T's largest modulus, without those impacts of a chatter that are so close to each other that
+    /// rounding hides it.
+    std::vector<double> T;
+    double growth = 0, tau = 0;  ///< and its duration
 
-/// T's largest modulus in and outside synchronised stretches; without those impacts of a chatter
-/// that are so close to each other that rounding hides it.
-struct LargestOfT {
-    std::vector<double> synchronised, desynchronised;
+    double rate() const { return growth / tau; }  ///< per unit of tau
+    double above_one() const {
+        return fraction(T, [](double t) { return t > 1; });
+    }
+    std::vector<double> ln_T() const {
+        std::vector<double> logarithms;
+        for (const double t : T) logarithms.push_back(elementary::log(t));
+        return logarithms;
+    }
+    double spread_of_ln_T() const { return quantile(ln_T(), 0.75) - quantile(ln_T(), 0.25); }
+    /// The growth if moduli of single T composed.
+    double growth_by_T() const {
+        const std::vector<double> ln = ln_T();
+        return std::accumulate(ln.begin(), ln.end(), 0.);
+    }
+};
+struct ImpactGroups {
+    ImpactGroup synchronised, desynchronised;
+
+    double ratio_of_rates() const { return synchronised.rate() / desynchronised.rate(); }
+    double growth_by_T_over_growth() const {
+        return (synchronised.growth_by_T() + desynchronised.growth_by_T()) /
+               (synchronised.growth + desynchronised.growth);
+    }
 };
 
-LargestOfT largest_of_T(const PaperRun& r) {
+ImpactGroups groups_of(const PaperRun& r) {
     const Intervals stretches = synchronised_stretches(r);
+    ImpactGroups found;
+    const auto group_at = [&](double tau) -> ImpactGroup& {
+        const bool is_synchronised = std::ranges::any_of(
+            stretches, [tau](const auto& s) { return tau > s.first && tau <= s.second; });
+        return is_synchronised ? found.synchronised : found.desynchronised;
+    };
     const TransferModuli& moduli = *r.run.moduli;
-    LargestOfT found;
-    for (std::size_t i = 0; i < moduli.tau.size(); ++i) {
-        if (std::isnan(moduli.T[i][0])) continue;
-        const bool synchronised = is_inside(stretches, moduli.tau[i]);
-        (synchronised ? found.synchronised : found.desynchronised).push_back(moduli.T[i][0]);
+    for (std::size_t i = 0; i < moduli.tau.size(); ++i)
+        if (!std::isnan(moduli.T[i][0])) group_at(moduli.tau[i]).T.push_back(moduli.T[i][0]);
+    const ExponentHistory& qr = r.product().qr_history();
+    const double start = r.product().start_tau();
+    for (std::size_t i = 1; i < qr.tau.size(); ++i) {
+        const double from = qr.tau[i - 1], to = qr.tau[i];
+        ImpactGroup& g = group_at(to);
+        g.growth += qr.lambda[i][0] * (to - start) - qr.lambda[i - 1][0] * (from - start);
+        g.tau += to - from;
     }
     return found;
 }
 
-double above_one(const std::vector<double>& v) {
-    return fraction(v, [](double x) { return x > 1; });
+/// A number of the runs at 22 mm from neighbouring starts.
+Typical typical_of_groups(RunCache& runs, Damping damping, auto number) {
+    return typical(
+        runs.neighbours(0.022, damping), [&](const PaperRun& r) { return number(groups_of(r)); });
 }
-
-/// Interquartile range of the logarithms.
-double log_spread(std::vector<double> v) {
-    for (double& x : v) x = elementary::log(x);
-    return quantile(v, 0.75) - quantile(v, 0.25);
-}
-
-/// A number of the runs at 22 mm from neighbouring starts, with both dampings.
+/// The same with both dampings.
 Result at_22_mm(RunCache& runs, int decimals, auto number) {
-    const auto with = [&](Damping damping) {
-        return typical(runs.neighbours(0.022, damping), number);
-    };
-    return result_of(with(Damping::closed_form), with(Damping::equation_of_motion), decimals);
+    return result_of(
+        typical_of_groups(runs, Damping::closed_form, number),
+        typical_of_groups(runs, Damping::equation_of_motion, number), decimals);
 }
 
 /// "Greater than one in area1 and less than one in area2."
 void areas_1_and_2(Report& report, RunCache& runs) {
-    const auto of = [&](int decimals, auto number) {
-        return at_22_mm(
-            runs, decimals, [number](const PaperRun& r) { return number(largest_of_T(r)); });
-    };
     const Criterion nine_in_ten = {{0.9, 1}, "nine in ten; in part: more than half", Band{0.5, 1}};
     report.add(
         {"Fig. 9, area 1",
          "not synchronised: fraction of impacts where T's largest modulus is above 1",
          "greater than one (a typical example)"},
-        of(2, [](const LargestOfT& T) { return above_one(T.desynchronised); }), nine_in_ten,
-        ClaimVerdict::partly);
+        at_22_mm(runs, 2, [](const ImpactGroups& g) { return g.desynchronised.above_one(); }),
+        nine_in_ten, partly);
     report.add(
         {"Fig. 9, area 2", "synchronised: fraction of impacts where it is below 1",
          "less than one (a typical example)"},
-        of(2, [](const LargestOfT& T) { return 1 - above_one(T.synchronised); }), nine_in_ten,
-        ClaimVerdict::partly_by_equation_of_motion);
+        at_22_mm(runs, 2, [](const ImpactGroups& g) { return 1 - g.synchronised.above_one(); }),
+        nine_in_ten, partly_by_equation_of_motion);
     report.add(
         {"Fig. 9",
          "its spread (quartiles of ln) while not synchronised, over that while synchronised",
          "changes a lot / almost the same value"},
-        of(1,
-           [](const LargestOfT& T) {
-               return log_spread(T.desynchronised) / log_spread(T.synchronised);
-           }),
+        at_22_mm(
+            runs, 1,
+            [](const ImpactGroups& g) {
+                return g.desynchronised.spread_of_ln_T() / g.synchronised.spread_of_ln_T();
+            }),
         {{4, infinity}, "several times as much"});
 }
 
-/// Growth of ln of the largest deviation (qr) in a part of a window, and the sum of the logarithms
-/// of T's largest modulus, which it would be if moduli of single T composed.
-struct Growth {
-    double ln = 0, tau = 0, by_moduli = 0;
-
-    double rate() const { return ln / tau; }  ///< per unit of tau
-};
-struct GrowthByStretches {
-    Growth synchronised, desynchronised;
-
-    double ratio() const { return synchronised.rate() / desynchronised.rate(); }
-    double by_moduli_over_growth() const {
-        return (synchronised.by_moduli + desynchronised.by_moduli) /
-               (synchronised.ln + desynchronised.ln);
-    }
-};
-GrowthByStretches growth(const PaperRun& r) {
-    const Intervals stretches = synchronised_stretches(r);
-    const ExponentHistory& qr = r.product().qr_history();
-    const double start = r.product().start_tau();
-    GrowthByStretches found;
-    for (std::size_t i = 1; i < qr.tau.size(); ++i) {
-        const double from = qr.tau[i - 1], to = qr.tau[i];
-        Growth& g = is_inside(stretches, to) ? found.synchronised : found.desynchronised;
-        g.ln += qr.lambda[i][0] * (to - start) - qr.lambda[i - 1][0] * (from - start);
-        g.tau += to - from;
-    }
-    const LargestOfT T = largest_of_T(r);
-    for (const double t : T.synchronised) found.synchronised.by_moduli += elementary::log(t);
-    for (const double t : T.desynchronised) found.desynchronised.by_moduli += elementary::log(t);
-    return found;
-}
-
-/// Long enough for several synchronised stretches at each b; at 22 mm no orbit has captured the
-/// motion yet.
+/// Long enough for several synchronised stretches, before an orbit captures the motion at 22 mm.
 constexpr double tau_of_stretches = 10000;
 
 /// "The essence of chaotic is the irregular and desynchronized impacts": at each b of Type II.
 void where_chaos_comes_from(Report& report, RunCache& runs) {
-    DataTable table{
-        {"b (mm)", "growth while synchronised / while not", "by eq. (1)",
-         "sum of ln of T's largest modulus"}};
+    Report::Rows rows;
     const auto cell = [](double synchronised, double desynchronised) {
         return fmt::format("{:.4f} / {:.4f}", synchronised, desynchronised);
     };
@@ -251,24 +236,24 @@ void where_chaos_comes_from(Report& report, RunCache& runs) {
     std::vector<double> mm_above;
     for (const Table3Row& row : printed_table_3) {
         if (row.b > highest_of_type_II) continue;
-        const auto long_growth = [&](Damping damping) {
-            return growth(run_until(
+        const auto long_run = [&](Damping damping) {
+            return groups_of(run_until(
                 table1(row.b, damping), tau_of_stretches,
-                {.exponents = true, .moduli = true, .regime = true}, {}, {.qr = true}));
+                {.exponents = true, .moduli = true, .regime = true}, {.qr = true}));
         };
-        const GrowthByStretches here = long_growth(Damping::closed_form);
-        largest = std::max(largest, here.ratio());
-        if (here.ratio() > nearly_none) mm_above.push_back(1000 * row.b);
-        table.rows.push_back(
+        const ImpactGroups here = long_run(Damping::closed_form);
+        largest = std::max(largest, here.ratio_of_rates());
+        if (here.ratio_of_rates() > nearly_none) mm_above.push_back(1000 * row.b);
+        rows.push_back(
             {fmt::format("{:g}", 1000 * row.b),
              cell(here.synchronised.rate(), here.desynchronised.rate()), "periodic",
              cell(
-                 here.synchronised.by_moduli / here.synchronised.tau,
-                 here.desynchronised.by_moduli / here.desynchronised.tau)});
+                 here.synchronised.growth_by_T() / here.synchronised.tau,
+                 here.desynchronised.growth_by_T() / here.desynchronised.tau)});
         if (runs.paper_run(row.b, Damping::equation_of_motion).regime().orbit) continue;
-        const GrowthByStretches other = long_growth(Damping::equation_of_motion);
-        largest_other = std::max(largest_other, other.ratio());
-        table.rows.back()[2] = cell(other.synchronised.rate(), other.desynchronised.rate());
+        const ImpactGroups other = long_run(Damping::equation_of_motion);
+        largest_other = std::max(largest_other, other.ratio_of_rates());
+        rows.back()[2] = cell(other.synchronised.rate(), other.desynchronised.rate());
     }
     const std::string quantity =
         "growth of ln of the largest deviation (qr) while synchronised, over that while not";
@@ -276,7 +261,7 @@ void where_chaos_comes_from(Report& report, RunCache& runs) {
         {-infinity, nearly_none}, "nearly all growth occurs while not synchronised"};
     report.add(
         {"Section 4.1", "b = 22 mm: " + quantity, "chaos results from desynchronised impacts"},
-        at_22_mm(runs, 2, [](const PaperRun& r) { return growth(r).ratio(); }), nearly_all);
+        at_22_mm(runs, 2, std::mem_fn(&ImpactGroups::ratio_of_rates)), nearly_all);
     report.add(
         {"Section 4.2", "Type II (16.5 to 31 mm): " + quantity + ", the largest of the eight b",
          "the same"},
@@ -284,13 +269,16 @@ void where_chaos_comes_from(Report& report, RunCache& runs) {
          fmt::format(
              "{:.2f}; above a tenth at {:g} mm; by eq. (1) {:.2f}", largest,
              fmt::join(mm_above, ", "), largest_other)},
-        nearly_all, ClaimVerdict::by_equation_of_motion);
+        nearly_all, by_equation_of_motion);
     report.paragraph(fmt::format(
         "Growth of ln of the largest deviation (qr) per unit of tau, while synchronised and while "
         "not, up to tau = {:g}, and the sum of the logarithms of T's largest modulus, which it "
         "would be if moduli of single T composed:",
         tau_of_stretches));
-    report.table(table);
+    report.table(
+        {"b (mm)", "growth while synchronised / while not", "by eq. (1)",
+         "sum of ln of T's largest modulus"},
+        rows);
 }
 
 /// Half the Frobenius norm of T over its largest modulus, median of the impacts: at most 1 if T is
@@ -305,8 +293,7 @@ double departure_from_normal(const PaperRun& r) {
 
 /// "The results here demonstrate more details": those of single T.
 void single_matrices(Report& report, RunCache& runs) {
-    Result found =
-        at_22_mm(runs, 2, [](const PaperRun& r) { return growth(r).by_moduli_over_growth(); });
+    Result found = at_22_mm(runs, 2, std::mem_fn(&ImpactGroups::growth_by_T_over_growth));
     found.words += fmt::format(
         ". Half the Frobenius norm of T_i over its largest modulus: {:.1f} (median), at most 1 for "
         "a normal matrix",
@@ -318,18 +305,18 @@ void single_matrices(Report& report, RunCache& runs) {
          "the eigenvalues of T_i \"demonstrate more details and reveal the essence of chaos\""},
         found,
         {{0.8, 1.25}, "1 if the moduli of single T_i composed into growth; within a quarter"},
-        ClaimVerdict::not_reproduced);
+        not_reproduced);
     const auto median_of = [&](auto number) {
-        return typical(runs.neighbours(0.022), number).median;
+        return typical_of_groups(runs, Damping::closed_form, number).median;
     };
     report.bottom_line += fmt::format(
         " Deviations grow while the impacts are not synchronised ({:.3f} per unit of tau at b = 22 "
         "mm, {:.3f} while they are), as the paper says; but the moduli of single T_i, from which "
         "it concludes this, do not compose into growth, and the largest exceeds one at {:.2f} of "
         "the synchronised impacts, too.",
-        median_of([](const PaperRun& r) { return growth(r).desynchronised.rate(); }),
-        median_of([](const PaperRun& r) { return growth(r).synchronised.rate(); }),
-        median_of([](const PaperRun& r) { return above_one(largest_of_T(r).synchronised); }));
+        median_of([](const ImpactGroups& g) { return g.desynchronised.rate(); }),
+        median_of([](const ImpactGroups& g) { return g.synchronised.rate(); }),
+        median_of([](const ImpactGroups& g) { return g.synchronised.above_one(); }));
 }
 
 /// The values at the times in (from, to].
@@ -361,8 +348,7 @@ std::vector<Modulation> modulations(const PaperRun& r) {
     return found;
 }
 
-/// "Area1 and area2 are two typical examples": counts the synchronised stretches that begin with
-/// such an area 2.
+/// "Two typical examples": counts the synchronised stretches that begin with such an area 2.
 void example_of_area_2(Report& report, const PaperRun& r) {
     double examples = 0, stretches = 0;
     for (const auto& [from, to] : synchronised_stretches(r)) {
@@ -378,7 +364,7 @@ void example_of_area_2(Report& report, const PaperRun& r) {
          "nine in ten, if typical; in part: one. The half stands for \"area 2\", whose "
          "extent the paper does not state",
          Band{1 / stretches, 1}},
-        ClaimVerdict::partly);
+        partly);
 }
 
 /// "In area3, the largest value is observed and it has a close relation to the maximal amplitude of
@@ -401,7 +387,7 @@ void area_3(Report& report, const std::vector<PaperRun>& neighbours) {
         {runs, fmt::format(
                    "{:.2f} of {} runs, {} that from the paper's start", runs, is_highest.size(),
                    is_highest.front() ? "also" : "but not")},
-        {{0.9, 1}, "nine in ten; in part: more than half", Band{0.5, 1}}, ClaimVerdict::partly);
+        {{0.9, 1}, "nine in ten; in part: more than half", Band{0.5, 1}}, partly);
     const PaperRun r = run_until(
         neighbours[0].parameters, 10 * window_end,
         {.series = true, .moduli = true, .regime = true});
@@ -419,7 +405,7 @@ void area_3(Report& report, const std::vector<PaperRun>& neighbours) {
          "close; in part: more than chance gives once in 100 times, 2.58 over the root "
          "of their number less one",
          Band{2.58 / std::sqrt(static_cast<double>(T.size()) - 1), 1}},
-        ClaimVerdict::partly);
+        partly);
 }
 
 void figure_9(Report& report, RunCache& runs) {

@@ -6,7 +6,6 @@
 
 #include "../support.hpp"
 #include "core/continuation/branch.hpp"
-#include "core/continuation/orbit_start.hpp"
 #include "core/continuation/periodic_impacts.hpp"
 #include "core/measures/energy.hpp"
 #include "core/measures/manifold.hpp"

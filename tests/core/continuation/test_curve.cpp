@@ -3,8 +3,7 @@
 #include <cmath>
 
 #include "../support.hpp"
-#include "core/continuation/curve.hpp"
-#include "core/continuation/orbit_start.hpp"
+#include "core/continuation/branch.hpp"
 #include "core/stability/orbit.hpp"
 
 using namespace vines;
