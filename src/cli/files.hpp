@@ -4,7 +4,6 @@
 #pragma once
 
 #include <CLI/CLI.hpp>
-#include <memory>
 #include <string>
 #include <string_view>
 
@@ -56,18 +55,19 @@ struct Destination {
 /// std::runtime_error with the reason if the path is a directory or cannot be resolved.
 Destination destination_of(const std::string& path);
 
-class TemporaryFile;
-
 /// Removes all temporary files and blocks the creation and renaming of others for good. Called by
 /// the thread that ends the program after a signal.
 void remove_temporary_files();
 
-/// A file is replaced atomically by end(): other processes see the old or the new content. A stream
-/// is written at once. All members throw std::runtime_error with the reason, or BrokenPipe.
+/// A stream is written at once. A file is replaced atomically by end(), from a temporary file in
+/// its folder, with its mode: other processes see the old or the new content. All members throw
+/// std::runtime_error with the reason, or BrokenPipe.
 class Output {
 public:
     explicit Output(const std::string& path) : Output(destination_of(path)) {}
-    explicit Output(Destination to);
+    /// `lock`: the existing file, if it is already locked.
+    explicit Output(Destination to, Descriptor lock = Descriptor());
+    /// Removes the temporary file, if it has not replaced the target.
     ~Output();
     void write(std::string_view text);
     void end();
@@ -75,8 +75,9 @@ public:
 private:
     const Destination to_;
     /// The existing file, opened and locked: fails if it is not writable or another run writes it.
-    Descriptor old_;
-    std::unique_ptr<TemporaryFile> file_;  ///< empty for a stream
+    Descriptor lock_;
+    std::string temporary_;  ///< path of the temporary file; empty after it has replaced the target
+    Descriptor file_;
 };
 
 /// Writes a whole text.
@@ -102,7 +103,7 @@ public:
 
 private:
     const std::string path_, name_;
-    const Descriptor file_;
+    Descriptor file_;
     std::size_t length_ = 0;
 };
 

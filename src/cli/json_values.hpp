@@ -11,8 +11,6 @@
 
 namespace vines::cli {
 
-inline constexpr double mm = 1e-3;  ///< m; unit of lengths in plots
-
 /// Value at a JSON pointer such as "/exponents/qr/final/0"; null if missing.
 inline const api::Json& part(const api::Json& answer, const std::string& path) {
     static const api::Json none;

@@ -43,7 +43,8 @@ Json parsed(const std::string& name, const std::string& text) {
 }
 
 /// Lists and objects have no query syntax; their text is parsed as JSON.
-void read_json_in_text(Json& object, const FieldTable& table) {
+Json fields_of_pairs(const api::Query& pairs, const FieldTable& table) {
+    Json object = api::from_query(table, pairs);
     for (auto& [name, value] : object.items()) {
         const api::Field* const field = api::find(table, name);
         const bool may_be =
@@ -53,11 +54,6 @@ void read_json_in_text(Json& object, const FieldTable& table) {
         const std::string text = value.get<std::string>();
         if (text.starts_with('[') || text.starts_with('{')) value = parsed(name, text);
     }
-}
-
-Json fields_of_pairs(const api::Query& pairs, const FieldTable& table) {
-    Json object = api::from_query(table, pairs);
-    read_json_in_text(object, table);
     return object;
 }
 
@@ -83,7 +79,7 @@ Json axis_of(const std::string& text) {
 bool belongs_to(const FieldTable& table, const std::string& name) {
     const std::string outer = name.substr(0, name.find('.'));
     if (!api::find(table, "base") || api::find(table, outer)) return true;
-    return !api::find(api::sweep_base_fields(), name) && !api::nearest_name(table, name).empty();
+    return !api::find(api::sweep_base_fields(), name) && !api::did_you_mean(table, name).empty();
 }
 
 [[noreturn]] void refuse_both(const std::string& name, const std::string& other) {
@@ -103,10 +99,8 @@ void set_axes(Json& object, const std::vector<std::string>& axes, const FieldTab
 }  // namespace
 
 void add_request(CLI::App& command, RequestOptions& given) {
-    add_file(
-        command, "request", given.files.input,
-        "file with the request as JSON; - or nothing: stdin");
-    add_output(command, given.files.output);
+    add_file(command, "request", given.input, "file with the request as JSON; - or nothing: stdin");
+    add_output(command, given.output);
     add_request_fields(command, given);
 }
 
@@ -133,6 +127,13 @@ void add_format(
         ->check(CLI::IsMember(choices));
 }
 
+void add_plot_flag(CLI::App& command, RequestOptions& given) {
+    command
+        .add_flag(
+            "--plot", given.plot, "draw plots instead, in the terminal or as SVG with -o FILE.svg")
+        ->excludes(command.get_option("--format"));
+}
+
 void add_axes(CLI::App& command, RequestOptions& given) {
     command
         .add_option(
@@ -141,6 +142,11 @@ void add_axes(CLI::App& command, RequestOptions& given) {
         ->type_name("AXIS")
         ->expected(1)
         ->take_all();
+}
+
+CLI::Option* add_threads(CLI::App& command, RequestOptions& given) {
+    return command.add_option("--threads", given.threads, "number of threads; 0: one per core")
+        ->capture_default_str();
 }
 
 void add_format_of(const std::string& output, Json& request) {
@@ -163,12 +169,13 @@ Json given_fields(const RequestOptions& given, const FieldTable& table) {
 
 Json read_request(const RequestOptions& given, const FieldTable& table) {
     Json request = given_fields(given, table);
-    if (!given.files.input.empty() || !given.is_given()) {
-        Json of_file = api::parse_object(read_all(given.files.input));
+    const bool is_given = !given.query.empty() || !given.fields.empty() || !given.axes.empty();
+    if (!given.input.empty() || !is_given) {
+        Json of_file = api::parse_object(read_all(given.input));
         of_file.merge_patch(request);
         request = std::move(of_file);
     }
-    add_format_of(given.files.output, request);
+    add_format_of(given.output, request);
     return request;
 }
 

@@ -1,18 +1,23 @@
-// Encoding of an answer as JSON, CSV, CBOR or npz. All but CSV end with a provenance. CSV and npz
-// have files of their own. CBOR (RFC 8949) has lists of numbers as typed arrays (RFC 8746): the
-// JSON library writes a binary value's subtype as its tag.
+// JSON and CBOR; CSV and npz are in lists.cpp. CBOR (RFC 8949) has lists of numbers as typed arrays
+// (RFC 8746): the JSON library writes a binary value's subtype as its tag.
 #include "api/format/encode.hpp"
 
 #include <bit>
 #include <utility>
 
 #include "api/cancellation.hpp"
-#include "api/format/answer_list.hpp"
 
 namespace vines::api {
 
 const FormatName& name_of(Format format) {
     return format_names[static_cast<std::size_t>(format)];  // in the order of the enum
+}
+
+std::optional<Format> format_in(const Json& fields, std::span<const FormatName> names) {
+    const auto given = fields.find("format");
+    for (const FormatName& name : names)
+        if (given != fields.end() && *given == name.word) return name.format;
+    return std::nullopt;
 }
 
 namespace {
@@ -36,24 +41,20 @@ std::string json_with_provenance(
 static_assert(
     std::endian::native == std::endian::little);  // required by the tags in answer_json.hpp
 
-/// The entries of a list without typed array, each made by entry(bytes).
+/// The entries of a list as to_cbor() writes them as documented: four doubles as a typed array.
 template <class Entry>
-Json array_of(std::span<const std::uint8_t> bytes, std::size_t size, Entry entry) {
+Json cbor_of(const Entry& entry) {
+    return entry;
+}
+Json cbor_of(const Quadruple& doubles) {
+    Json typed_array = column(doubles);
+    nan_for_null(typed_array.get_binary());
+    return typed_array;
+}
+Json cbor_of(const MatrixByRows& rows) {
     Json array = Json::array();
-    array.get_ref<Json::array_t&>().reserve(bytes.size() / size);
-    for (std::size_t at = 0; at < bytes.size(); at += size)
-        array.push_back(entry(bytes.subspan(at, size)));
+    for (const Quadruple& row : rows) array.push_back(cbor_of(row));
     return array;
-}
-
-Json typed_array(std::span<const std::uint8_t> doubles) {
-    std::vector<std::uint8_t> bytes(doubles.begin(), doubles.end());
-    nan_for_null(bytes);
-    return Json::binary(std::move(bytes), static_cast<std::uint8_t>(Packed::numbers));
-}
-
-Json rows_of(std::span<const std::uint8_t> doubles) {
-    return array_of(doubles, sizeof(Quadruple), typed_array);
 }
 
 /// Turns packed lists into values that to_cbor() writes as documented.
@@ -64,19 +65,22 @@ void prepare(Json& value, const CancelCheck& cancel) {
     }
     if (!value.is_binary()) return;
     cancel.poll();
-    auto& list = value.get_binary();
-    switch (packing_of(value)) {
-        case Packed::numbers: return nan_for_null(list);
-        case Packed::quadruples: value = rows_of(list); return;
-        case Packed::matrices: value = array_of(list, sizeof(MatrixByRows), rows_of); return;
-        case Packed::flags:
-            value = array_of(list, sizeof(bool), [](auto flag) { return Json(flag[0] != 0); });
-            return;
-        default: return;
-    }
+    const PackedList list = list_in_memory(value);
+    if (list.packing == Packed::numbers) return nan_for_null(value.get_binary());
+    if (list.packing == Packed::integers) return;
+    Json array = Json::array();
+    array.get_ref<Json::array_t&>().reserve(list.bytes.size() / entry_size(list.packing));
+    for_each_entry(list, [&array](const auto& entry) { array.push_back(cbor_of(entry)); });
+    value = std::move(array);
 }
 
 }  // namespace
+
+void nan_for_null(std::span<std::uint8_t> doubles) {
+    change_numbers(doubles, [](double number) {
+        return std::isfinite(number) ? number : std::numeric_limits<double>::quiet_NaN();
+    });
+}
 
 std::string cbor_bytes(Json answer, const std::function<bool()>& gives_up) {
     const CancelCheck cancel(gives_up);

@@ -11,66 +11,51 @@ namespace vines::api::document {
 
 namespace {
 
-/// Example requests of each operation.
-const Json& requests() {
-    static const Json all = Json::parse(R"json({
-    "simulate_by_query": {"preset": "fig11", "include": ["regime", "energy"]},
-    "manifold_by_query": {"preset": "fig11", "points": 5},
-    "simulate": {
-        "figure": {
-            "summary": "energies in Fig. 11 of the paper",
-            "value": {"preset": "fig11", "include": ["energy"]}},
-        "machine": {
-            "summary": "a platform of 12 kg with an absorber of 1 % of its mass, in SI",
-            "value": {"m1": 12, "f0": 14, "damping_ratio": 0.006, "mass_ratio": 0.01, "F": 0.0004,
-                "f": 14, "R": 0.4, "b": 0.03, "include": ["impacts", "exponents", "regime"]}},
-        "perturbed": {
-            "summary": "two runs with slightly different starts",
-            "value": {"b": 0.022, "tau_end": 400, "perturbation": {"size": 1e-8}}}},
-    "manifold": {
-        "default": {"summary": "system of Table 1", "value": {"points": 3}}},
-    "sweep": {
-        "clearances": {
-            "summary": "four values of the clearance b",
-            "value": {"base": {"damping": "closed_form"}, "cycles": 500,
-                "axes": [{"parameter": "b", "from": 0.006, "to": 0.015, "count": 4}]}},
-        "worst motion": {
-            "summary": "the largest peak of x between 13 and 15 Hz over the default set of starts",
-            "value": {"base": {"m1": 12, "f0": 14, "damping_ratio": 0.006, "mass_ratio": 0.01,
-                "F": 0.0004, "R": 0.4, "b": 0.03}, "starts": "default set",
-                "reduce": "max over f", "cycles": 200,
-                "axes": [{"parameter": "f", "from": 13, "to": 15, "count": 9}]}}},
-    "basins": {
-        "twins": {
-            "summary": "two motions that are mirror images of each other",
-            "value": {"base": {"damping": "closed_form", "b": 0.0065, "y0": 0}, "count": 100,
-                "box": {"x0": [-0.003, 0.003], "y_dot0": [-0.02, 0.02]}, "pairs": 0}}},
-    "continue": {
-        "clearances": {
-            "summary": "the symmetric two-impact orbit of Table 1, both ends of its stability",
-            "value": {"base": {"damping": "closed_form", "b": 0.015}, "parameter": "b",
-                "from": 0.005, "to": 0.02}}},
-    "design": {
-        "a band": {
-            "summary": "2 kg at 8 Hz, up to 5 m/s^2 between 7.8 and 8.2 Hz, 40 g to spend",
-            "value": {"base": {"m1": 2, "f0": 8, "damping_ratio": 0.01, "m2": 0.04},
-                "f": [7.8, 8.2], "acceleration": 5, "R": 0.2, "b_count": 6, "f_count": 3,
-                "starts": "one", "transient_cycles": 20, "cycles": 20}}},
-    "identify": {
-        "impacts": {
-            "summary": "a list of impacts, in SI: x in m, velocities in m/s",
-            "value": {"preset": "fig20", "b": 0.015, "exponents": ["qr"], "impacts": {
-                "time_s": [1.403385, 1.461862, 1.607638, 1.984774, 2.058772],
-                "x": [0.0004349904, -0.0006110741, 0.002128898, 0.002552786, -0.001091305],
-                "x_velocity_before": [-0.1111193, 0.1141878, 0.05954217, -0.0625302, 0.1405365],
-                "x_velocity_after": [-0.1126914, 0.1123261, 0.06186857, -0.06275421, 0.1378615]
-            }}}}})json");
-    return all;
-}
+/// A valid request of an operation; without a name: the fields of its query.
+struct RequestExample {
+    const char *operation, *name, *summary, *value;
+};
+constexpr RequestExample requests[] = {
+    {"simulate_by_query", nullptr, nullptr,
+     R"({"preset": "fig11", "include": ["regime", "energy"]})"},
+    {"manifold_by_query", nullptr, nullptr, R"({"preset": "fig11", "points": 5})"},
+    {"simulate", "figure", "energies in Fig. 11 of the paper",
+     R"({"preset": "fig11", "include": ["energy"]})"},
+    {"simulate", "machine", "a platform of 12 kg with an absorber of 1 % of its mass, in SI",
+     R"({"m1": 12, "f0": 14, "damping_ratio": 0.006, "mass_ratio": 0.01, "F": 0.0004, "f": 14,
+         "R": 0.4, "b": 0.03, "include": ["impacts", "exponents", "regime"]})"},
+    {"simulate", "perturbed", "two runs with slightly different starts",
+     R"({"b": 0.022, "tau_end": 400, "perturbation": {"size": 1e-8}})"},
+    {"manifold", "default", "system of Table 1", R"({"points": 3})"},
+    {"sweep", "clearances", "four values of the clearance b",
+     R"({"base": {"damping": "closed_form"}, "cycles": 500,
+         "axes": [{"parameter": "b", "from": 0.006, "to": 0.015, "count": 4}]})"},
+    {"sweep", "worst motion",
+     "the largest peak of x between 13 and 15 Hz over the default set of starts",
+     R"({"base": {"m1": 12, "f0": 14, "damping_ratio": 0.006, "mass_ratio": 0.01, "F": 0.0004,
+         "R": 0.4, "b": 0.03}, "starts": "default set", "reduce": "max over f", "cycles": 200,
+         "axes": [{"parameter": "f", "from": 13, "to": 15, "count": 9}]})"},
+    {"basins", "twins", "two motions that are mirror images of each other",
+     R"({"base": {"damping": "closed_form", "b": 0.0065, "y0": 0}, "count": 100,
+         "box": {"x0": [-0.003, 0.003], "y_dot0": [-0.02, 0.02]}, "pairs": 0})"},
+    {"continue", "clearances",
+     "the symmetric two-impact orbit of Table 1, both ends of its stability",
+     R"({"base": {"damping": "closed_form", "b": 0.015}, "parameter": "b", "from": 0.005,
+         "to": 0.02})"},
+    {"design", "a band", "2 kg at 8 Hz, up to 5 m/s^2 between 7.8 and 8.2 Hz, 40 g to spend",
+     R"({"base": {"m1": 2, "f0": 8, "damping_ratio": 0.01, "m2": 0.04}, "f": [7.8, 8.2],
+         "acceleration": 5, "R": 0.2, "b_count": 6, "f_count": 3, "starts": "one",
+         "transient_cycles": 20, "cycles": 20})"},
+    {"identify", "impacts", "a list of impacts, in SI: x in m, velocities in m/s",
+     R"({"preset": "fig20", "b": 0.015, "exponents": ["qr"], "impacts": {
+         "time_s": [1.403385, 1.461862, 1.607638, 1.984774, 2.058772],
+         "x": [0.0004349904, -0.0006110741, 0.002128898, 0.002552786, -0.001091305],
+         "x_velocity_before": [-0.1111193, 0.1141878, 0.05954217, -0.0625302, 0.1405365],
+         "x_velocity_after": [-0.1126914, 0.1123261, 0.06186857, -0.06275421, 0.1378615]}})"}};
 
-/// The first request example of an operation, in key order.
-const Json& first_request(const char* operation) {
-    return requests()[operation].begin()->at("value");
+/// The first request example of an operation.
+Json first_request(std::string_view operation) {
+    return Json::parse(std::ranges::find(requests, operation, &RequestExample::operation)->value);
 }
 
 Json answer_to(const char* operation, const char* route) {
@@ -118,7 +103,15 @@ Json design_line() {
 
 }  // namespace
 
-Json request_example(const std::string& operation) { return requests().value(operation, Json()); }
+Json request_example(const std::string& operation) {
+    Json examples;
+    for (const RequestExample& r : requests) {
+        if (operation != r.operation) continue;
+        if (!r.name) return Json::parse(r.value);
+        examples[r.name] = {{"summary", r.summary}, {"value", Json::parse(r.value)}};
+    }
+    return examples;
+}
 
 Json answer_example(const std::string& schema) {
     static const Json answers = {

@@ -11,28 +11,29 @@ Json request_of(const FieldTable& fields, const std::vector<std::string>& requir
 
 /// The schema of the value, without description and default.
 Json value_schema(const Field& f) {
-    Json one = number();
+    Json one = schema_of(number);
     if (f.range) {
         one["minimum"] = f.range->minimum;
         one["maximum"] = f.range->maximum;
     }
-    Json word = f.choices.empty() ? text() : one_of(f.choices);
+    Json text = f.choices.empty() ? schema_of(word) : one_of(f.choices);
     switch (f.type) {
         case FieldType::number: return one;
         case FieldType::integer: one["type"] = "integer"; return one;
-        case FieldType::choice: return word;
-        case FieldType::choices: return list_of(word);
+        case FieldType::choice: return text;
+        case FieldType::choices: return list_of(text);
         case FieldType::interval: return list_of(one, 2);
-        case FieldType::intervals: return list_of(interval());
-        case FieldType::integers: return list_of(whole());
-        case FieldType::numbers: return f.range ? Json{{"anyOf", {numbers(), one}}} : numbers();
+        case FieldType::intervals: return list_of(interval);
+        case FieldType::integers: return list_of(whole);
+        case FieldType::numbers:
+            return f.range ? Json{{"anyOf", {list_of(number), one}}} : list_of(number);
         case FieldType::object:
             return !f.fields.empty() ? request_of(f.fields)
                                      : reference(f.name == "axis" ? "Axis" : "SweepBase");
         case FieldType::objects:
             // All lists of objects are of these two kinds.
             Json objects = list_of(reference(f.name == "axes" ? "Axis" : "Start"));
-            return f.choices.empty() ? objects : Json{{"anyOf", {objects, word}}};
+            return f.choices.empty() ? objects : Json{{"anyOf", {objects, text}}};
     }
     return {};
 }
@@ -44,7 +45,7 @@ std::string description_of(const Field& f) {
     return all;
 }
 
-Json schema_of(const Field& f) {
+Json schema_with_default(const Field& f) {
     Json schema = value_schema(f);
     if (!f.fallback.is_null()) schema["default"] = f.fallback;
     return schema;
@@ -53,7 +54,7 @@ Json schema_of(const Field& f) {
 Json request_of(const FieldTable& fields, const std::vector<std::string>& required) {
     Json properties = Json::object();
     for (const Field& f : fields) {
-        Json& schema = properties[f.name] = schema_of(f);
+        Json& schema = properties[f.name] = schema_with_default(f);
         schema["description"] = description_of(f);
     }
     Json request = {
@@ -69,10 +70,10 @@ void add_query(
             add_query(f.fields, f.name + ".", example, list);
             continue;
         }
-        Json schema = schema_of(f);
+        Json schema = schema_with_default(f);
         std::string description = description_of(f);
         if (f.type == FieldType::intervals) {
-            schema = text();
+            schema = schema_of(word);
             description += "; written as from,to;from,to";
         }
         Json parameter = {
@@ -96,11 +97,11 @@ Json impact_list_columns() {
 }
 
 /// Permits `other` in place of the values of a field.
-void permit(Json& request, const char* name, const Json& other) {
+void permit(Json& request, const char* name, const Schema& other) {
     Json& field = request["properties"][name];
     const Json description = field["description"];
     field.erase("description");
-    field = {{"anyOf", {field, other}}, {"description", description}};
+    field = {{"anyOf", {field, other.json}}, {"description", description}};
 }
 
 }  // namespace
@@ -116,7 +117,7 @@ void add_requests(Json& schemas) {
     schemas["ManifoldRequest"] = request_of(manifold_fields() + form_fields());
     schemas["IdentifyRequest"] = request_of(identify_fields() + form_fields());
     const Json measured = object_of(
-        {{"record", map_of(numbers()),
+        {{"record", map_of(list_of(number)),
           "columns: time_s, displacement_m, acceleration_m_s2; other units in a name "
           "(displacement_mm, time (ms)) are converted"},
          {"impacts", impact_list_columns(),
@@ -126,10 +127,10 @@ void add_requests(Json& schemas) {
     schemas["SweepRequest"]["properties"]["axes"].update({{"minItems", 1}, {"maxItems", 3}});
     schemas["BasinsRequest"] = request_of(basins_fields(), {"box"});
     schemas["ContinueRequest"] = request_of(continue_fields(), {"parameter", "from", "to"});
-    permit(schemas["ContinueRequest"], "switch", flag());
+    permit(schemas["ContinueRequest"], "switch", flag);
     schemas["DesignRequest"] = request_of(design_fields(), {"base"});
     for (const char* name : {"f", "acceleration", "F", "initial_velocity", "b", "R", "m2"})
-        permit(schemas["DesignRequest"], name, number());
+        permit(schemas["DesignRequest"], name, number);
     schemas["SweepBase"] = request_of(sweep_base_fields());
     schemas["Axis"] = request_of(axis_fields(), {"parameter"});
     schemas["Start"] = request_of(start_fields());

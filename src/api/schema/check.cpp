@@ -139,11 +139,6 @@ void check_field(const Checked& c, const Json& value) {
     }
 }
 
-std::string unknown_field(const FieldTable& table, const std::string& name) {
-    const std::string nearest = nearest_name(table, name);
-    return "unknown field" + (nearest.empty() ? "" : "; did you mean " + nearest + "?");
-}
-
 constexpr std::size_t longest_text = 2 * longest_echo;
 
 /// Visits values depth first until `left` of them are copied: the text of each has at least two
@@ -178,7 +173,8 @@ std::vector<FieldError> check(const FieldTable& table, const Json& object) {
         if (const Field* f = find(table, name)) check_field({*f, errors}, value);
         else
             errors.push_back(
-                {pointer(name), beginning_of(value), nullptr, unknown_field(table, name)});
+                {pointer(name), beginning_of(value), nullptr,
+                 "unknown field" + did_you_mean(table, name)});
     }
     return errors;
 }
