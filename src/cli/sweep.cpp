@@ -127,13 +127,11 @@ struct SweepRun {
     int threads;
 };
 
-/// Receives the line of a point.
-using LineHandler = std::function<void(std::size_t index, const std::string& line)>;
-
 /// Passes the lines to `take` in order of completion, one at a time, until a signal stops the
-/// sweep. An exception of `take` ends it and is rethrown. Returns a warning about all points, or
-/// "".
-std::string compute(const SweepRun& run, const LineHandler& take) {
+/// sweep. An exception of `take` ends it and is rethrown. Returns a warning about all points.
+std::string compute(
+    const SweepRun& run,
+    const std::function<void(std::size_t index, const std::string& line)>& take) {
     ProgressBar bar(run.total - run.request.plan.lines.size(), run.total);
     struct : SignalControl {
         std::atomic<bool> given_up = false;

@@ -42,11 +42,6 @@ std::string encoded(
     Json answer, Format format, const std::optional<Provenance>& provenance,
     const std::function<bool()>& gives_up = {});
 
-/// One table: an object of lists of equal length, one column each. A list of exponents has four
-/// columns, a list of matrices sixteen; their numbers follow the name. Null is an empty cell.
-/// Problem 422 naming the tables if the answer does not have exactly one.
-std::string csv_text(const Json& answer, const std::function<bool()>& gives_up = {});
-
 /// CBOR with lists of numbers as typed arrays (float64, int32, little-endian) and null in them as
 /// NaN. Lists of exponents or matrices are arrays of typed arrays.
 std::string cbor_bytes(Json answer, const std::function<bool()>& gives_up = {});
@@ -56,9 +51,6 @@ std::string cbor_bytes(Json answer, const std::function<bool()>& gives_up = {});
 std::string npz_bytes(
     Json answer, const std::function<bool()>& gives_up = {},
     const Json& only_in_files = Json::object());
-
-/// Replaces infinities, which stand for null, by NaN.
-void nan_for_null(std::span<std::uint8_t> doubles);
 
 /// A value as a cell of CSV: empty for null, words in quotation marks where necessary.
 void put_csv_value(const Json& value, std::string& text);
