@@ -1,12 +1,16 @@
-// Input and output files of a command. An output path leads to a Destination: a stream, or a
-// regular file, which Output replaces by a complete new one and AppendFile extends. While a run has
-// a file open, it is locked against other runs of this program.
+// Input and output files of a command, and the JSON in them. An output path leads to a Destination:
+// a stream, or a regular file, which Output replaces by a complete new one and AppendFile extends.
+// While a run has a file open, it is locked against other runs of this program.
 #pragma once
 
 #include <CLI/CLI.hpp>
+#include <limits>
 #include <string>
 #include <string_view>
+#include <vector>
 
+#include "api/parse.hpp"
+#include "api/problem.hpp"
 #include "program/descriptor.hpp"
 
 namespace vines::cli {
@@ -106,5 +110,39 @@ private:
     Descriptor file_;
     std::size_t length_ = 0;
 };
+
+// The JSON of answers.
+
+/// Value at a JSON pointer such as "/exponents/qr/final/0"; null if missing.
+inline const api::Json& part(const api::Json& answer, const std::string& path) {
+    static const api::Json none;
+    const api::Json::json_pointer at(path);
+    return answer.contains(at) ? answer[at] : none;
+}
+
+/// NaN if it is no number.
+inline double number_of(const api::Json& value) {
+    return value.is_number() ? value.get<double>() : std::numeric_limits<double>::quiet_NaN();
+}
+
+inline std::vector<double> numbers_of(const api::Json& list, double unit = 1) {
+    std::vector<double> numbers;
+    for (const api::Json& entry : list) numbers.push_back(number_of(entry) / unit);
+    return numbers;
+}
+
+/// Empty if it is no string.
+inline std::string word_of(const api::Json& value) {
+    return value.is_string() ? value.get<std::string>() : "";
+}
+
+/// An answer or a line of a sweep; a discarded value (is_discarded()) for a text that is no object.
+inline api::Json parse_answer(std::string_view text) {
+    try {
+        return api::parse_object(text);
+    } catch (const api::Problem&) {
+        return api::Json::value_t::discarded;
+    }
+}
 
 }  // namespace vines::cli

@@ -19,7 +19,6 @@
 #include "api/schema/field.hpp"
 #include "cli/exit.hpp"
 #include "cli/files.hpp"
-#include "cli/json_values.hpp"
 #include "cli/terminal.hpp"
 #include "plot/plot.hpp"
 

@@ -26,13 +26,6 @@ std::pair<std::string, std::string> split_at_equals(
     return {text.substr(0, equals), text.substr(equals + 1)};
 }
 
-api::Query pairs_of(const RequestOptions& given) {
-    api::Query pairs = api::parse_query(given.query);
-    for (const std::string& field : given.fields)
-        pairs.push_back(split_at_equals(field, "-p", "b=0.02"));
-    return pairs;
-}
-
 /// Parses the JSON value of a field. Duplicate names are refused, as in a file.
 Json parsed(const std::string& name, const std::string& text) {
     try {
@@ -157,8 +150,10 @@ void add_format_of(const std::string& output, Json& request) {
 }
 
 Json given_fields(const RequestOptions& given, const FieldTable& table) {
-    api::Query own, base;
-    for (auto& pair : pairs_of(given)) (belongs_to(table, pair.first) ? own : base).push_back(pair);
+    api::Query pairs = api::parse_query(given.query), own, base;
+    for (const std::string& field : given.fields)
+        pairs.push_back(split_at_equals(field, "-p", "b=0.02"));
+    for (auto& pair : pairs) (belongs_to(table, pair.first) ? own : base).push_back(pair);
     Json object = fields_of_pairs(own, table);
     if (object.contains("base") && !base.empty()) refuse_both("base", base[0].first);
     set_axes(object, given.axes, table);

@@ -23,7 +23,6 @@
 #include "api/sweep.hpp"
 #include "cli/exit.hpp"
 #include "cli/files.hpp"
-#include "cli/json_values.hpp"
 #include "cli/request_fields.hpp"
 #include "cli/sweep_file.hpp"
 #include "cli/terminal.hpp"

@@ -12,7 +12,6 @@
 #include "api/sweep.hpp"
 #include "cli/exit.hpp"
 #include "cli/files.hpp"
-#include "cli/json_values.hpp"
 #include "program/process.hpp"
 
 namespace vines::cli {

@@ -15,7 +15,6 @@
 #include "api/version.hpp"
 #include "cli/exit.hpp"
 #include "cli/files.hpp"
-#include "cli/json_values.hpp"
 #include "cli/sweep_file.hpp"
 #include "program/process.hpp"
 
@@ -106,12 +105,6 @@ std::optional<Recomputed> recomputed(const api::Provenance& p, const std::string
     return stopped() ? std::nullopt : std::optional(std::move(computed));
 }
 
-/// Returns whether the run ended early, so that another attempt can get further.
-bool ended_early(const Json& answer) {
-    const std::string reason = word_of(part(answer, "/status/reason"));
-    return reason == "deadline" || reason == "interrupted";
-}
-
 /// Prints the program versions of an answer and of its recomputation.
 void print_builds(const Json& answer, const Json& provenance) {
     const auto build = [](const std::string& version, const std::string& commit) {
@@ -150,7 +143,8 @@ int verify_answer(const api::Unsealed& stored, const VerifyOptions& o) {
     print_builds(stored.answer, stored.provenance);
     print_line(stored.is_unmodified ? "sha256: matches" : "sha256: the answer was modified");
     const std::string record = record_of(stored.provenance, o);
-    if (ended_early(stored.answer)) {
+    const std::string reason = word_of(part(stored.answer, "/status/reason"));
+    if (reason == "deadline" || reason == "interrupted") {
         print_line("not decided: a time limit or a signal ended the run early");
         return incomplete;
     }

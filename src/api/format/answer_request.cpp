@@ -38,8 +38,7 @@ bool has(const Json& value, std::span<const std::string> path) {
     return value.is_object() && value.contains(path[0]) && has(value[path[0]], path.subspan(1));
 }
 
-/// Reduces an object, or each object of an array, to the selected members; false if nothing is
-/// left.
+/// Reduces an object, or each object of an array, to the selected members; false if none is left.
 bool select(Json& value, const Selection& selection) {
     if (selection.whole || value.is_null()) return true;
     bool any = false;

@@ -68,8 +68,7 @@ struct AnswerList {
     }
 };
 
-/// The list of a packed value or of an array of numbers, flags or strings, which may hold nulls;
-/// nullopt for any other value.
+/// The list of a packed value or of an array of numbers, flags or strings, nulls among them.
 std::optional<AnswerList> list_of(const Json& value) {
     AnswerList list;
     const auto all_are = [&value](auto... is) {
@@ -334,8 +333,7 @@ std::string npy_of(const AnswerList& list) {
     }
 }
 
-/// Calls visit(path, list) for each list of an answer, in order; a path joins names with points.
-/// Lists of objects are skipped.
+/// Calls visit(path, list) for each list but those of objects; a path joins names with points.
 template <class Visit>
 void visit_lists(const Json& answer, const Visit& visit, const std::string& path = "") {
     if (answer.is_object()) {

@@ -1,6 +1,5 @@
-// Request schemas and query parameters, generated from the field tables against which requests are
-// checked; the columns of a measurement; examples of requests, and the responses to them, which are
-// computed.
+// Request schemas and query parameters, generated from the field tables; examples of requests, and
+// the responses to them, which are computed.
 #include <algorithm>
 #include <string_view>
 #include <utility>
@@ -95,8 +94,7 @@ void add_query(
     }
 }
 
-/// A laboratory can leave out columns that it does not measure. Other columns are permitted and
-/// ignored.
+/// All columns are optional; others are permitted and ignored.
 Json impact_list_columns() {
     Keys keys;
     for (const Quantity& q : members_of(impact_list)) keys = {keys, column_of(q)};

@@ -60,8 +60,7 @@ Keys derived() {
     return {"derived", object_of(keys), "values derived from these"};
 }
 
-/// The three kinds of windows: of a run, with histories; an entry of `windows`, without; of a
-/// measurement.
+/// The window of a run, with histories; an entry of `windows`, without; that of a measurement.
 enum class Of { run, windows, measurement };
 
 Keys estimator_keys(Of of, const Keys& of_history = {}) {

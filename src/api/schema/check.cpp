@@ -40,8 +40,7 @@ struct Checked {
     bool is_permitted(const Json& value) const {
         return field.choices.empty() ? value.is_string() : is_choice(value);
     }
-    /// Checks each entry of an array of this kind by check(JSON Pointer relative to the field,
-    /// entry).
+    /// Calls check(where, entry) for each entry of an array of this kind; `where` as in fail().
     template <class Check>
     void each(const Json& array, const std::string& kind, Check check) const {
         if (!array.is_array()) return fail("", array, "must be an array of " + kind);

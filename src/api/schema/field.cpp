@@ -62,8 +62,7 @@ std::size_t distance(const std::string& a, const std::string& b) {
     return row.back();
 }
 
-/// The text as a number if all of it is one finite number; otherwise the text, which check()
-/// reports.
+/// The text as a finite number; otherwise the text, which check() reports.
 Json number_or_text(const std::string& text) {
     double value;
     const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);

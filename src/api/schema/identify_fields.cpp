@@ -1,5 +1,4 @@
-// The table of /v1/identify: the fields of /v1/simulate that apply to a record, and how to read the
-// columns of the record.
+// The table of /v1/identify, and the channels of a record.
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
