@@ -15,7 +15,7 @@ namespace {
 constexpr std::array always_kept = {"version", "status", "warnings", "provenance"};
 
 // Limits of the field `fields`: more than any answer has.
-constexpr std::size_t most_fields = 1000, longest_field = 200, longest_text = 16384;
+constexpr std::size_t most_fields = 1000, longest_field = 200, longest_option = 16384;
 
 /// The selected part of a value: all of it, or these members.
 struct Selection {
@@ -118,10 +118,10 @@ AnswerForm take_form(Json& fields, const FieldTable& table) {
         if (!fields.contains(f.name)) continue;
         Json& value = fields[f.name];
         // A value of a query is text.
-        if (value.is_string() && value.get_ref<const std::string&>().size() > longest_text)
+        if (value.is_string() && value.get_ref<const std::string&>().size() > longest_option)
             refuse(
                 {{"/" + f.name, value, nullptr,
-                  f.name + " has at most " + std::to_string(longest_text) + " bytes"}});
+                  f.name + " has at most " + std::to_string(longest_option) + " bytes"}});
         form[f.name] = value.is_string() ? value_of_text(f.type, value) : std::move(value);
         fields.erase(f.name);
     }
