@@ -39,9 +39,7 @@ std::string first_argument_error(const CLI::App& app, const std::string& first) 
         return fmt::format("no subcommand given; expected one of: {}", fmt::join(names, ", "));
     if (first[0] == '-') return app.get_option_no_throw(first) ? "" : "unknown flag " + first;
     if (std::find(names.begin(), names.end(), first) != names.end()) return "";
-    const std::string nearest = vines::api::nearest_name(names, first);
-    return "unknown subcommand " + first +
-           (nearest.empty() ? "" : "; did you mean " + nearest + "?");
+    return "unknown subcommand " + first + vines::api::did_you_mean(names, first);
 }
 
 /// Removes the environment variables of all other subcommands: they can be meant for another run

@@ -1,15 +1,19 @@
-// `vines simulate`, `vines manifold` and `vines identify`: one answer, without the service's
-// deadline and limits. `identify` evaluates a measured record, given as CSV or JSON.
+// `vines simulate`, `manifold` and `identify`: one answer, without the service's deadline and
+// limits. `vines continue` and `design`: lines that are written as they are computed. After a
+// signal a run gives the answer up to that time, a continuation ends with the lines so far, a
+// design with the best absorber so far.
+#include <functional>
 #include <memory>
 #include <optional>
 #include <string>
 #include <utility>
 
+#include "api/continuation.hpp"
+#include "api/design.hpp"
 #include "api/format/answer_request.hpp"
 #include "api/parse.hpp"
 #include "cli/exit.hpp"
 #include "cli/files.hpp"
-#include "cli/plots.hpp"
 #include "cli/request_fields.hpp"
 #include "cli/terminal.hpp"
 #include "program/process.hpp"
@@ -17,24 +21,6 @@
 namespace vines::cli {
 
 namespace {
-
-struct AnswerOptions {
-    /// For an identification the record, and all fields of a CSV file.
-    RequestOptions request;
-    bool plot = false;  ///< draw instead of writing the answer
-};
-
-/// Computes the answer. A run stopped by a signal gives the answer up to that time.
-api::Answer computed(api::AnswerRequest asked) {
-    const api::Stop stop{
-        .requested = stopped,
-        .reason = "interrupted",
-        .message = "ended by a signal, before tau_end"};
-    const Stoppable stoppable;
-    return api::compute_answer(std::move(asked), {.stop = stop});
-}
-
-int final_code() { return stopped() ? stopped_code() : complete; }
 
 void write(const std::string& path, api::Answer answer, api::Format format) {
     if (format != api::Format::json)
@@ -46,42 +32,42 @@ void write(const std::string& path, api::Answer answer, api::Format format) {
     out.end();
 }
 
-/// Draws the parts of the request that have plots.
-int draw_run(const std::string& path, api::Json request) {
-    if (!request.contains("include") && !request.contains("fields"))
-        request["include"] = {"series", "impacts", "exponents", "regime"};
-    request["format"] = "json";
-    api::Answer answer = computed(api::read_answer_request("/v1/simulate", std::move(request)));
-    const std::string text =
-        api::encoded(std::move(answer.json), api::Format::json, answer.provenance);
-    draw(plots_of(text), path);
-    return final_code();
-}
-
-int run(const AnswerOptions& o, const char* route, const api::FieldTable& table) {
-    if (o.plot) check_plot_file(o.request.files.output);
-    api::Json request = read_request(o.request, table);
-    if (o.plot) return draw_run(o.request.files.output, std::move(request));
+int run(const RequestOptions& o, const char* route, const api::FieldTable& table) {
+    if (o.plot) check_plot_file(o.output);
+    api::Json request = read_request(o, table);
+    if (o.plot) {
+        if (!request.contains("include") && !request.contains("fields"))
+            request["include"] = {"series", "impacts", "exponents", "regime"};  // these have plots
+        request["format"] = "json";
+    }
     api::AnswerRequest asked = api::read_answer_request(route, std::move(request));
     const api::Format format = asked.form.format.value_or(api::Format::json);
-    write(o.request.files.output, computed(std::move(asked)), format);
-    return final_code();
+    const api::Stop stop{
+        .requested = stopped,
+        .reason = "interrupted",
+        .message = "ended by a signal, before tau_end"};
+    std::optional<Stoppable> stoppable(std::in_place);
+    api::Answer answer = api::compute_answer(std::move(asked), {.stop = stop});
+    stoppable.reset();
+    if (o.plot) draw(api::encoded(std::move(answer.json), format, answer.provenance), o.output);
+    else write(o.output, std::move(answer), format);
+    return stopped() ? stopped_code() : complete;
 }
 
-api::AnswerRequest read_identification(const std::string& text, const AnswerOptions& o) {
-    api::Json fields = given_fields(o.request, api::identify_fields());
+api::AnswerRequest read_identification(const std::string& text, const RequestOptions& o) {
+    api::Json fields = given_fields(o, api::identify_fields());
     const bool is_columns = !is_json(text);
     if (!is_columns) {
         api::Json request = api::parse_object(text, {}, api::Columns::packed);
         request.merge_patch(fields);
         fields = std::move(request);
     }
-    add_format_of(o.request.files.output, fields);
+    add_format_of(o.output, fields);
     return api::read_answer_request("/v1/identify", std::move(fields), {text, is_columns});
 }
 
-int identify(const AnswerOptions& o) {
-    std::string text = read_all(o.request.files.input);
+int identify(const RequestOptions& o) {
+    std::string text = read_all(o.input);
     // Long steps on a list of impacts do not check stopped(); after the grace period this message
     // is printed and the process ends.
     std::optional<Stoppable> stoppable(
@@ -91,7 +77,7 @@ int identify(const AnswerOptions& o) {
     const api::Format format = asked.form.format.value_or(api::Format::json);
     api::Answer answer;
     try {
-        StageLine line;
+        StatusLine line;
         answer = api::compute_answer(
             std::move(asked), {.stop = {.requested = stopped},
                                .reached = [&line](IdentificationStage stage, int round) {
@@ -103,18 +89,60 @@ int identify(const AnswerOptions& o) {
         return stopped_code();
     }
     stoppable.reset();
-    write(o.request.files.output, std::move(answer), format);
+    write(o.output, std::move(answer), format);
     return complete;
+}
+
+// --- Lines ---
+
+using TakeLine = std::function<void(const std::string& line)>;
+
+/// Writes `start` and the lines that compute() passes on. Returns the exit code; compute() returns
+/// false if a signal has stopped it.
+int write_lines(
+    const std::string& path, api::Json start,
+    const std::function<bool(SignalControl& control, const TakeLine& take)>& compute) {
+    Output out(path);
+    const Stoppable stoppable;
+    SignalControl control;
+    const TakeLine take = [&out](const std::string& line) { out.write(line + "\n"); };
+    take(api::json_text(std::move(start)));
+    const bool is_complete = compute(control, take);
+    out.end();
+    return is_complete ? complete : stopped_code();
+}
+
+int continue_branches(const RequestOptions& o) {
+    const api::ContinueRequest request =
+        api::read_continue_request(read_request(o, api::continue_fields()));
+    return write_lines(
+        o.output, api::continuation_start(request),
+        [&request](SignalControl& control, const TakeLine& take) {
+            api::ContinuationCount count;
+            const bool is_complete = api::run_continuation(request, control, count, take);
+            if (is_complete) take(api::continuation_done(count));
+            return is_complete;
+        });
+}
+
+int design_absorber(const RequestOptions& o) {
+    const api::DesignRequest request =
+        api::read_design_request(read_request(o, api::design_fields()));
+    return write_lines(
+        o.output, api::design_start(request), [&](SignalControl& control, const TakeLine& take) {
+            api::DesignCount count;
+            return api::run_design(request, o.thread_count(), control, count, take);
+        });
 }
 
 }  // namespace
 
 Command add_simulate(CLI::App& app) {
-    const auto options = std::make_shared<AnswerOptions>();
+    const auto options = std::make_shared<RequestOptions>();
     CLI::App* command = app.add_subcommand("simulate", "one run: POST /v1/simulate");
-    add_request(*command, options->request);
-    add_format(*command, options->request);
-    add_plot_flag(*command, options->plot);
+    add_request(*command, *options);
+    add_format(*command, *options);
+    add_plot_flag(*command, *options);
     return with_exit_codes(
         command, [options] { return run(*options, "/v1/simulate", api::simulate_fields()); },
         "vines simulate -p preset=fig3 --plot\n"
@@ -124,30 +152,54 @@ Command add_simulate(CLI::App& app) {
 }
 
 Command add_manifold(CLI::App& app) {
-    const auto options = std::make_shared<AnswerOptions>();
+    const auto options = std::make_shared<RequestOptions>();
     CLI::App* command =
         app.add_subcommand("manifold", "the slow invariant manifold: POST /v1/manifold");
-    add_request(*command, options->request);
-    add_format(*command, options->request);
+    add_request(*command, *options);
+    add_format(*command, *options);
     return with_exit_codes(
         command, [options] { return run(*options, "/v1/manifold", api::manifold_fields()); },
         "vines manifold -p b=0.02 | jq .manifold.recommended");
 }
 
 Command add_identify(CLI::App& app) {
-    const auto options = std::make_shared<AnswerOptions>();
+    const auto options = std::make_shared<RequestOptions>();
     CLI::App* command =
         app.add_subcommand("identify", "impacts, exponents of a record: POST /v1/identify");
-    add_file(
-        *command, "record", options->request.files.input, "CSV or JSON file; - or nothing: stdin");
-    add_output(*command, options->request.files.output);
-    add_request_fields(*command, options->request);
-    add_format(*command, options->request);
+    add_file(*command, "record", options->input, "CSV or JSON file; - or nothing: stdin");
+    add_output(*command, options->output);
+    add_request_fields(*command, *options);
+    add_format(*command, *options);
     return with_exit_codes(
         command, [options] { return identify(*options); },
         "vines example record > record.csv\n"
         "vines identify record.csv -p preset=fig20 | jq '.restitution, .verdict'\n"
         "vines identify record.csv -q 'preset=fig20&b=0.015&fields=impacts' --format csv");
+}
+
+Command add_continue(CLI::App& app) {
+    const auto options = std::make_shared<RequestOptions>();
+    CLI::App* command =
+        app.add_subcommand("continue", "branches of periodic orbits: POST /v1/continue");
+    add_request(*command, *options);
+    return with_exit_codes(
+        command, [options] { return continue_branches(*options); },
+        "vines continue -p b=0.015 -p damping=closed_form -p parameter=b -p from=0.004 -p to=0.02\n"
+        "vines continue request.json -p switch=2 -o branches.ndjson\n"
+        "jq -c 'select(.type == \"special\") | {kind, b, reason}' branches.ndjson");
+}
+
+Command add_design(CLI::App& app) {
+    const auto options = std::make_shared<RequestOptions>();
+    CLI::App* command =
+        app.add_subcommand("design", "the best absorber over a band: POST /v1/design");
+    add_request(*command, *options);
+    add_threads(*command, *options);
+    return with_exit_codes(
+        command, [options] { return design_absorber(*options); },
+        "vines design -p m1=2 -p f0=8 -p damping_ratio=0.01 -p m2=0.04 -p f=7,9 \\\n"
+        "  -p acceleration=5 | jq -r 'select(.type == \"done\") | .sentence'\n"
+        "vines design machine.json -p objective=x_acceleration_max -o design.ndjson");
 }
 
 }  // namespace vines::cli

@@ -1,6 +1,5 @@
-// Subcommands that print data built into the program: `vines presets` (the paper's figures and
-// tables as requests), `parameters` (the fields of requests), `openapi` (the document that the
-// service has at /v1/openapi.json) and `example` (an example record).
+// Subcommands that print data built into the program: `vines presets`, `parameters`, `openapi` and
+// `example`.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -25,8 +24,7 @@ namespace vines::cli {
 
 namespace {
 
-/// A command that prints text(name), of all names if `name` is empty, or json(). `about_name` is
-/// the help text of the positional `name`.
+/// A command that prints text(name), of all names if `name` is empty, or json().
 Command with_listing(
     CLI::App* command, api::Json (*json)(), std::string (*text)(const std::string& name),
     const std::string& about_name, const std::string& examples) {
@@ -50,24 +48,11 @@ Command with_listing(
         examples);
 }
 
-/// Throws Problem 422 for an unknown name; `nearest` is the nearest known name or empty.
-[[noreturn]] void refuse_name(
-    const std::string& kind, const std::string& name, const std::string& nearest) {
+/// Throws Problem 422 for a name that is none of `known`, names or a table.
+[[noreturn]] void refuse_name(const std::string& kind, const auto& known, const std::string& name) {
     throw api::Problem(
-        422, "no " + kind + " has the name " + api::shortened(name) +
-                 (nearest.empty() ? "" : "; did you mean " + nearest + "?"));
-}
-
-std::string all_presets() {
-    std::size_t name = 0, source = 0;
-    for (const api::Preset& p : api::presets()) {
-        name = std::max(name, p.name.size());
-        source = std::max(source, p.source.size());
-    }
-    std::string text;
-    for (const api::Preset& p : api::presets())
-        text += fmt::format("{:<{}}  {:<{}}  {}\n", p.name, name, p.source, source, p.title);
-    return text;
+        422,
+        "no " + kind + " has the name " + api::shortened(name) + api::did_you_mean(known, name));
 }
 
 std::string text_of(const api::Preset& p) {
@@ -79,25 +64,28 @@ std::string text_of(const api::Preset& p) {
 }
 
 std::string text_of_presets(const std::string& name) {
-    if (name.empty()) return all_presets();
     std::vector<std::string> names;
+    std::size_t width = 0, source = 0;
     for (const api::Preset& p : api::presets()) {
         if (p.name == name) return text_of(p);
         names.push_back(p.name);
+        width = std::max(width, p.name.size());
+        source = std::max(source, p.source.size());
     }
-    refuse_name("preset", name, api::nearest_name(names, name));
+    if (!name.empty()) refuse_name("preset", names, name);
+    std::string text;
+    for (const api::Preset& p : api::presets())
+        text += fmt::format("{:<{}}  {:<{}}  {}\n", p.name, width, p.source, source, p.title);
+    return text;
 }
 
 using api::Field;
 using api::FieldTable;
 
-const std::vector<std::pair<const char*, const FieldTable&>>& tables() {
-    static const std::vector<std::pair<const char*, const FieldTable&>> list = {
-        {"simulate", api::simulate_fields()}, {"manifold", api::manifold_fields()},
-        {"sweep", api::sweep_fields()},       {"an axis of a sweep", api::axis_fields()},
-        {"identify", api::identify_fields()}, {"any answer", api::form_fields()}};
-    return list;
-}
+constexpr std::pair<const char*, const FieldTable& (*)()> tables[] = {
+    {"simulate", api::simulate_fields}, {"manifold", api::manifold_fields},
+    {"sweep", api::sweep_fields},       {"an axis of a sweep", api::axis_fields},
+    {"identify", api::identify_fields}, {"any answer", api::form_fields}};
 
 std::string fallback_of(const Field& f) {
     if (!f.fallback_note.empty()) return f.fallback_note;
@@ -108,15 +96,6 @@ std::string line_of(const Field& f) {
     return fmt::format(
         "  {:<21} {:<14} {}\n", f.name, f.unit.empty() ? api::enum_name(f.type) : f.unit,
         f.description);
-}
-
-std::string all_fields() {
-    std::string text;
-    for (const auto& [title, table] : tables()) {
-        text += fmt::format("{}{}\n", text.empty() ? "" : "\n", title);
-        for (const Field& f : table) text += line_of(f);
-    }
-    return text;
 }
 
 std::string text_of(const Field& f) {
@@ -134,16 +113,18 @@ std::string text_of(const Field& f) {
 
 /// All fields, or a field in each table that has it. Throws Problem 422 if no table has it.
 std::string text_of_fields(const std::string& name) {
-    if (name.empty()) return all_fields();
     std::string text;
     FieldTable all;
-    for (const auto& [title, table] : tables()) {
-        all.insert(all.end(), table.begin(), table.end());
-        const Field* const field = api::find(table, name);
-        if (!field) continue;
-        text += fmt::format("{}{}\n", text.empty() ? "" : "\n", title) + text_of(*field);
+    for (const auto& [title, table] : tables) {
+        const FieldTable& fields = table();
+        all = std::move(all) + fields;
+        if (!name.empty() && !api::find(fields, name)) continue;
+        text += fmt::format("{}{}\n", text.empty() ? "" : "\n", title);
+        for (const Field& f : fields)
+            if (name.empty()) text += line_of(f);
+            else if (f.name == name) text += text_of(f);
     }
-    if (text.empty()) refuse_name("field", name, api::nearest_name(all, name));
+    if (text.empty()) refuse_name("field", all, name);
     return text;
 }
 

@@ -18,9 +18,8 @@ enum ExitCode : int {
     incomplete = 3  ///< stopped by SIGTERM, or points are missing; the output so far is usable
 };
 
-/// The command, ended by signals: from its start on a signal ends the process at once with 128 +
-/// its number, whatever it waits for, and removes temporary files; within a Stoppable it only
-/// requests a stop.
+/// The command, ended by signals: a signal ends the process at once with 128 + its number and
+/// removes temporary files; within a Stoppable it only requests a stop.
 Command ended_by_signals(Command command);
 
 /// The same for `run`. An api::Problem becomes exit code 2, and the command's help shows the

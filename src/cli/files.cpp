@@ -75,8 +75,7 @@ std::string folder_of(const std::string& path) {
     return folder.empty() ? "." : folder;
 }
 
-/// Hidden, so that a shell's pattern does not match it. The name does not contain the target's,
-/// which can have the maximum length.
+/// A hidden name without the target's, which can have the maximum length.
 std::string new_path(const std::string& target) {
     std::random_device random;
     return fmt::format("{}/.vines-{:08x}{:08x}", folder_of(target), random(), random());
@@ -128,9 +127,8 @@ bool is_still_at(int descriptor, const std::string& path) {
 }
 
 /// Opens a file for writing (flags of open()) and locks it against other runs of this program until
-/// it is closed. Returns an empty descriptor if the file is missing and O_CREAT is not set. Throws
-/// std::runtime_error at once if another run holds the lock, or with the reason if it cannot be
-/// opened. File systems without locks are written unlocked.
+/// it is closed; throws std::runtime_error if another run holds the lock. Empty if the file is
+/// missing and O_CREAT is not set. File systems without locks are written unlocked.
 Descriptor open_locked(const Destination& to, int flags) {
     for (;;) {
         Descriptor file(::open(to.file.c_str(), flags | O_CLOEXEC, new_mode));
@@ -169,80 +167,50 @@ Destination destination_of(const std::string& path) {
     return {path, std::move(stream), ""};
 }
 
-/// A file that replaces another one atomically. Created in the target's folder, with the target's
-/// mode if that exists. The destructor removes it unless it has replaced the target; so does
-/// remove_temporary_files() when a signal ends the program.
-class TemporaryFile {
-public:
-    /// `name` is used in messages. The constructor and all members throw std::runtime_error with
-    /// the reason.
-    TemporaryFile(std::string target, std::string name)
-        : target_(std::move(target)),
-          name_(std::move(name)) {
-        struct stat old{};
-        const bool replaces = ::stat(target_.c_str(), &old) == 0;
-        const std::lock_guard lock(temporaries().mutex);
-        do {
-            path_ = new_path(target_);
-            file_ = Descriptor(::open(
-                path_.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC,
-                replaces ? private_mode : new_mode));
-        } while (!file_ && errno == EEXIST);
-        if (!file_) fail_at("write", name_);
-        temporaries().paths.insert(path_);
-        if (replaces) copy_owner_and_mode(file_.number(), old);
-    }
-    ~TemporaryFile() {
-        const std::lock_guard lock(temporaries().mutex);
-        if (path_.empty()) return;
-        ::unlink(path_.c_str());
-        temporaries().paths.erase(path_);
-    }
-    TemporaryFile(const TemporaryFile&) = delete;
-    TemporaryFile& operator=(const TemporaryFile&) = delete;
-
-    void write(std::string_view text) {
-        if (const int failed = write_fully(file_.number(), text)) fail_at("write", name_, failed);
-    }
-
-    /// Syncs the file to disk first, so that a power failure leaves the old or the new content.
-    void replace_target() {
-        if (::fsync(file_.number()) != 0) fail_at("write", name_);
-        {
-            const std::lock_guard lock(temporaries().mutex);
-            if (::rename(path_.c_str(), target_.c_str()) != 0) fail_at("write", name_);
-            temporaries().paths.erase(std::exchange(path_, ""));
-        }
-        sync_folder(target_);
-    }
-
-private:
-    const std::string target_, name_;
-    std::string path_;  ///< empty after it has replaced the target
-    Descriptor file_;
-};
-
 void remove_temporary_files() {
     temporaries().mutex.lock();  // never unlocked
     for (const std::string& path : temporaries().paths) ::unlink(path.c_str());
 }
 
-Output::Output(Destination to) : to_(std::move(to)) {
+Output::Output(Destination to, Descriptor lock) : to_(std::move(to)), lock_(std::move(lock)) {
     if (to_.is_stream()) return;
-    old_ = open_locked(to_, O_WRONLY);
-    file_ = std::make_unique<TemporaryFile>(to_.file, to_.name);
+    if (!lock_) lock_ = open_locked(to_, O_WRONLY);
+    struct stat old{};
+    const bool replaces = ::stat(to_.file.c_str(), &old) == 0;
+    const std::lock_guard guard(temporaries().mutex);
+    do {
+        temporary_ = new_path(to_.file);
+        file_ = Descriptor(::open(
+            temporary_.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC,
+            replaces ? private_mode : new_mode));
+    } while (!file_ && errno == EEXIST);
+    if (!file_) fail_at("write", to_.name);
+    temporaries().paths.insert(temporary_);
+    if (replaces) copy_owner_and_mode(file_.number(), old);
 }
 
-Output::~Output() = default;
+Output::~Output() {
+    if (temporary_.empty()) return;
+    const std::lock_guard guard(temporaries().mutex);
+    ::unlink(temporary_.c_str());
+    temporaries().paths.erase(temporary_);
+}
 
 void Output::write(std::string_view text) {
-    if (file_) return file_->write(text);
-    if (const int failed = write_fully(to_.stream.number(), text))
-        fail_at("write", to_.name, failed);
+    const int to = to_.is_stream() ? to_.stream.number() : file_.number();
+    if (const int failed = write_fully(to, text)) fail_at("write", to_.name, failed);
 }
 
 void Output::end() {
-    if (file_) file_->replace_target();
+    if (to_.is_stream()) return;
+    // A power failure leaves the old or the new content.
+    if (::fsync(file_.number()) != 0) fail_at("write", to_.name);
+    {
+        const std::lock_guard guard(temporaries().mutex);
+        if (::rename(temporary_.c_str(), to_.file.c_str()) != 0) fail_at("write", to_.name);
+        temporaries().paths.erase(std::exchange(temporary_, ""));
+    }
+    sync_folder(to_.file);
 }
 
 void write_all(const std::string& path, const std::string& text) {
@@ -287,9 +255,9 @@ void AppendFile::sync() {
 }
 
 void AppendFile::replace(std::string_view content) {
-    TemporaryFile copy(path_, name_);
+    Output copy({name_, Descriptor(), path_}, std::move(file_));
     copy.write(content);
-    copy.replace_target();
+    copy.end();
 }
 
 }  // namespace vines::cli

@@ -1,13 +1,16 @@
-// Input and output files of a command. An output path leads to a Destination: a stream, or a
-// regular file, which Output replaces by a complete new one and AppendFile extends. While a run has
-// a file open, it is locked against other runs of this program.
+// Input and output files of a command, and the JSON in them. An output path leads to a Destination:
+// a stream, or a regular file, which Output replaces by a complete new one and AppendFile extends.
+// While a run has a file open, it is locked against other runs of this program.
 #pragma once
 
 #include <CLI/CLI.hpp>
-#include <memory>
+#include <limits>
 #include <string>
 #include <string_view>
+#include <vector>
 
+#include "api/parse.hpp"
+#include "api/problem.hpp"
 #include "program/descriptor.hpp"
 
 namespace vines::cli {
@@ -56,18 +59,19 @@ struct Destination {
 /// std::runtime_error with the reason if the path is a directory or cannot be resolved.
 Destination destination_of(const std::string& path);
 
-class TemporaryFile;
-
 /// Removes all temporary files and blocks the creation and renaming of others for good. Called by
 /// the thread that ends the program after a signal.
 void remove_temporary_files();
 
-/// A file is replaced atomically by end(): other processes see the old or the new content. A stream
-/// is written at once. All members throw std::runtime_error with the reason, or BrokenPipe.
+/// A stream is written at once. A file is replaced atomically by end(), from a temporary file in
+/// its folder, with its mode: other processes see the old or the new content. All members throw
+/// std::runtime_error with the reason, or BrokenPipe.
 class Output {
 public:
     explicit Output(const std::string& path) : Output(destination_of(path)) {}
-    explicit Output(Destination to);
+    /// `lock`: the existing file, if it is already locked.
+    explicit Output(Destination to, Descriptor lock = Descriptor());
+    /// Removes the temporary file, if it has not replaced the target.
     ~Output();
     void write(std::string_view text);
     void end();
@@ -75,8 +79,9 @@ public:
 private:
     const Destination to_;
     /// The existing file, opened and locked: fails if it is not writable or another run writes it.
-    Descriptor old_;
-    std::unique_ptr<TemporaryFile> file_;  ///< empty for a stream
+    Descriptor lock_;
+    std::string temporary_;  ///< path of the temporary file; empty after it has replaced the target
+    Descriptor file_;
 };
 
 /// Writes a whole text.
@@ -102,8 +107,42 @@ public:
 
 private:
     const std::string path_, name_;
-    const Descriptor file_;
+    Descriptor file_;
     std::size_t length_ = 0;
 };
+
+// The JSON of answers.
+
+/// Value at a JSON pointer such as "/exponents/qr/final/0"; null if missing.
+inline const api::Json& part(const api::Json& answer, const std::string& path) {
+    static const api::Json none;
+    const api::Json::json_pointer at(path);
+    return answer.contains(at) ? answer[at] : none;
+}
+
+/// NaN if it is no number.
+inline double number_of(const api::Json& value) {
+    return value.is_number() ? value.get<double>() : std::numeric_limits<double>::quiet_NaN();
+}
+
+inline std::vector<double> numbers_of(const api::Json& list, double unit = 1) {
+    std::vector<double> numbers;
+    for (const api::Json& entry : list) numbers.push_back(number_of(entry) / unit);
+    return numbers;
+}
+
+/// Empty if it is no string.
+inline std::string word_of(const api::Json& value) {
+    return value.is_string() ? value.get<std::string>() : "";
+}
+
+/// An answer or a line of a sweep; a discarded value (is_discarded()) for a text that is no object.
+inline api::Json parse_answer(std::string_view text) {
+    try {
+        return api::parse_object(text);
+    } catch (const api::Problem&) {
+        return api::Json::value_t::discarded;
+    }
+}
 
 }  // namespace vines::cli

@@ -1,6 +1,4 @@
 // Plots of answers, drawn as SVG or in characters; `vines plot`.
-#include "cli/plots.hpp"
-
 #include <fmt/format.h>
 #include <unistd.h>
 
@@ -21,18 +19,20 @@
 #include "api/schema/field.hpp"
 #include "cli/exit.hpp"
 #include "cli/files.hpp"
-#include "cli/json_values.hpp"
 #include "cli/terminal.hpp"
+#include "plot/plot.hpp"
 
 namespace vines::cli {
 
 namespace {
 
-// --- A run ---
-
 using api::Json;
 using plot::Curve;
 using plot::Plot;
+
+constexpr double mm = 1e-3;  // m; unit of lengths
+
+// --- A run ---
 
 /// Returns whether the object has these lists with equal lengths and the first has no gaps.
 bool has(const Json& object, const std::vector<const char*>& names) {
@@ -65,13 +65,6 @@ std::string title_of(const Json& answer) {
     std::erase(parts, "");
     if (!std::isfinite(b)) return api::joined(parts);
     return fmt::format("b = {:.4g} mm", b) + (parts.empty() ? "" : ": ") + api::joined(parts);
-}
-
-Plot displacement(const Json& series) {
-    return {
-        .x_label = "tau",
-        .y_label = "x (mm)",
-        .curves = {{.x = numbers_of(series["tau"]), .y = numbers_of(series["x"], mm)}}};
 }
 
 /// Includes the contacts between the samples, where |y - x| = b.
@@ -118,12 +111,15 @@ Plot exponents(const Json& history) {
     return p;
 }
 
-/// Plots of x, of y - x with its contacts, and of the exponents' history by QR, for those that the
-/// answer of POST /v1/simulate has.
+/// Plots of x, of y - x with its contacts, and of the exponents' history by QR, as far as present.
 std::vector<Plot> run_plots(const Json& answer) {
     std::vector<Plot> plots;
     const Json &series = part(answer, "/series"), &history = part(answer, "/exponents/qr/history");
-    if (has(series, {"tau", "x"})) plots.push_back(displacement(series));
+    if (has(series, {"tau", "x"}))
+        plots.push_back(
+            {.x_label = "tau",
+             .y_label = "x (mm)",
+             .curves = {{.x = numbers_of(series["tau"]), .y = numbers_of(series["x"], mm)}}});
     if (has(series, {"tau", "x", "y"})) plots.push_back(relative_displacement(answer));
     if (has(history, {"tau", "lambda1"})) plots.push_back(exponents(history));
     if (!plots.empty()) plots[0].title = title_of(answer);
@@ -141,8 +137,7 @@ struct Abscissa {
     double of(const Json& point) const { return number_of(point.value(parameter, Json())) / unit; }
 };
 
-/// The axis with more than one value, or the first one if all have one. Throws std::runtime_error
-/// if several axes have more than one value.
+/// The axis with more than one value, or the first one. Throws std::runtime_error if several have.
 Abscissa abscissa_of(const Json& start, const std::vector<Json>& points) {
     std::optional<std::string> first, found;
     for (const Json& axis : start["axes"]) {
@@ -177,16 +172,14 @@ Plot section(const std::vector<Json>& points, const Abscissa& at) {
 
 /// The words that a field of a point can have, each with its colour.
 struct Words {
-    const char *name, *field;
+    std::string field;
     std::vector<std::pair<std::string, const char*>> colours;
 };
 const Words verdicts = {
     "verdict",
-    "/verdict",
     {{"chaotic", plot::red}, {"regular", plot::colours[0]}, {"not_decided", plot::grey}}};
 const Words regimes = {
     "regime",
-    "/regime",
     {{"I", "#b8780b"},
      {"II", plot::red},
      {"III", plot::colours[0]},
@@ -199,11 +192,11 @@ const Words regimes = {
 Plot by_word(
     const std::vector<Json>& points, const Abscissa& at, const Words& words,
     const std::string& label, const char* value, double unit = 1, const char* error = nullptr) {
-    Plot p{.y_label = label + ", by " + words.name};
+    Plot p{.y_label = label + ", by " + words.field};
     for (const auto& [word, colour] : words.colours) {
         Curve curve{.colour = colour, .label = word, .dots = true};
         for (const Json& point : points)
-            if (word_of(part(point, words.field)) == word)
+            if (word_of(part(point, "/" + words.field)) == word)
                 add(curve, at.of(point), number_of(part(point, value)) / unit,
                     error ? number_of(part(point, error)) : 0);
         if (!curve.x.empty()) p.curves.push_back(std::move(curve));
@@ -224,24 +217,7 @@ std::string fields_except_axes(const Json& request) {
 }
 
 /// Plots of the section (bifurcation diagram), of lambda1 by verdict, and of the response by regime
-/// (the peaks, for a reduced sweep), for those that the points have. Throws std::runtime_error for
-/// a sweep along more than one axis. `start` and `points` are lines of a sweep.
-std::vector<Plot> sweep_plots(const Json& start, const std::vector<Json>& points) {
-    if (points.empty()) return {};
-    const Abscissa at = abscissa_of(start, points);
-    std::vector<Plot> plots = {
-        section(points, at),
-        by_word(points, at, verdicts, "lambda1", "/lambda/0", 1, "/standard_error/0"),
-        by_word(points, at, regimes, "rms ratio of x", "/x_rms_ratio"),
-        by_word(points, at, regimes, "max |x| (mm)", "/x_max", mm),
-        by_word(points, at, regimes, "peak of |x| (mm)", "/x_peak", mm)};
-    plots[1].levels = {0};
-    std::erase_if(plots, [](const Plot& p) { return p.curves.empty() || p.curves[0].x.empty(); });
-    for (Plot& p : plots) p.x_label = at.label();
-    if (!plots.empty()) plots[0].title = fields_except_axes(start.value("request", Json::object()));
-    return plots;
-}
-
+/// (the peaks, for a reduced sweep), as far as present.
 std::vector<Plot> sweep_plots(const std::string& text) {
     std::istringstream lines(text);
     Json start;
@@ -257,15 +233,26 @@ std::vector<Plot> sweep_plots(const std::string& text) {
     }
     if (!start.contains("axes") || !start["axes"].is_array())
         throw std::runtime_error("the first line of the sweep is missing");
-    return sweep_plots(start, points);
+    if (points.empty()) return {};
+    const Abscissa at = abscissa_of(start, points);
+    std::vector<Plot> plots = {
+        section(points, at),
+        by_word(points, at, verdicts, "lambda1", "/lambda/0", 1, "/standard_error/0"),
+        by_word(points, at, regimes, "rms ratio of x", "/x_rms_ratio"),
+        by_word(points, at, regimes, "max |x| (mm)", "/x_max", mm),
+        by_word(points, at, regimes, "peak of |x| (mm)", "/x_peak", mm)};
+    plots[1].levels = {0};
+    std::erase_if(plots, [](const Plot& p) { return p.curves.empty() || p.curves[0].x.empty(); });
+    for (Plot& p : plots) p.x_label = at.label();
+    if (!plots.empty()) plots[0].title = fields_except_axes(start.value("request", Json::object()));
+    return plots;
 }
 
 // --- Drawing ---
 
 constexpr int picture_width = 860, plot_height = 230;  // px
 
-/// Returns whether the locale states a character set other than UTF-8. Without a locale it is
-/// false.
+/// Returns whether the locale states a character set other than UTF-8.
 bool has_ascii_alone() {
     for (const char* name : {"LC_ALL", "LC_CTYPE", "LANG"}) {
         const char* const value = std::getenv(name);
@@ -295,15 +282,6 @@ std::string in_characters(const std::vector<Plot>& plots, bool is_stdout) {
 
 }  // namespace
 
-std::vector<Plot> plots_of(const std::string& answer) {
-    const bool is_sweep = answer.starts_with(R"({"type":)");
-    std::vector<Plot> plots = is_sweep ? sweep_plots(answer) : run_plots(api::parse_object(answer));
-    if (plots.empty())
-        throw std::runtime_error(
-            "nothing to draw: plots need a run's series or exponents, or points of a sweep");
-    return plots;
-}
-
 void check_plot_file(const std::string& path) {
     constexpr std::string_view others[] = {".pdf", ".png", ".jpg",  ".jpeg", ".gif", ".webp",
                                            ".eps", ".ps",  ".tiff", ".tif",  ".bmp"};
@@ -316,16 +294,16 @@ void check_plot_file(const std::string& path) {
                 path, ending.substr(1)));
 }
 
-void draw(const std::vector<Plot>& plots, const std::string& path) {
+void draw(const std::string& answer, const std::string& path) {
+    const bool is_sweep = answer.starts_with(R"({"type":)");
+    const std::vector<Plot> plots =
+        is_sweep ? sweep_plots(answer) : run_plots(api::parse_object(answer));
+    if (plots.empty())
+        throw std::runtime_error(
+            "nothing to draw: plots need a run's series or exponents, or points of a sweep");
     write_all(
         path, path.ends_with(".svg") ? plot::svg(plots, picture_width, plot_height)
                                      : in_characters(plots, is_standard(path)));
-}
-
-void add_plot_flag(CLI::App& command, bool& plot) {
-    command
-        .add_flag("--plot", plot, "draw plots instead, in the terminal or as SVG with -o FILE.svg")
-        ->excludes(command.get_option("--format"));
 }
 
 Command add_plot(CLI::App& app) {
@@ -339,7 +317,7 @@ Command add_plot(CLI::App& app) {
         command,
         [files] {
             check_plot_file(files->output);
-            draw(plots_of(read_all(files->input)), files->output);
+            draw(read_all(files->input), files->output);
             return complete;
         },
         "vines simulate -p preset=fig11 -o answer.json; vines plot answer.json\n"

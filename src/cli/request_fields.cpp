@@ -26,13 +26,6 @@ std::pair<std::string, std::string> split_at_equals(
     return {text.substr(0, equals), text.substr(equals + 1)};
 }
 
-api::Query pairs_of(const RequestOptions& given) {
-    api::Query pairs = api::parse_query(given.query);
-    for (const std::string& field : given.fields)
-        pairs.push_back(split_at_equals(field, "-p", "b=0.02"));
-    return pairs;
-}
-
 /// Parses the JSON value of a field. Duplicate names are refused, as in a file.
 Json parsed(const std::string& name, const std::string& text) {
     try {
@@ -43,7 +36,8 @@ Json parsed(const std::string& name, const std::string& text) {
 }
 
 /// Lists and objects have no query syntax; their text is parsed as JSON.
-void read_json_in_text(Json& object, const FieldTable& table) {
+Json fields_of_pairs(const api::Query& pairs, const FieldTable& table) {
+    Json object = api::from_query(table, pairs);
     for (auto& [name, value] : object.items()) {
         const api::Field* const field = api::find(table, name);
         const bool may_be =
@@ -53,11 +47,6 @@ void read_json_in_text(Json& object, const FieldTable& table) {
         const std::string text = value.get<std::string>();
         if (text.starts_with('[') || text.starts_with('{')) value = parsed(name, text);
     }
-}
-
-Json fields_of_pairs(const api::Query& pairs, const FieldTable& table) {
-    Json object = api::from_query(table, pairs);
-    read_json_in_text(object, table);
     return object;
 }
 
@@ -83,7 +72,7 @@ Json axis_of(const std::string& text) {
 bool belongs_to(const FieldTable& table, const std::string& name) {
     const std::string outer = name.substr(0, name.find('.'));
     if (!api::find(table, "base") || api::find(table, outer)) return true;
-    return !api::find(api::sweep_base_fields(), name) && !api::nearest_name(table, name).empty();
+    return !api::find(api::sweep_base_fields(), name) && !api::did_you_mean(table, name).empty();
 }
 
 [[noreturn]] void refuse_both(const std::string& name, const std::string& other) {
@@ -103,10 +92,8 @@ void set_axes(Json& object, const std::vector<std::string>& axes, const FieldTab
 }  // namespace
 
 void add_request(CLI::App& command, RequestOptions& given) {
-    add_file(
-        command, "request", given.files.input,
-        "file with the request as JSON; - or nothing: stdin");
-    add_output(command, given.files.output);
+    add_file(command, "request", given.input, "file with the request as JSON; - or nothing: stdin");
+    add_output(command, given.output);
     add_request_fields(command, given);
 }
 
@@ -133,6 +120,13 @@ void add_format(
         ->check(CLI::IsMember(choices));
 }
 
+void add_plot_flag(CLI::App& command, RequestOptions& given) {
+    command
+        .add_flag(
+            "--plot", given.plot, "draw plots instead, in the terminal or as SVG with -o FILE.svg")
+        ->excludes(command.get_option("--format"));
+}
+
 void add_axes(CLI::App& command, RequestOptions& given) {
     command
         .add_option(
@@ -143,6 +137,11 @@ void add_axes(CLI::App& command, RequestOptions& given) {
         ->take_all();
 }
 
+CLI::Option* add_threads(CLI::App& command, RequestOptions& given) {
+    return command.add_option("--threads", given.threads, "number of threads; 0: one per core")
+        ->capture_default_str();
+}
+
 void add_format_of(const std::string& output, Json& request) {
     const std::string extension = std::filesystem::path(output).extension().string();
     if (!request.contains("format"))
@@ -151,8 +150,10 @@ void add_format_of(const std::string& output, Json& request) {
 }
 
 Json given_fields(const RequestOptions& given, const FieldTable& table) {
-    api::Query own, base;
-    for (auto& pair : pairs_of(given)) (belongs_to(table, pair.first) ? own : base).push_back(pair);
+    api::Query pairs = api::parse_query(given.query), own, base;
+    for (const std::string& field : given.fields)
+        pairs.push_back(split_at_equals(field, "-p", "b=0.02"));
+    for (auto& pair : pairs) (belongs_to(table, pair.first) ? own : base).push_back(pair);
     Json object = fields_of_pairs(own, table);
     if (object.contains("base") && !base.empty()) refuse_both("base", base[0].first);
     set_axes(object, given.axes, table);
@@ -163,12 +164,13 @@ Json given_fields(const RequestOptions& given, const FieldTable& table) {
 
 Json read_request(const RequestOptions& given, const FieldTable& table) {
     Json request = given_fields(given, table);
-    if (!given.files.input.empty() || !given.is_given()) {
-        Json of_file = api::parse_object(read_all(given.files.input));
+    const bool is_given = !given.query.empty() || !given.fields.empty() || !given.axes.empty();
+    if (!given.input.empty() || !is_given) {
+        Json of_file = api::parse_object(read_all(given.input));
         of_file.merge_patch(request);
         request = std::move(of_file);
     }
-    add_format_of(given.files.output, request);
+    add_format_of(given.output, request);
     return request;
 }
 

@@ -5,21 +5,21 @@
 #include <string>
 #include <vector>
 
-#include "api/schema/json.hpp"
 #include "api/schema/tables.hpp"
 #include "cli/files.hpp"
+#include "program/process.hpp"
 
 namespace vines::cli {
 
-struct RequestOptions {
-    Files files;                      ///< of the request and of the answer
+struct RequestOptions : Files {
     std::string query;                ///< URL query syntax
     std::vector<std::string> fields;  ///< NAME=VALUE each
     std::vector<std::string> axes;    ///< of a sweep: NAME=FROM:TO:COUNT[:log] or NAME=A,B,C
     std::string format;               ///< of the answer; empty: the request's format
+    bool plot = false;                ///< draw instead of writing the answer
+    int threads = 0;                  ///< 0: one per core
 
-    /// Returns whether the options alone form a request.
-    bool is_given() const { return !query.empty() || !fields.empty() || !axes.empty(); }
+    int thread_count() const { return threads > 0 ? threads : cores(); }
 };
 
 /// Adds the files and the options for fields; the second function without the files.
@@ -29,7 +29,10 @@ void add_request_fields(CLI::App& command, RequestOptions& options);
 void add_format(
     CLI::App& command, RequestOptions& options, const api::FieldTable& table = api::form_fields(),
     const std::string& about = "");
+/// --plot, which excludes --format. Call add_format() before.
+void add_plot_flag(CLI::App& command, RequestOptions& options);
 void add_axes(CLI::App& command, RequestOptions& options);
+CLI::Option* add_threads(CLI::App& command, RequestOptions& options);
 
 /// The options as a request's JSON, typed by the route's table. If that has a base, fields that are
 /// not in the table are set in the base. Throws Problem 400 for an argument that is not NAME=VALUE

@@ -10,7 +10,6 @@
 #include <exception>
 #include <filesystem>
 #include <functional>
-#include <map>
 #include <memory>
 #include <optional>
 #include <stdexcept>
@@ -24,8 +23,6 @@
 #include "api/sweep.hpp"
 #include "cli/exit.hpp"
 #include "cli/files.hpp"
-#include "cli/json_values.hpp"
-#include "cli/plots.hpp"
 #include "cli/request_fields.hpp"
 #include "cli/sweep_file.hpp"
 #include "cli/terminal.hpp"
@@ -36,14 +33,11 @@ namespace vines::cli {
 
 namespace {
 
-struct SweepOptions {
-    RequestOptions request;
+struct SweepOptions : RequestOptions {
     bool basins = false;  ///< a request of /v1/basins
-    bool plot = false;    ///< draw instead of writing the points
     bool resume = false;  ///< complete the output file instead of refusing to overwrite it
     std::string shard;    ///< i/N, auto, or empty: the whole sweep
     int shards = 0;       ///< N for "auto"; 0: SLURM_ARRAY_TASK_COUNT
-    int threads = 0;      ///< 0: one per core
 };
 
 /// Part of a sweep that one process computes.
@@ -61,10 +55,13 @@ std::string variable(const char* name) {
     return value ? value : "";
 }
 
-/// The same as a number. Throws Problem 422 unless it is a whole number from `least` to `most`.
-std::size_t number_in_variable(const char* name, std::size_t least, std::size_t most) {
+/// The same as a number; nullopt if unset. Throws Problem 422 unless it is a whole number from
+/// `least` to `most`.
+std::optional<std::size_t> number_in_variable(
+    const char* name, std::size_t least, std::size_t most) {
     const std::string text = variable(name);
-    if (const auto value = whole_number(text, least, most)) return *value;
+    const auto value = whole_number(text, least, most);
+    if (value || text.empty()) return value;
     throw api::Problem(
         422,
         fmt::format(
@@ -74,25 +71,24 @@ std::size_t number_in_variable(const char* name, std::size_t least, std::size_t 
 /// `shards`: N if above 0, in place of SLURM_ARRAY_TASK_COUNT. Throws Problem 422 for a missing or
 /// invalid variable.
 Shard shard_of_environment(std::size_t shards) {
+    const auto require = [](bool given, const char* what) {
+        if (!given) throw api::Problem(422, std::string("--shard auto ") + what);
+    };
     if (!variable("SLURM_ARRAY_TASK_ID").empty()) {
-        if (shards == 0 && variable("SLURM_ARRAY_TASK_COUNT").empty())
-            throw api::Problem(
-                422, "--shard auto in a Slurm array needs SLURM_ARRAY_TASK_COUNT or --shards");
-        if (shards == 0) shards = number_in_variable("SLURM_ARRAY_TASK_COUNT", 1, max_shards);
-        const std::size_t first = variable("SLURM_ARRAY_TASK_MIN").empty()
-                                      ? 0
-                                      : number_in_variable("SLURM_ARRAY_TASK_MIN", 0, max_shards);
+        if (shards == 0)
+            shards = number_in_variable("SLURM_ARRAY_TASK_COUNT", 1, max_shards).value_or(0);
+        require(shards > 0, "in a Slurm array needs SLURM_ARRAY_TASK_COUNT or --shards");
+        const std::size_t first =
+            number_in_variable("SLURM_ARRAY_TASK_MIN", 0, max_shards).value_or(0);
         return {
-            number_in_variable("SLURM_ARRAY_TASK_ID", first, first + shards - 1) - first, shards};
+            *number_in_variable("SLURM_ARRAY_TASK_ID", first, first + shards - 1) - first, shards};
     }
-    if (variable("JOB_COMPLETION_INDEX").empty())
-        throw api::Problem(
-            422,
-            "--shard auto needs SLURM_ARRAY_TASK_ID and SLURM_ARRAY_TASK_COUNT, or "
-            "JOB_COMPLETION_INDEX and --shards, in the environment");
-    if (shards == 0)
-        throw api::Problem(422, "--shard auto with JOB_COMPLETION_INDEX needs --shards");
-    return {number_in_variable("JOB_COMPLETION_INDEX", 0, shards - 1), shards};
+    require(
+        !variable("JOB_COMPLETION_INDEX").empty(),
+        "needs SLURM_ARRAY_TASK_ID and SLURM_ARRAY_TASK_COUNT, or JOB_COMPLETION_INDEX and "
+        "--shards, in the environment");
+    require(shards > 0, "with JOB_COMPLETION_INDEX needs --shards");
+    return {*number_in_variable("JOB_COMPLETION_INDEX", 0, shards - 1), shards};
 }
 
 /// Reads "i/N", "" (the whole sweep), or "auto": then i and N are taken from the environment of a
@@ -111,7 +107,7 @@ Shard read_shard(const std::string& text, std::size_t shards) {
 
 /// Throws Problem 422 for incompatible options, before anything is computed.
 void check(const SweepOptions& o, api::Format format, const api::SweepRequest& request) {
-    if (o.plot) check_plot_file(o.request.files.output);
+    if (o.plot) check_plot_file(o.output);
     if ((o.plot || format != api::Format::json) && o.resume)
         throw api::Problem(422, "--resume needs --format ndjson and excludes --plot");
     // Axes with several values, except the one that is reduced (if any).
@@ -130,25 +126,16 @@ struct SweepRun {
     int threads;
 };
 
-/// Stops on a signal, or after a line could not be written.
-class SweepControl : public SignalControl {
-public:
-    bool stop_or_yield() override { return given_up_ || SignalControl::stop_or_yield(); }
-    void give_up() { given_up_ = true; }
-
-private:
-    std::atomic<bool> given_up_ = false;
-};
-
-/// Receives the line of a point.
-using LineHandler = std::function<void(std::size_t index, const std::string& line)>;
-
-/// Passes the lines to `take` in order of completion, one at a time, until all are computed or a
-/// signal stops the sweep. An exception of `take` ends the computation and is rethrown. Returns a
-/// warning about all points, or "".
-std::string compute(const SweepRun& run, const LineHandler& take) {
+/// Passes the lines to `take` in order of completion, one at a time, until a signal stops the
+/// sweep. An exception of `take` ends it and is rethrown. Returns a warning about all points.
+std::string compute(
+    const SweepRun& run,
+    const std::function<void(std::size_t index, const std::string& line)>& take) {
     ProgressBar bar(run.total - run.request.plan.lines.size(), run.total);
-    SweepControl control;
+    struct : SignalControl {
+        std::atomic<bool> given_up = false;
+        bool stop_or_yield() override { return given_up || SignalControl::stop_or_yield(); }
+    } control;
     // Rethrown after all threads have ended: run_sweep() would report the stop instead.
     std::exception_ptr failure;
     std::string warning = api::run_sweep(
@@ -159,7 +146,7 @@ std::string compute(const SweepRun& run, const LineHandler& take) {
                 bar.step();
             } catch (...) {
                 failure = std::current_exception();
-                control.give_up();
+                control.given_up = true;
             }
         });
     if (failure) std::rethrow_exception(failure);
@@ -186,65 +173,26 @@ void refuse_to_overwrite(const std::string& name) {
     throw std::runtime_error(name + " exists already; --resume completes it");
 }
 
-/// Texts of a sweep's lines, brought into the order of their index.
-class LinesInOrder {
-public:
-    /// `indices`: those of all lines, ascending. They must outlive the object.
-    explicit LinesInOrder(const std::vector<std::size_t>& indices) : indices_(indices) {}
-
-    /// Takes the text of a line. Returns the texts that are next in order.
-    std::string add(std::size_t index, std::string text) {
-        waiting_[index] = std::move(text);
-        std::string next;
-        while (!waiting_.empty() && waiting_.begin()->first == indices_[returned_]) {
-            next += waiting_.begin()->second;
-            waiting_.erase(waiting_.begin());
-            ++returned_;
-        }
-        return next;
-    }
-
-    /// Returns the other texts, despite missing ones between them.
-    std::string rest() const {
-        std::string all;
-        for (const auto& [index, text] : waiting_) all += text;
-        return all;
-    }
-
-private:
-    const std::vector<std::size_t>& indices_;
-    std::map<std::size_t, std::string> waiting_;  ///< after a missing one, by index
-    std::size_t returned_ = 0;
-};
-
-/// Parses the file of an earlier run. Throws std::runtime_error if it belongs to another sweep or
+/// The contents of the output file, without an incomplete last line, which is removed. An empty
+/// file gets its first line, `start`. Throws std::runtime_error if it belongs to another sweep or
 /// holds points that are not requested now.
-SweepFile parsed_earlier_file(
-    const std::string& text, const std::string& name, const std::string& start,
+SweepFile begun_file(
+    AppendFile& out, const std::string& name, bool resume, const std::string& start,
     const std::vector<std::size_t>& wanted) {
+    const std::string text = out.read();
+    if (!text.empty() && !resume) refuse_to_overwrite(name);
     SweepFile file = parse_sweep_file(text, name, LineChecks::full);
     if (file.start.empty() ? !start.starts_with(text) : file.start != start)
         throw std::runtime_error(
             name + " belongs to another sweep (or another version): its first line differs");
     for (const auto& [index, line] : file.points)
-        if (!std::binary_search(wanted.begin(), wanted.end(), index))
+        if (!std::ranges::binary_search(wanted, index))
             fail_in_line(
                 name, line.number,
                 fmt::format(
                     "point {} is not requested: the file belongs to another shard or to the whole "
                     "sweep",
                     index));
-    return file;
-}
-
-/// The contents of the output file, without an incomplete last line, which is removed. An empty
-/// file gets its first line, `start`.
-SweepFile begun_file(
-    AppendFile& out, const std::string& name, bool resume, const std::string& start,
-    const std::vector<std::size_t>& wanted) {
-    const std::string text = out.read();
-    if (!text.empty() && !resume) refuse_to_overwrite(name);
-    SweepFile file = parsed_earlier_file(text, name, start, wanted);
     out.truncate(file.complete_bytes);
     if (file.start.empty()) {
         file.start = start;
@@ -282,10 +230,9 @@ bool is_restored(const api::SweepRequest& request, const SweepFile& file, std::s
                   reason.what(), total));
 }
 
-/// Appends each line at once, after removing an incomplete line of a killed run. Once complete, the
-/// points are sorted: if they are not in order, a sorted copy replaces the file. Returns the exit
-/// code. Throws std::runtime_error if the file exists and is not to be resumed, cannot be resumed,
-/// is being written by another run, or a line cannot be written; existing lines are kept.
+/// Appends each line at once. Once complete, the points are sorted: if they are not in order, a
+/// sorted copy replaces the file. Returns the exit code. Throws std::runtime_error if the file
+/// cannot be begun, resumed or written; existing lines are kept.
 int sweep_to_file(SweepRun run, const Destination& to, bool resume) {
     std::error_code not_found;
     if (!resume && std::filesystem::exists(to.file, not_found)) refuse_to_overwrite(to.name);
@@ -314,25 +261,33 @@ int sweep_to_file(SweepRun run, const Destination& to, bool resume) {
     return conclude("", done, run.total, resume_hint);
 }
 
-/// Writes the lines sorted by index, each as soon as all before it are computed: the content of a
-/// complete file. Returns the exit code. Throws std::runtime_error if a line cannot be written,
-/// BrokenPipe if the pipe is closed.
+/// Passes the start line and the points to `write`, sorted by index, each as soon as all before it
+/// are computed; `done`: number of points passed. Returns the warning of compute().
+std::string compute_in_order(
+    const SweepRun& run, std::atomic<std::size_t>& done,
+    const std::function<void(const std::string& text)>& write) {
+    api::LinesInOrder lines(run.request.plan.lines);
+    const auto pass = [&](const std::string& text) {
+        write(text);
+        done += static_cast<std::size_t>(std::ranges::count(text, '\n'));
+    };
+    write(api::json_text(api::sweep_start(run.request)) + "\n");
+    std::string warning = compute(run, [&](std::size_t index, const std::string& line) {
+        pass(lines.add(index, line + "\n"));
+    });
+    pass(lines.rest());
+    return warning;
+}
+
+/// Writes the content of a complete file. Returns the exit code.
 int sweep_to_stream(SweepRun run, Destination to) {
     run.request.plan.in_order = true;
     Output out(std::move(to));
-    LinesInOrder lines(run.request.plan.lines);
     std::atomic<std::size_t> written = 0;
-    const auto write = [&](const std::string& text) {
-        out.write(text);
-        written += static_cast<std::size_t>(std::ranges::count(text, '\n'));
-    };
     // A reader that does not read can block a write for any time, hence a Stoppable with a limit.
     const Stoppable stoppable([&] { print_stopped(written, run.total); });
-    out.write(api::json_text(api::sweep_start(run.request)) + "\n");
-    const std::string warning = compute(run, [&](std::size_t index, const std::string& line) {
-        write(lines.add(index, line + "\n"));
-    });
-    write(lines.rest());
+    const std::string warning =
+        compute_in_order(run, written, [&](const std::string& text) { out.write(text); });
     if (written == run.total) out.write(api::done_line(run.total, &run.request));
     out.end();
     return conclude(warning, written, run.total);
@@ -355,32 +310,28 @@ int sweep_to_table(SweepRun run, api::Format format, const std::string& path) {
 
 /// Computes all points, or those up to a signal, and draws them. Returns the exit code.
 int sweep_drawn(const SweepRun& run, const std::string& path) {
-    std::string lines = api::json_text(api::sweep_start(run.request)) + "\n";
-    LinesInOrder points(run.request.plan.lines);
-    std::size_t done = 0;
+    std::string lines;
+    std::atomic<std::size_t> done = 0;
     std::optional<Stoppable> stoppable(std::in_place);
-    const std::string warning = compute(run, [&](std::size_t index, const std::string& line) {
-        lines += points.add(index, line + "\n");
-        ++done;
-    });
+    const std::string warning =
+        compute_in_order(run, done, [&](const std::string& text) { lines += text; });
     stoppable.reset();
-    lines += points.rest();
-    if (done > 0) draw(plots_of(lines), path);
+    if (done > 0) draw(lines, path);
     return conclude(warning, done, run.total);
 }
 
 int sweep(const SweepOptions& o) {
-    const std::string& path = o.request.files.output;
-    const api::Json given =
-        read_request(o.request, o.basins ? api::basins_fields() : api::sweep_fields());
+    const std::string& path = o.output;
+    const api::Json given = read_request(o, o.basins ? api::basins_fields() : api::sweep_fields());
     api::SweepRequest request = o.basins ? api::read_basins_request(given, max_points)
                                          : api::read_sweep_request(given, max_points);
     const Shard shard = read_shard(o.shard, static_cast<std::size_t>(o.shards));
     request.plan.lines = api::shard_of(request, shard.index, shard.count);
-    const api::Format format = api::sweep_format(given).value_or(api::Format::json);
+    const api::Format format =
+        api::format_in(given, api::sweep_format_names).value_or(api::Format::json);
     check(o, format, request);
     const std::size_t total = request.plan.lines.size();
-    SweepRun run{std::move(request), total, o.threads > 0 ? o.threads : cores()};
+    SweepRun run{std::move(request), total, o.thread_count()};
     if (o.plot) return sweep_drawn(run, path);
     if (format != api::Format::json) return sweep_to_table(std::move(run), format, path);
     Destination to = destination_of(path);
@@ -388,38 +339,40 @@ int sweep(const SweepOptions& o) {
                           : sweep_to_file(std::move(run), to, o.resume);
 }
 
-/// Options about the part that is computed, and its threads.
-void add_part(CLI::App& command, SweepOptions& options) {
-    command.add_flag(
-        "--resume", options.resume, "complete the output file of a run that was stopped or killed");
-    command.add_option(
-        "--shard", options.shard,
+/// The subcommand of sweeps or, with `basins`, of basins; `point`: what a line is about.
+Command add_lines(
+    CLI::App* command, bool basins, const std::string& point, const std::string& examples) {
+    const auto options = std::make_shared<SweepOptions>();
+    options->basins = basins;
+    add_request(*command, *options);
+    add_axes(*command, *options);
+    add_format(
+        *command, *options, basins ? api::basins_fields() : api::sweep_fields(),
+        fmt::format(
+            ", one JSON line per {0} as it is computed; others: a table of all {0}s", point));
+    if (!basins) add_plot_flag(*command, *options);
+    command->add_flag(
+        "--resume", options->resume,
+        "complete the output file of a run that was stopped or killed");
+    command->add_option(
+        "--shard", options->shard,
         "compute only a part: i/N with i from 0, or auto: from SLURM_ARRAY_TASK_ID and _COUNT, or "
         "JOB_COMPLETION_INDEX and --shards");
-    command.add_option("--shards", options.shards, "N for --shard auto")
+    command->add_option("--shards", options->shards, "N for --shard auto")
         ->envname("VINES_SHARDS")
         ->check(number_between(1, 1000000));
-    command.add_option("--threads", options.threads, "number of threads; 0: one per core")
+    add_threads(*command, *options)
         ->envname("VINES_COMPUTE_THREADS")
-        ->check(number_between(0, 1024))
-        ->capture_default_str();
+        ->check(number_between(0, 1024));
+    return with_exit_codes(command, [options] { return sweep(*options); }, examples);
 }
 
 }  // namespace
 
 Command add_sweep(CLI::App& app) {
-    const auto options = std::make_shared<SweepOptions>();
-    CLI::App* command =
-        app.add_subcommand("sweep", "runs over one to three parameters: POST /v1/sweep");
-    add_request(*command, options->request);
-    add_axes(*command, options->request);
-    add_format(
-        *command, options->request, api::sweep_fields(),
-        ", one JSON line per point as it is computed; others: a table of all points");
-    add_plot_flag(*command, options->plot);
-    add_part(*command, *options);
-    return with_exit_codes(
-        command, [options] { return sweep(*options); },
+    return add_lines(
+        app.add_subcommand("sweep", "runs over one to three parameters: POST /v1/sweep"), false,
+        "point",
         "vines sweep -a b=0.01:0.03:41 -p cycles=500 --plot\n"
         "vines sweep -a b=0.01:0.03:41 -p preset=fig3 -p section=impact -o sweep.ndjson\n"
         "vines sweep -a b=0.01:0.03:41 -o sweep.csv\n"
@@ -428,18 +381,9 @@ Command add_sweep(CLI::App& app) {
 }
 
 Command add_basins(CLI::App& app) {
-    const auto options = std::make_shared<SweepOptions>();
-    options->basins = true;
-    CLI::App* command =
-        app.add_subcommand("basins", "which starts lead to which motion: POST /v1/basins");
-    add_request(*command, options->request);
-    add_axes(*command, options->request);
-    add_format(
-        *command, options->request, api::basins_fields(),
-        ", one JSON line per start as it is computed; others: a table of all starts");
-    add_part(*command, *options);
-    return with_exit_codes(
-        command, [options] { return sweep(*options); },
+    return add_lines(
+        app.add_subcommand("basins", "which starts lead to which motion: POST /v1/basins"), true,
+        "start",
         "vines basins -p b=0.0065 -p damping=closed_form -p box.x0=-0.003,0.003 -p "
         "box.y_dot0=-0.02,0.02 -p y0=0\n"
         "vines basins request.json -a b=0.0055:0.0056:11 -o basins.ndjson --resume\n"

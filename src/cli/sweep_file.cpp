@@ -12,7 +12,6 @@
 #include "api/sweep.hpp"
 #include "cli/exit.hpp"
 #include "cli/files.hpp"
-#include "cli/json_values.hpp"
 #include "program/process.hpp"
 
 namespace vines::cli {
@@ -96,8 +95,7 @@ struct MergeOptions {
     std::string output;
 };
 
-/// Adds a shard's points. Throws std::runtime_error if a line is invalid, the shard belongs to
-/// another sweep, or its value of a point differs from an earlier shard's.
+/// Adds a shard's points. Throws std::runtime_error if they contradict those of earlier shards.
 void add(SweepFile& all, const std::string& path, const std::string& first_path) {
     const SweepFile part = parse_sweep_file(read_file(path), path, LineChecks::full);
     if (part.start.empty()) throw std::runtime_error(path + " is empty");

@@ -31,6 +31,13 @@ std::size_t terminal_width(int stream) {
     return known ? size.ws_col : usual_terminal_width;
 }
 
+StatusLine::~StatusLine() { show(""); }
+
+void StatusLine::keep() {
+    if (is_shown_) std::fputs("\n", stderr);
+    is_shown_ = false;
+}
+
 void StatusLine::show(const std::string& text) {
     if (!is_shown_) return;
     // Leaves the last column free, where some terminals wrap.
@@ -47,10 +54,6 @@ ProgressBar::ProgressBar(std::size_t done, std::size_t total)
       total_(total),
       done_before_(done) {
     draw(true);
-}
-
-ProgressBar::~ProgressBar() {
-    if (line_.is_shown()) std::fputs("\n", stderr);
 }
 
 void ProgressBar::step() {

@@ -1,8 +1,6 @@
-// `vines verify`: recomputes an answer and compares it value by value, to the last bit, whatever
-// the order of the keys and the spelling of numbers and strings. An answer has its provenance:
-// route, request, commit, and the SHA-256 of its content. verify checks the hash, repeats the
-// request, and compares answer and provenance. For a sweep it recomputes each point that the file
-// has.
+// `vines verify`: checks the hash of an answer, repeats the request in its provenance, and compares
+// both value by value, to the last bit, whatever the order of the keys and the spelling of numbers
+// and strings. Of a sweep it recomputes each point that the file has.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -17,7 +15,6 @@
 #include "api/version.hpp"
 #include "cli/exit.hpp"
 #include "cli/files.hpp"
-#include "cli/json_values.hpp"
 #include "cli/sweep_file.hpp"
 #include "program/process.hpp"
 
@@ -42,8 +39,7 @@ std::string in_line(const Json& value) {
     return api::shortened(value.dump());
 }
 
-/// First difference of two answers, as in "impacts.tau[3]: 1.0 became 2.0"; empty if they are
-/// equal.
+/// First difference of two answers, as "impacts.tau[3]: 1.0 became 2.0"; empty if they are equal.
 std::string difference(const Json& stored, const Json& computed, const std::string& path) {
     const auto below = [&path](const std::string& name) {
         return path.empty() ? name : path + "." + name;
@@ -78,25 +74,6 @@ struct Recomputed {
     api::Provenance provenance;
 };
 
-/// Returns whether two answers are equal; prints the first difference.
-bool same_answer(const api::Unsealed& stored, const Recomputed& computed) {
-    std::string where;
-    if (stored.sha256 != computed.sha256)
-        where = difference(stored.answer, api::unsealed(computed.text)->answer, "");
-    print_line("recomputed: " + (where.empty() ? "the same values" : where));
-    return where.empty();
-}
-
-/// The same for the provenance, which the hash does not cover. Ignores the hash and the commit,
-/// which differs between builds.
-bool same_provenance(const Json& stored, const api::Provenance& provenance) {
-    Json computed = api::describe(provenance, stored["sha256"]);
-    if (!word_of(part(stored, "/commit")).empty()) computed["commit"] = stored["commit"];
-    const std::string where = difference(stored, computed, "");
-    if (!where.empty()) print_line("provenance: " + where);
-    return where.empty();
-}
-
 /// The request of an answer, with the measured record from its file.
 api::AnswerRequest rebuilt_request(const api::Provenance& p, const std::string& record) {
     Json fields = p.request;
@@ -128,31 +105,22 @@ std::optional<Recomputed> recomputed(const api::Provenance& p, const std::string
     return stopped() ? std::nullopt : std::optional(std::move(computed));
 }
 
-/// Returns whether the run ended early, so that another attempt can get further.
-bool ended_early(const Json& answer) {
-    const std::string reason = word_of(part(answer, "/status/reason"));
-    return reason == "deadline" || reason == "interrupted";
-}
-
-std::string build_of(const std::string& version, const std::string& commit) {
-    return commit.empty() ? version : version + " (" + commit + ")";
-}
-
 /// Prints the program versions of an answer and of its recomputation.
 void print_builds(const Json& answer, const Json& provenance) {
+    const auto build = [](const std::string& version, const std::string& commit) {
+        return commit.empty() ? version : version + " (" + commit + ")";
+    };
     const std::string version = word_of(part(answer, "/version")),
                       commit = word_of(part(provenance, "/commit"));
     print_line(fmt::format(
-        "answered by {}, recomputed by {}",
-        build_of(api::shortened(version), api::shortened(commit)),
-        build_of(api::version(), api::commit())));
+        "answered by {}, recomputed by {}", build(api::shortened(version), api::shortened(commit)),
+        build(api::version(), api::commit())));
     if (commit != api::commit())
         print_line(
             "commit: not this program's; that such a build computed the answer is not proven");
 }
 
-/// The record of an identification; empty for other answers. Throws Problem if its file is not
-/// named.
+/// The record of an identification; empty for other answers.
 std::string record_of(const Json& provenance, const VerifyOptions& o) {
     if (!provenance.contains("record_sha256")) return "";
     if (o.record.empty())
@@ -175,7 +143,8 @@ int verify_answer(const api::Unsealed& stored, const VerifyOptions& o) {
     print_builds(stored.answer, stored.provenance);
     print_line(stored.is_unmodified ? "sha256: matches" : "sha256: the answer was modified");
     const std::string record = record_of(stored.provenance, o);
-    if (ended_early(stored.answer)) {
+    const std::string reason = word_of(part(stored.answer, "/status/reason"));
+    if (reason == "deadline" || reason == "interrupted") {
         print_line("not decided: a time limit or a signal ended the run early");
         return incomplete;
     }
@@ -185,10 +154,18 @@ int verify_answer(const api::Unsealed& stored, const VerifyOptions& o) {
         print_early_stop();
         return stopped_code();
     }
-    const bool same = same_answer(stored, *computed);
-    return same_provenance(stored.provenance, computed->provenance) && same && stored.is_unmodified
-               ? complete
-               : differs;
+    std::string in_answer;
+    if (stored.sha256 != computed->sha256)
+        in_answer = difference(stored.answer, api::unsealed(computed->text)->answer, "");
+    print_line("recomputed: " + (in_answer.empty() ? "the same values" : in_answer));
+    // The hash does not cover the provenance. The commit differs between builds.
+    Json provenance = api::describe(computed->provenance, stored.provenance["sha256"]);
+    if (!word_of(part(stored.provenance, "/commit")).empty())
+        provenance["commit"] = stored.provenance["commit"];
+    const std::string in_provenance = difference(stored.provenance, provenance, "");
+    if (!in_provenance.empty()) print_line("provenance: " + in_provenance);
+    const bool is_same = in_answer.empty() && in_provenance.empty() && stored.is_unmodified;
+    return is_same ? complete : differs;
 }
 
 /// Verifies the points that a file has, even if others are missing.

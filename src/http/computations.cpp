@@ -349,7 +349,7 @@ auto read_body(const Request& r, const Service& service, Stopwatch& watch, const
 Response sweep(Request& r, const Service& service, Stopwatch& watch) {
     std::optional<api::Format> format;
     api::SweepRequest request = read_body(r, service, watch, [&](const Json& body) {
-        format = api::sweep_format(body);
+        format = api::format_in(body, api::sweep_format_names);
         const auto read =
             r.head.path() == "/v1/basins" ? api::read_basins_request : api::read_sweep_request;
         return read(body, service.options.sweep_points);

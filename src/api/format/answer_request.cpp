@@ -15,7 +15,7 @@ namespace {
 constexpr std::array always_kept = {"version", "status", "warnings", "provenance"};
 
 // Limits of the field `fields`: more than any answer has.
-constexpr std::size_t most_fields = 1000, longest_field = 200, longest_text = 16384;
+constexpr std::size_t most_fields = 1000, longest_field = 200, longest_option = 16384;
 
 /// The selected part of a value: all of it, or these members.
 struct Selection {
@@ -38,8 +38,7 @@ bool has(const Json& value, std::span<const std::string> path) {
     return value.is_object() && value.contains(path[0]) && has(value[path[0]], path.subspan(1));
 }
 
-/// Reduces an object, or each object of an array, to the selected members; false if nothing is
-/// left.
+/// Reduces an object, or each object of an array, to the selected members; false if none is left.
 bool select(Json& value, const Selection& selection) {
     if (selection.whole || value.is_null()) return true;
     bool any = false;
@@ -86,14 +85,6 @@ Json included(const std::vector<std::string>& fields, const Field& include) {
     return parts;
 }
 
-/// The request's fields without the measurement.
-Json without_record(const Json& fields) {
-    Json others = Json::object();
-    for (const auto& [name, value] : fields.items())
-        if (name != "record" && name != "impacts") others[name] = value;
-    return others;
-}
-
 /// The count of numbers and strings in a value.
 std::size_t count(const Json& value) {
     if (!value.is_structured()) return 1;
@@ -102,36 +93,62 @@ std::size_t count(const Json& value) {
     return all;
 }
 
-/// Limits the other fields: each is copied and checked several times, unlike a record's numbers.
-void check_other_fields(const Json& fields, std::size_t most) {
+/// The request's fields without the measurement. Their number is limited: each is copied and
+/// checked several times, unlike a record's numbers.
+Json without_record(const Json& fields, std::size_t most) {
+    Json others = Json::object();
     std::size_t all = 0;
-    for (const auto& [name, value] : fields.items())
-        if (name != "record" && name != "impacts") all += count(value);
-    if (all > most)
-        throw Problem(
-            413, "the fields other than the record hold more than " + std::to_string(most) +
-                     " numbers and strings");
+    for (const auto& [name, value] : fields.items()) {
+        if (name == "record" || name == "impacts") continue;
+        all += count(value);
+        if (all > most)
+            throw Problem(
+                413, "the fields other than the record hold more than " + std::to_string(most) +
+                         " numbers and strings");
+        others[name] = value;
+    }
+    return others;
 }
 
-AnswerRequest read_identification(
-    Json fields, const MeasurementBody& body, const ReadLimits& limits) {
-    check_other_fields(fields, limits.most_other_values);
-    Provenance provenance{
-        .route = "/v1/identify", .request = canonical(without_record(fields)), .record = {}};
-    AnswerForm form = take_form(fields, identify_fields());
-    IdentifyRequest request = body.is_columns ? read_identify_request(fields, body.text, limits)
-                                              : read_identify_request(std::move(fields), limits);
-    provenance.record = sha256(body.text);  // only of a valid record
-    return {std::move(request), std::move(form), std::move(provenance)};
+/// Removes the output options, form_fields(), from `fields` and returns them. Sets `include`, if
+/// the request does not give it, to the parts that the option `fields` names.
+AnswerForm take_form(Json& fields, const FieldTable& table) {
+    Json form = Json::object();
+    for (const Field& f : form_fields()) {
+        if (!fields.contains(f.name)) continue;
+        Json& value = fields[f.name];
+        // A value of a query is text.
+        if (value.is_string() && value.get_ref<const std::string&>().size() > longest_option)
+            refuse(
+                {{"/" + f.name, value, nullptr,
+                  f.name + " has at most " + std::to_string(longest_option) + " bytes"}});
+        form[f.name] = value.is_string() ? value_of_text(f.type, value) : std::move(value);
+        fields.erase(f.name);
+    }
+    std::vector<FieldError> errors = check(form_fields(), form);
+    if (errors.empty() && form.contains("fields")) errors = check_fields(form["fields"]);
+    if (!errors.empty()) refuse(std::move(errors));
+    AnswerForm result;
+    result.format = format_in(form, format_names);
+    if (form.contains("fields")) result.fields = form["fields"].get<std::vector<std::string>>();
+    const Field* const include = find(table, "include");
+    if (include && !result.fields.empty() && !fields.contains("include"))
+        fields["include"] = included(result.fields, *include);
+    return result;
 }
 
-template <class Request>
-AnswerRequest read_run(
-    const std::string& route, Json fields, const FieldTable& table,
-    Request (*read)(const Json& fields)) {
-    Provenance provenance{.route = route, .request = canonical(fields)};
-    AnswerForm form = take_form(fields, table);
-    return {read(fields), std::move(form), std::move(provenance)};
+/// Reduces an answer to the paths in `fields` and the keys that are always kept, with a warning for
+/// each path that matches nothing. Empty `fields` keep everything.
+void keep_fields(Json& answer, const std::vector<std::string>& fields) {
+    if (fields.empty()) return;
+    Selection selection;
+    for (const char* name : always_kept) selection.add(name);
+    for (const std::string& field : fields) {
+        selection.add(field);
+        if (field != "provenance" && !has(answer, split(field, '.')))
+            answer["warnings"].push_back("fields: there is no " + field + " in this answer");
+    }
+    select(answer, selection);
 }
 
 Answer computed(SimulateRequest request, const AnswerForm& form, const ComputeOptions& options) {
@@ -156,52 +173,25 @@ Answer computed(const IdentifyRequest& request, const AnswerForm&, const Compute
 
 }  // namespace
 
-AnswerForm take_form(Json& fields, const FieldTable& table) {
-    Json form = Json::object();
-    for (const Field& f : form_fields()) {
-        if (!fields.contains(f.name)) continue;
-        Json& value = fields[f.name];
-        // A value of a query is text.
-        if (value.is_string() && value.get_ref<const std::string&>().size() > longest_text)
-            refuse(
-                {{"/" + f.name, value, nullptr,
-                  f.name + " has at most " + std::to_string(longest_text) + " bytes"}});
-        form[f.name] = value.is_string() ? value_of_text(f.type, value) : std::move(value);
-        fields.erase(f.name);
-    }
-    std::vector<FieldError> errors = check(form_fields(), form);
-    if (errors.empty() && form.contains("fields")) errors = check_fields(form["fields"]);
-    if (!errors.empty()) refuse(std::move(errors));
-    AnswerForm result;
-    for (const FormatName& name : format_names)
-        if (form.value("format", "") == name.word) result.format = name.format;
-    if (form.contains("fields")) result.fields = form["fields"].get<std::vector<std::string>>();
-    const Field* const include = find(table, "include");
-    if (include && !result.fields.empty() && !fields.contains("include"))
-        fields["include"] = included(result.fields, *include);
-    return result;
-}
-
-void keep_fields(Json& answer, const std::vector<std::string>& fields) {
-    if (fields.empty()) return;
-    Selection selection;
-    for (const char* name : always_kept) selection.add(name);
-    for (const std::string& field : fields) {
-        selection.add(field);
-        if (field != "provenance" && !has(answer, split(field, '.')))
-            answer["warnings"].push_back("fields: there is no " + field + " in this answer");
-    }
-    select(answer, selection);
-}
-
 AnswerRequest read_answer_request(
     const std::string& route, Json fields, const MeasurementBody& body, const ReadLimits& limits) {
+    const auto read = [&](const FieldTable& table, const Json& proven, auto read_computation) {
+        Provenance provenance{.route = route, .request = canonical(proven)};
+        AnswerForm form = take_form(fields, table);
+        return AnswerRequest{read_computation(), std::move(form), std::move(provenance)};
+    };
     if (route == "/v1/simulate")
-        return read_run(route, std::move(fields), simulate_fields(), read_simulate_request);
+        return read(simulate_fields(), fields, [&] { return read_simulate_request(fields); });
     if (route == "/v1/manifold")
-        return read_run(route, std::move(fields), manifold_fields(), read_manifold_request);
-    if (route == "/v1/identify") return read_identification(std::move(fields), body, limits);
-    throw Problem(422, "unknown route: " + shortened(route));
+        return read(manifold_fields(), fields, [&] { return read_manifold_request(fields); });
+    if (route != "/v1/identify") throw Problem(422, "unknown route: " + shortened(route));
+    const Json others = without_record(fields, limits.most_other_values);
+    AnswerRequest request = read(identify_fields(), others, [&] {
+        return body.is_columns ? read_identify_request(fields, body.text, limits)
+                               : read_identify_request(std::move(fields), limits);
+    });
+    request.provenance.record = sha256(body.text);  // only of a valid record
+    return request;
 }
 
 Answer compute_answer(AnswerRequest r, const ComputeOptions& options) {

@@ -1,19 +1,22 @@
-// Encoding of an answer as JSON, CSV, CBOR or npz. All but CSV end with a provenance. CSV and npz
-// have files of their own. CBOR (RFC 8949) has lists of numbers as typed arrays (RFC 8746): the
-// JSON library writes a binary value's subtype as its tag.
+// JSON; CSV, the only table of an answer; CBOR (RFC 8949) with lists of numbers as typed arrays
+// (RFC 8746), for which the JSON library writes a binary value's subtype as its tag; npz, the
+// format of numpy.load, a .npy file for each list of the answer, and answer.json with the rest.
 #include "api/format/encode.hpp"
 
+#include <fmt/format.h>
+#include <zlib.h>
+
+#include <algorithm>
 #include <bit>
+#include <cmath>
+#include <limits>
 #include <utility>
 
 #include "api/cancellation.hpp"
-#include "api/format/answer_list.hpp"
+#include "api/problem.hpp"
+#include "api/schema/field.hpp"
 
 namespace vines::api {
-
-const FormatName& name_of(Format format) {
-    return format_names[static_cast<std::size_t>(format)];  // in the order of the enum
-}
 
 namespace {
 
@@ -33,27 +36,195 @@ std::string json_with_provenance(
     return text;
 }
 
+// --- Lists ---
+
+/// Replaces infinities, which stand for null, by NaN.
+void nan_for_null(std::span<std::uint8_t> doubles) {
+    change_numbers(doubles, [](double number) {
+        return std::isfinite(number) ? number : std::numeric_limits<double>::quiet_NaN();
+    });
+}
+
+/// Entries of one type. Valid as long as the value that it refers to.
+struct AnswerList {
+    /// The entries as they lie in memory; NaN and infinities stand for null. Packed::no: words.
+    PackedList packed{Packed::no, {}};
+    Json own = {};                ///< packed copy of an array of numbers or flags
+    const Json* words = nullptr;  ///< an array of strings and nulls
+
+    std::size_t size() const {
+        return words ? words->size() : packed.bytes.size() / entry_size(packed.packing);
+    }
+    /// Numbers in each entry: 1, 4 or 16.
+    std::size_t width() const {
+        return packed.packing == Packed::quadruples ? 4
+               : packed.packing == Packed::matrices ? 16
+                                                    : 1;
+    }
+    /// Empty for null.
+    std::string_view word(std::size_t k) const {
+        const auto* const word = (*words)[k].get_ptr<const std::string*>();
+        return word ? std::string_view(*word) : "";
+    }
+};
+
+/// The list of a packed value or of an array of numbers, flags or strings, nulls among them.
+std::optional<AnswerList> list_of(const Json& value) {
+    AnswerList list;
+    const auto all_are = [&value](auto... is) {
+        return std::all_of(
+            value.begin(), value.end(), [=](const Json& entry) { return ((entry.*is)() || ...); });
+    };
+    if (value.is_binary()) {
+        list.packed = list_in_memory(value);
+        return list;
+    }
+    if (!value.is_array()) return std::nullopt;
+    if (all_are(&Json::is_number, &Json::is_null)) {
+        list.own = column(value, [](const Json& entry) {
+            return entry.is_null() ? std::numeric_limits<double>::quiet_NaN() : entry.get<double>();
+        });
+    } else if (all_are(&Json::is_boolean)) {
+        list.own = column(value, [](const Json& entry) { return entry.get<bool>(); });
+    } else if (all_are(&Json::is_string, &Json::is_null)) {
+        list.words = &value;
+        return list;
+    } else {
+        return std::nullopt;
+    }
+    list.packed = list_in_memory(list.own);
+    return list;
+}
+
+// --- CSV ---
+
+struct TableColumn {
+    std::string name;
+    AnswerList list;
+};
+
+/// An object of lists of one length.
+struct Table {
+    std::string path;
+    std::vector<TableColumn> columns;
+};
+
+/// Adds the object, if it is a table, and the tables in it.
+void add_tables(const Json& object, const std::string& path, std::vector<Table>& tables) {
+    Table table{.path = path, .columns = {}};
+    bool is_table = !path.empty() && !object.empty();
+    for (const auto& [name, value] : object.items()) {
+        if (value.is_object()) add_tables(value, path.empty() ? name : path + "." + name, tables);
+        std::optional<AnswerList> list = list_of(value);
+        is_table = is_table && list &&
+                   (table.columns.empty() || list->size() == table.columns[0].list.size());
+        if (is_table) table.columns.push_back({name, std::move(*list)});
+    }
+    if (is_table) tables.push_back(std::move(table));
+}
+
+/// The table of an answer. Problem 422 unless it has exactly one.
+Table only_table(const Json& answer) {
+    std::vector<Table> tables;
+    add_tables(answer, "", tables);
+    if (tables.size() == 1) return std::move(tables[0]);
+    std::vector<std::string> paths;
+    for (const Table& t : tables) paths.push_back(t.path);
+    const std::string which =
+        tables.empty() ? "none" : fmt::format("{}: {}", tables.size(), joined(paths));
+    refuse(
+        {{"/fields", nullptr, Json(paths),
+          "CSV is one table, lists of equal length, selected by fields, for example fields=impacts "
+          "or fields=matrices.tau,matrices.T; this answer has " +
+              which}});
+}
+
+/// lambda1 ... lambda4 of four numbers, J11 ... J44 of a matrix.
+void put_csv_names(const TableColumn& column, std::string& text) {
+    const std::size_t width = column.list.width();
+    for (std::size_t k = 0; k < width; ++k) {
+        if (k > 0) text += ',';
+        text += column.name;
+        if (width == 4) text += std::to_string(k + 1);
+        if (width == 16) text += std::to_string(10 * (k / 4 + 1) + k % 4 + 1);
+    }
+}
+
+void put_csv(bool flag, std::string& text) { text += flag ? "true" : "false"; }
+void put_csv(int number, std::string& text) { text += std::to_string(number); }
+void put_csv(double number, std::string& text) {
+    std::array<char, room_for_number> digits;
+    if (std::isfinite(number)) text.append(digits.data(), write_number(digits.data(), number));
+}
+template <class Entry>
+void put_csv(const std::array<Entry, 4>& entries, std::string& text) {
+    for (const Entry& entry : entries) {
+        if (&entry != entries.data()) text += ',';
+        put_csv(entry, text);
+    }
+}
+/// RFC 4180, 2.5 to 2.7.
+void put_csv(std::string_view word, std::string& text) {
+    if (word.find_first_of(",\"\r\n") == std::string_view::npos) {
+        text += word;
+        return;
+    }
+    text += '"';
+    for (const char c : word) text.append(c == '"' ? 2 : 1, c);
+    text += '"';
+}
+
+void put_csv_entry(const AnswerList& list, std::size_t row, std::string& text) {
+    if (list.words) return put_csv(list.word(row), text);
+    const std::size_t size = entry_size(list.packed.packing);
+    const PackedList one{list.packed.packing, list.packed.bytes.subspan(row * size, size)};
+    for_each_entry(one, [&text](const auto& entry) { put_csv(entry, text); });
+}
+
+/// One table: an object of lists of equal length, one column each. A list of exponents has four
+/// columns, a list of matrices sixteen; their numbers follow the name. Null is an empty cell.
+/// Problem 422 naming the tables if the answer does not have exactly one.
+std::string csv_text(const Json& answer, const std::function<bool()>& gives_up) {
+    const Table table = only_table(answer);
+    std::string text;
+    for (const TableColumn& column : table.columns) {
+        if (!text.empty()) text += ',';
+        put_csv_names(column, text);
+    }
+    text += '\n';
+    CancelCheck cancel(gives_up);
+    for (std::size_t row = 0; row < table.columns[0].list.size(); ++row) {
+        cancel.step();
+        const std::size_t begins = text.size();
+        for (const TableColumn& column : table.columns) {
+            if (&column != table.columns.data()) text += ',';
+            put_csv_entry(column.list, row, text);
+        }
+        if (text.size() == begins) text += "\"\"";  // CSV readers skip an empty line
+        text += '\n';
+    }
+    return text;
+}
+
+// --- CBOR ---
+
 static_assert(
     std::endian::native == std::endian::little);  // required by the tags in answer_json.hpp
 
-/// The entries of a list without typed array, each made by entry(bytes).
+/// The entries of a list as to_cbor() writes them as documented: four doubles as a typed array.
 template <class Entry>
-Json array_of(std::span<const std::uint8_t> bytes, std::size_t size, Entry entry) {
+Json cbor_of(const Entry& entry) {
+    return entry;
+}
+Json cbor_of(const Quadruple& doubles) {
+    Json typed_array = column(doubles);
+    nan_for_null(typed_array.get_binary());
+    return typed_array;
+}
+Json cbor_of(const MatrixByRows& rows) {
     Json array = Json::array();
-    array.get_ref<Json::array_t&>().reserve(bytes.size() / size);
-    for (std::size_t at = 0; at < bytes.size(); at += size)
-        array.push_back(entry(bytes.subspan(at, size)));
+    for (const Quadruple& row : rows) array.push_back(cbor_of(row));
     return array;
-}
-
-Json typed_array(std::span<const std::uint8_t> doubles) {
-    std::vector<std::uint8_t> bytes(doubles.begin(), doubles.end());
-    nan_for_null(bytes);
-    return Json::binary(std::move(bytes), static_cast<std::uint8_t>(Packed::numbers));
-}
-
-Json rows_of(std::span<const std::uint8_t> doubles) {
-    return array_of(doubles, sizeof(Quadruple), typed_array);
 }
 
 /// Turns packed lists into values that to_cbor() writes as documented.
@@ -64,19 +235,158 @@ void prepare(Json& value, const CancelCheck& cancel) {
     }
     if (!value.is_binary()) return;
     cancel.poll();
-    auto& list = value.get_binary();
-    switch (packing_of(value)) {
-        case Packed::numbers: return nan_for_null(list);
-        case Packed::quadruples: value = rows_of(list); return;
-        case Packed::matrices: value = array_of(list, sizeof(MatrixByRows), rows_of); return;
-        case Packed::flags:
-            value = array_of(list, sizeof(bool), [](auto flag) { return Json(flag[0] != 0); });
-            return;
-        default: return;
+    const PackedList list = list_in_memory(value);
+    if (list.packing == Packed::numbers) return nan_for_null(value.get_binary());
+    if (list.packing == Packed::integers) return;
+    Json array = Json::array();
+    array.get_ref<Json::array_t&>().reserve(list.bytes.size() / entry_size(list.packing));
+    for_each_entry(list, [&array](const auto& entry) { array.push_back(cbor_of(entry)); });
+    value = std::move(array);
+}
+
+// --- npz ---
+
+void put_little(std::string& to, std::uint64_t number, int bytes) {
+    for (int k = 0; k < bytes; ++k) to += static_cast<char>(number >> (8 * k) & 0xff);
+}
+
+/// A ZIP archive of uncompressed files (PKWARE APPNOTE, 4.3).
+class Archive {
+public:
+    void add(const std::string& name, const std::string& content) {
+        const auto crc = ::crc32(
+            0, reinterpret_cast<const Bytef*>(content.data()), static_cast<uInt>(content.size()));
+        std::string common;
+        put_little(common, 20, 2);          // version needed to extract
+        put_little(common, 0x0800, 2);      // names in UTF-8
+        put_little(common, 0, 2);           // stored
+        put_little(common, 0x00210000, 4);  // 1980-01-01: the same answer has the same bytes
+        put_little(common, crc, 4);
+        put_little(common, content.size(), 4);
+        put_little(common, content.size(), 4);
+        put_little(common, name.size(), 2);
+        put_little(common, 0, 2);  // no extra field
+        directory_ += "PK\x01\x02";
+        put_little(directory_, 20, 2);
+        directory_ += common;
+        directory_.append(10, '\0');  // no comment, first disk, attributes
+        put_little(directory_, files_.size(), 4);
+        directory_ += name;
+        files_ += "PK\x03\x04" + common + name + content;
+        ++number_;
+    }
+    std::string end() {
+        std::string tail = "PK\x05\x06";
+        put_little(tail, 0, 4);
+        put_little(tail, number_, 2);
+        put_little(tail, number_, 2);
+        put_little(tail, directory_.size(), 4);
+        put_little(tail, files_.size(), 4);
+        put_little(tail, 0, 2);
+        return std::move(files_) + directory_ + tail;
+    }
+
+private:
+    std::string files_, directory_;
+    std::size_t number_ = 0;
+};
+
+/// The NPY format, version 1.0. The header is padded to a multiple of 64 bytes.
+std::string npy(const std::string& type, const std::string& shape, std::string_view data) {
+    std::string header =
+        fmt::format("{{'descr': '{}', 'fortran_order': False, 'shape': {}, }}", type, shape);
+    constexpr std::size_t before = 10, step = 64;
+    header.resize((before + header.size() + step) / step * step - before - 1, ' ');
+    std::string file = "\x93NUMPY";
+    put_little(file, 1, 2);
+    put_little(file, header.size() + 1, 2);
+    return file + header + '\n' + std::string(data);
+}
+
+std::string shape_of(const AnswerList& list) {
+    const char* const entry = list.width() == 1 ? "" : list.width() == 4 ? " 4" : " 4, 4";
+    return fmt::format("({},{})", list.size(), entry);
+}
+
+/// Strings in UCS-4. All strings of lists are ASCII.
+std::string npy_of_words(const AnswerList& list) {
+    std::size_t longest = 1;
+    for (std::size_t n = 0; n < list.size(); ++n) longest = std::max(longest, list.word(n).size());
+    std::string data;
+    for (std::size_t n = 0; n < list.size(); ++n) {
+        std::string word(list.word(n));
+        word.resize(longest);
+        for (const char c : word) put_little(data, static_cast<unsigned char>(c), 4);
+    }
+    return npy(fmt::format("<U{}", longest), shape_of(list), data);
+}
+
+std::string npy_of(const AnswerList& list) {
+    if (list.words) return npy_of_words(list);
+    std::string data(list.packed.bytes.begin(), list.packed.bytes.end());
+    switch (list.packed.packing) {
+        case Packed::flags: return npy("|b1", shape_of(list), data);
+        case Packed::integers: return npy("<i4", shape_of(list), data);
+        default:
+            nan_for_null({reinterpret_cast<std::uint8_t*>(data.data()), data.size()});
+            return npy("<f8", shape_of(list), data);
     }
 }
 
+/// Calls visit(path, list) for each list but those of objects; a path joins names with points.
+template <class Visit>
+void visit_lists(const Json& answer, const Visit& visit, const std::string& path = "") {
+    if (answer.is_object()) {
+        for (const auto& [name, part] : answer.items())
+            visit_lists(part, visit, path.empty() ? name : path + "." + name);
+    } else if (const std::optional<AnswerList> list = list_of(answer)) {
+        visit(path, *list);
+    }
+}
+
+/// Removes the lists, which have their own files.
+void take_out_lists(Json& object) {
+    std::vector<std::string> lists;
+    for (auto& [name, value] : object.items()) {
+        if (value.is_object()) take_out_lists(value);
+        else if (value.is_binary()) lists.push_back(name);
+    }
+    for (const std::string& name : lists) object.erase(name);
+}
+
 }  // namespace
+
+const FormatName& name_of(Format format) {
+    return format_names[static_cast<std::size_t>(format)];  // in the order of the enum
+}
+
+std::optional<Format> format_in(const Json& fields, std::span<const FormatName> names) {
+    const auto given = fields.find("format");
+    for (const FormatName& name : names)
+        if (given != fields.end() && *given == name.word) return name.format;
+    return std::nullopt;
+}
+
+void put_csv_value(const Json& value, std::string& text) {
+    if (value.is_string()) put_csv(value.get_ref<const std::string&>(), text);
+    else if (value.is_number_float()) put_csv(value.get<double>(), text);
+    else if (!value.is_null()) text += value.dump();
+}
+
+std::string npz_bytes(
+    Json answer, const std::function<bool()>& gives_up, const Json& only_in_files) {
+    const CancelCheck cancel(gives_up);
+    Archive archive;
+    const auto add = [&](const std::string& path, const AnswerList& list) {
+        cancel.poll();
+        if (path.find('.') != std::string::npos) archive.add(path + ".npy", npy_of(list));
+    };
+    visit_lists(answer, add);
+    visit_lists(only_in_files, add);
+    take_out_lists(answer);
+    archive.add("answer.json", json_text(std::move(answer)) + "\n");
+    return archive.end();
+}
 
 std::string cbor_bytes(Json answer, const std::function<bool()>& gives_up) {
     const CancelCheck cancel(gives_up);

@@ -3,6 +3,8 @@
 
 #include <array>
 #include <functional>
+#include <optional>
+#include <span>
 
 #include "api/provenance.hpp"
 
@@ -31,25 +33,21 @@ inline constexpr std::array<FormatName, 5> sweep_format_names = {
      format_names[2],
      format_names[3]}};
 
+/// The format that the field `format` of a request selects; nullopt if it is missing or unknown.
+std::optional<Format> format_in(const Json& fields, std::span<const FormatName> names);
+
 /// Encodes an answer without streamed lists. Its provenance is added, except in CSV. Problem 422
-/// where the format cannot hold this answer. gives_up() is called now and then; throws Cancelled
-/// once it returns true.
+/// where the format cannot hold this answer; Cancelled once gives_up() returns true.
 std::string encoded(
     Json answer, Format format, const std::optional<Provenance>& provenance,
     const std::function<bool()>& gives_up = {});
-
-/// One table: an object of lists of equal length, one column each. A list of exponents has four
-/// columns, a list of matrices sixteen; their numbers follow the name. Null is an empty cell.
-/// Problem 422 naming the tables if the answer does not have exactly one.
-std::string csv_text(const Json& answer, const std::function<bool()>& gives_up = {});
 
 /// CBOR with lists of numbers as typed arrays (float64, int32, little-endian) and null in them as
 /// NaN. Lists of exponents or matrices are arrays of typed arrays.
 std::string cbor_bytes(Json answer, const std::function<bool()>& gives_up = {});
 
 /// A ZIP archive: PATH.npy for each list (float64, int32, bool or text; null is NaN), and
-/// answer.json with the rest. Lists of `only_in_files` are not in answer.json, even if they are
-/// words.
+/// answer.json with the rest, without the lists of `only_in_files`.
 std::string npz_bytes(
     Json answer, const std::function<bool()>& gives_up = {},
     const Json& only_in_files = Json::object());

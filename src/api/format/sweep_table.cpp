@@ -33,17 +33,27 @@ void visit_cells(const Json& line, const std::string& before, const VisitCell& v
 
 }  // namespace
 
-std::optional<Format> sweep_format(const Json& fields) {
-    const auto given = fields.find("format");
-    if (given == fields.end()) return std::nullopt;
-    for (const FormatName& name : sweep_format_names)
-        if (*given == name.word) return name.format;
-    return std::nullopt;
+std::string LinesInOrder::add(std::size_t index, std::string text) {
+    waiting_[index] = std::move(text);
+    std::string next;
+    while (!waiting_.empty() && waiting_.begin()->first == indices_[returned_]) {
+        next += waiting_.begin()->second;
+        waiting_.erase(waiting_.begin());
+        ++returned_;
+    }
+    return next;
+}
+
+std::string LinesInOrder::rest() const {
+    std::string all;
+    for (const auto& [index, text] : waiting_) all += text;
+    return all;
 }
 
 SweepTable::SweepTable(const SweepRequest& request, Format format, std::size_t most_bytes)
     : request_(request),
-      format_(format) {
+      format_(format),
+      rows_(request.plan.lines) {
     add_columns(describe_place(request, 0));
     for (const Json& line : sample_lines(request)) add_columns(line);
     if (format == Format::csv) return;
@@ -79,49 +89,32 @@ std::string SweepTable::begin() const {
     return text + '\n';
 }
 
-SweepTable::Cells SweepTable::cells_of(std::size_t index, const std::string& line) const {
-    Cells cells(columns_.size());
+std::string SweepTable::add(std::size_t index, const std::string& line) {
+    std::vector<Json> cells(columns_.size());  // null where there is none
     const auto take = [&](const std::string& name, const Json& value) {
         if (!value.is_null()) cells[column_of_.at(name)] = value;
     };
     visit_cells(Json::parse(line), "", take);
     // Exponents, also named lambda, hide a swept lambda.
     visit_cells(describe_place(request_, index), "", take);
-    return cells;
-}
-
-std::string SweepTable::add(std::size_t index, const std::string& line) {
-    const Cells cells = cells_of(index, line);
+    std::string text;
+    if (format_ == Format::csv) {
+        for (const Json& cell : cells) {
+            if (&cell != cells.data()) text += ',';
+            put_csv_value(cell, text);
+        }
+        return rows_.add(index, text + '\n');
+    }
     const std::vector<std::size_t>& wanted = request_.plan.lines;
-    if (format_ == Format::csv) return add_row(index, cells);
-    const auto row = std::lower_bound(wanted.begin(), wanted.end(), index) - wanted.begin();
-    keep(static_cast<std::size_t>(row), cells);
-    return "";
-}
-
-std::string SweepTable::add_row(std::size_t index, const Cells& cells) {
-    std::string& row = waiting_[index];
-    for (const Json& cell : cells) {
-        if (&cell != cells.data()) row += ',';
-        put_csv_value(cell, row);
-    }
-    row += '\n';
-    std::string next;
-    while (!waiting_.empty() && waiting_.begin()->first == request_.plan.lines[written_]) {
-        next += waiting_.begin()->second;
-        waiting_.erase(waiting_.begin());
-        ++written_;
-    }
-    return next;
-}
-
-void SweepTable::keep(std::size_t row, const Cells& cells) {
+    const auto row =
+        static_cast<std::size_t>(std::ranges::lower_bound(wanted, index) - wanted.begin());
     for (std::size_t c = 0; c < cells.size(); ++c) {
         const Json& cell = cells[c];
         if (cell.is_string()) columns_[c].words[row] = cell.get<std::string>();
         else if (cell.is_boolean()) columns_[c].numbers[row] = cell.get<bool>();
         else if (cell.is_number()) columns_[c].numbers[row] = cell.get<double>();
     }
+    return text;
 }
 
 std::string SweepTable::end(const std::string& warning) {

@@ -1,6 +1,5 @@
 // The points of a sweep as one table in CSV, CBOR or npz: a row for each point, in the order of the
-// index. The columns depend only on the request: they follow from sample_lines(), and so from the
-// tables in properties.hpp. Sections and lists of starts are left out.
+// index. The columns follow from sample_lines(). Sections and lists of starts are left out.
 #pragma once
 
 #include <cstddef>
@@ -13,9 +12,22 @@
 
 namespace vines::api {
 
-/// The format that the field `format` of a sweep's request selects; Format::json for lines. nullopt
-/// if it is missing or unknown, which read_sweep_request() refuses.
-std::optional<Format> sweep_format(const Json& fields);
+/// Texts of a sweep's lines, brought into the order of their index.
+class LinesInOrder {
+public:
+    /// `indices`: those of all lines, ascending. They must outlive the object.
+    explicit LinesInOrder(const std::vector<std::size_t>& indices) : indices_(indices) {}
+
+    /// Takes the text of a line. Returns the texts that are next in order.
+    std::string add(std::size_t index, std::string text);
+    /// Returns the other texts, despite missing ones between them.
+    std::string rest() const;
+
+private:
+    const std::vector<std::size_t>& indices_;
+    std::map<std::size_t, std::string> waiting_;  ///< after a missing one, by index
+    std::size_t returned_ = 0;
+};
 
 class SweepTable {
 public:
@@ -46,19 +58,14 @@ private:
         std::vector<double> numbers = {};     ///< flags are 1 and 0; NaN where there is none
         std::vector<std::string> words = {};  ///< empty where there is none
     };
-    using Cells = std::vector<Json>;  ///< null where there is none
 
     void add_columns(const Json& sample);
-    Cells cells_of(std::size_t index, const std::string& line) const;
-    std::string add_row(std::size_t index, const Cells& cells);
-    void keep(std::size_t row, const Cells& cells);
 
     const SweepRequest& request_;
     const Format format_;
     std::vector<Column> columns_;
     std::map<std::string, std::size_t> column_of_;
-    std::map<std::size_t, std::string> waiting_;  ///< rows of CSV after a missing one, by index
-    std::size_t written_ = 0;                     ///< rows of CSV
+    LinesInOrder rows_;  ///< of CSV
 };
 
 }  // namespace vines::api

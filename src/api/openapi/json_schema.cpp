@@ -4,32 +4,21 @@
 
 namespace vines::api::document {
 
-Json text() { return {{"type", "string"}}; }
-Json flag() { return {{"type", "boolean"}}; }
-Json number() { return {{"type", "number"}}; }
-Json whole() { return {{"type", "integer"}, {"minimum", 0}}; }
 Json constant(const std::string& value) { return {{"type", "string"}, {"const", value}}; }
 Json one_of(const std::vector<std::string>& values) {
     return {{"type", "string"}, {"enum", values}};
 }
 
-Json list_of(Json items) { return {{"type", "array"}, {"items", std::move(items)}}; }
+Json list_of(Schema items) { return {{"type", "array"}, {"items", std::move(items.json)}}; }
 
-Json list_of(Json items, int length) {
+Json list_of(Schema items, int length) {
     Json list = list_of(std::move(items));
     list["minItems"] = list["maxItems"] = length;
     return list;
 }
 
-Json numbers() { return list_of(number()); }
-
-Json interval() { return list_of(number(), 2); }
-
-Json four_exponents() { return list_of(or_null(number()), 4); }
-
-Json regime_name() { return one_of({"none", "I", "II", "III", "IV", "V", "VI"}); }
-
-Json or_null(Json schema) {
+Json or_null(Schema of) {
+    Json& schema = of.json;
     if (schema.contains("type") && schema["type"].is_array()) return schema;
     if (!schema.contains("type"))
         return {{"anyOf", Json::array({std::move(schema), {{"type", "null"}}})}};
@@ -40,10 +29,10 @@ Json or_null(Json schema) {
 
 Json reference(const std::string& name) { return {{"$ref", "#/components/schemas/" + name}}; }
 
-Keys::Keys(std::string name, Json schema, std::string description) {
+Keys::Keys(std::string name, Schema schema, std::string description) {
     const bool is_optional = name.ends_with('?');
     if (is_optional) name.pop_back();
-    push_back({std::move(name), std::move(schema), std::move(description), !is_optional});
+    push_back({std::move(name), std::move(schema.json), std::move(description), !is_optional});
 }
 
 Keys::Keys(std::initializer_list<Keys> parts) {
@@ -74,33 +63,11 @@ Json object_of(const Keys& keys) {
     return object;
 }
 
-Json map_of(Json values) {
-    return {{"type", "object"}, {"additionalProperties", std::move(values)}};
+Json map_of(Schema values) {
+    return {{"type", "object"}, {"additionalProperties", std::move(values.json)}};
 }
 
 namespace {
-
-Json schema_of(ValueType type) {
-    switch (type) {
-        case ValueType::number: return number();
-        case ValueType::number_or_null: return or_null(number());
-        case ValueType::whole: return whole();
-        case ValueType::wall: return {{"type", "integer"}, {"enum", {1, -1}}};
-        case ValueType::flag: return flag();
-        case ValueType::word: return text();
-        case ValueType::word_or_null: return or_null(text());
-        case ValueType::component: return one_of({"x_dot", "x", "y_dot", "y"});
-        case ValueType::moduli: return list_of(number(), 4);
-        case ValueType::exponents: return four_exponents();
-        case ValueType::statuses: return list_of(enum_schema<Status>(), 4);
-        case ValueType::matrix: return list_of(list_of(number(), 4), 4);
-        case ValueType::interval: return interval();
-        case ValueType::damping: return enum_schema<Damping>();
-        case ValueType::regime: return regime_name();
-        case ValueType::verdict: return enum_schema<Verdict>();
-    }
-    return nullptr;
-}
 
 std::string si_unit_of(const Quantity& q) {
     if (q.per_m1) return q.power == 1 ? "N s" : "J";
@@ -122,12 +89,34 @@ void add_si_counterparts(Json& properties, const Table& table) {
 
 }  // namespace
 
-Keys::Keys(const Quantity& q) : Keys(q.name, schema_of(q.type), q.meaning) {}
+Json schema_of(ValueType type) {
+    switch (type) {
+        case number: return {{"type", "number"}};
+        case number_or_null: return or_null(number);
+        case whole: return {{"type", "integer"}, {"minimum", 0}};
+        case wall: return {{"type", "integer"}, {"enum", {1, -1}}};
+        case flag: return {{"type", "boolean"}};
+        case word: return {{"type", "string"}};
+        case word_or_null: return or_null(word);
+        case component: return one_of({"x_dot", "x", "y_dot", "y"});
+        case moduli: return list_of(number, 4);
+        case exponents: return list_of(number_or_null, 4);
+        case statuses: return list_of(enum_schema<Status>(), 4);
+        case matrix: return list_of(list_of(number, 4), 4);
+        case interval: return list_of(number, 2);
+        case damping: return enum_schema<Damping>();
+        case regime: return one_of({"none", "I", "II", "III", "IV", "V", "VI"});
+        case verdict: return enum_schema<Verdict>();
+    }
+    return nullptr;
+}
+
+Schema::Schema(ValueType type) : json(schema_of(type)) {}
+
+Keys::Keys(const Quantity& q) : Keys(q.name, q.type, q.meaning) {}
 
 Keys column_of(const Quantity& q) {
-    const Json entries = schema_of(q.type);
-    const bool is_state = q.type == ValueType::component;
-    return {q.name, is_state ? list_of(entries, 4) : list_of(entries), q.meaning};
+    return {q.name, q.type == component ? list_of(q.type, 4) : list_of(q.type), q.meaning};
 }
 
 Json with_si(Json schema) {

@@ -98,13 +98,13 @@ constexpr Operation operations[] = {
 };
 
 Json content_of(const Operation& o) {
-    Json media = {{"schema", o.schema ? reference(o.schema) : text()}};
+    Json media = {{"schema", o.schema ? reference(o.schema) : schema_of(word)}};
     Json example = o.schema ? answer_example(o.schema) : Json();
     if (!example.is_null()) media["example"] = std::move(example);
     Json content = {{o.media_type(), std::move(media)}};
     if (!o.has_formats()) return content;
     for (const FormatName& name : format_names)
-        if (name.format != Format::json) content[name.media_type] = {{"schema", text()}};
+        if (name.format != Format::json) content[name.media_type] = {{"schema", schema_of(word)}};
     return content;
 }
 
@@ -168,7 +168,7 @@ Json post(const Operation& o) {
 /// A file of columns in place of JSON, with the fields in the query.
 void permit_file(Json& identify) {
     identify["parameters"] = query_of(identify_fields(), Json::object());
-    Json file = text();
+    Json file = schema_of(word);
     file["description"] =
         "columns, by default time_s, displacement_m, acceleration_m_s2, as written by measurement "
         "programs and spreadsheets; at least 100 samples";
@@ -190,10 +190,7 @@ Json paths() {
 Json all_schemas() {
     Json schemas = Json::object(), of_responses = Json::object();
     add_requests(schemas);
-    for (const auto add :
-         {add_simulation, add_systems, add_exponents, add_manifolds, add_sweep_lines,
-          add_basins_lines, add_continuation_lines, add_design_lines, add_identification,
-          add_service})
+    for (const auto add : {add_simulation, add_lines, add_identification, add_service})
         add(of_responses);
     schemas.update(with_si(std::move(of_responses)));
     return schemas;
@@ -208,7 +205,7 @@ Json components() {
            {{"name", "If-None-Match"},
             {"in", "header"},
             {"description", "ETag of a cached response"},
-            {"schema", text()}}}}},
+            {"schema", schema_of(word)}}}}},
         {"headers", header_components()},
         {"securitySchemes",
          {{"api_key",

@@ -1,5 +1,4 @@
-// The parts of the OpenAPI document, each made in a file of its own, and short names for the JSON
-// Schemas (2020-12) of which they are made.
+// The parts of the OpenAPI document, and the JSON Schemas (2020-12) of which they are made.
 #pragma once
 
 #include <algorithm>
@@ -12,28 +11,24 @@
 
 namespace vines::api::document {
 
-// Schemas of values (json_schema.cpp).
+using enum ValueType;
 
-Json text();
-Json flag();
-Json number();
-/// An integer >= 0.
-Json whole();
+/// The schema of a value. A ValueType stands for its own.
+struct Schema {
+    Schema(Json schema) : json(std::move(schema)) {}  // NOLINT(google-explicit-constructor)
+    Schema(ValueType type);                           // NOLINT(google-explicit-constructor)
+
+    Json json;
+};
+Json schema_of(ValueType type);
+
 Json constant(const std::string& value);
 Json one_of(const std::vector<std::string>& values);
-Json list_of(Json items);
+Json list_of(Schema items);
 /// A list of exactly `length` entries.
-Json list_of(Json items, int length);
-/// A list of numbers: a column of a response.
-Json numbers();
-/// [from, to].
-Json interval();
-/// Four numbers; null for minus infinity and for an exponent that is not converged.
-Json four_exponents();
-/// I to VI, or none.
-Json regime_name();
+Json list_of(Schema items, int length);
 /// The schema, or null; unchanged if it permits null.
-Json or_null(Json schema);
+Json or_null(Schema schema);
 /// A reference to a schema of the components.
 Json reference(const std::string& name);
 
@@ -60,7 +55,7 @@ struct Key {
 struct Keys : std::vector<Key> {
     Keys() = default;
     /// One key; it is not required if its name ends with "?".
-    Keys(std::string name, Json schema, std::string description = "");
+    Keys(std::string name, Schema schema, std::string description = "");
     /// The key of a quantity with one value.
     Keys(const Quantity& quantity);  // NOLINT(google-explicit-constructor): an entry of Keys
     Keys(std::initializer_list<Keys> parts);
@@ -87,7 +82,7 @@ Keys or_null(Keys keys);
 /// An object with these keys and no others. The first of two keys with one name counts.
 Json object_of(const Keys& keys);
 /// An object with arbitrary keys.
-Json map_of(Json values);
+Json map_of(Schema values);
 Json table_of(const auto& table) { return object_of(columns_of(table)); }
 
 /// The schema with the SI counterparts in all of it, as add_si() adds them to a response.
@@ -97,17 +92,11 @@ Json with_joules(Json schema);
 
 // Each function adds the schemas of its file to components/schemas, by name.
 
-void add_requests(Json& schemas);            // requests.cpp
-void add_systems(Json& schemas);             // systems.cpp: parameters and provenance
-void add_exponents(Json& schemas);           // exponents.cpp
-void add_manifolds(Json& schemas);           // simulation.cpp: the part and the response
-void add_simulation(Json& schemas);          // simulation.cpp
-void add_sweep_lines(Json& schemas);         // sweep_lines.cpp
-void add_basins_lines(Json& schemas);        // sweep_lines.cpp
-void add_continuation_lines(Json& schemas);  // sweep_lines.cpp
-void add_design_lines(Json& schemas);        // design_lines.cpp
-void add_identification(Json& schemas);      // identification.cpp
-void add_service(Json& schemas);             // service.cpp: tables, presets, version, problems
+void add_requests(Json& schemas);
+void add_simulation(Json& schemas);
+void add_lines(Json& schemas);
+void add_identification(Json& schemas);
+void add_service(Json& schemas);
 
 // Keys that several responses have.
 
@@ -117,16 +106,7 @@ Keys answer_keys(const std::string& parameters);
 Keys sealed_keys(const std::string& parameters);
 /// Columns of a Poincare section at impact, without tau.
 Keys impact_section_keys();
-/// `final` and `status`.
-Keys final_keys();
-/// A line of a stream: `type`, then these keys.
-Json line_of(const char* type, const Keys& keys);
-/// One of these schemas, selected by the key `type`, the last word of the schema's name:
-/// "progress" of SweepProgress.
-Json any_line(const std::vector<std::string>& schemas);
-
-/// The fields as query parameters; `example`: values of some of them, which together are a valid
-/// request.
+/// The fields as query parameters; `example`: a valid request.
 Json query_of(const FieldTable& fields, const Json& example);
 
 // Responses and headers (service.cpp).
@@ -134,8 +114,7 @@ Json query_of(const FieldTable& fields, const Json& example);
 /// components/responses, components/headers.
 Json response_components();
 Json header_components();
-/// References to the response components of the statuses with which every operation can respond,
-/// and of `others`.
+/// References to the response components of the common statuses and of `others`.
 Json error_responses(std::set<int> others);
 /// References to X-Request-ID and the named header components.
 Json headers_of(const std::vector<std::string>& names);

@@ -88,19 +88,19 @@ Json response_of(const Refusal& r) {
 Json problem() {
     const Json string_or_number = {{"type", {"string", "number", "null"}}};
     const Json error = object_of(
-        {{"pointer", text(), "JSON Pointer to the field"},
+        {{"pointer", word, "JSON Pointer to the field"},
          {"value", Json::object(), "value in the request"},
          {"range", or_null(list_of(string_or_number)),
           "[minimum, maximum], or the choices, or null"},
-         {"detail", text(), "a sentence"}});
+         {"detail", word, "a sentence"}});
     Json errors = list_of(error);
     errors["maxItems"] = most_errors;
     return object_of(
         {{"type", constant("about:blank"), "the status has the meaning that HTTP gives it"},
-         {"title", text(), "reason phrase of the HTTP status"},
-         {"status", {{"type", "integer"}, {"minimum", 400}, {"maximum", 599}}, "HTTP status"},
-         {"detail", text(), "a sentence"},
-         {"request_id", text(),
+         {"title", word, "reason phrase of the HTTP status"},
+         {"status", Json{{"type", "integer"}, {"minimum", 400}, {"maximum", 599}}, "HTTP status"},
+         {"detail", word, "a sentence"},
+         {"request_id", word,
           "name of the request in the server's log; also in the header X-Request-ID"},
          {"lacking?", one_of({"computing", "memory", "stopping", "sweeps", "threads"}),
           "with 503: the exhausted resource, computing (the queue is full), sweeps, threads or "
@@ -112,46 +112,46 @@ Json problem() {
 
 void add_service(Json& schemas) {
     const Json model = object_of(
-        {{"equations", list_of(text()), "equations of motion and of an impact"},
-         {"symbols", map_of(text()), "meaning of each symbol"},
-         {"sketch", text(), "file name of the page's sketch"}});
+        {{"equations", list_of(word), "equations of motion and of an impact"},
+         {"symbols", map_of(word), "meaning of each symbol"},
+         {"sketch", word, "file name of the page's sketch"}});
     Keys keys = {"model", model, "the mechanical model"};
     for (const ListedTable& table : listed_tables)
         keys = {keys, {table.key, list_of(reference("Field")), table.meaning}};
     schemas["Parameters"] = object_of(keys);
     schemas["Field"] = object_of(
-        {{"name", text(), "name of the field"},
+        {{"name", word, "name of the field"},
          {"type", enum_schema<FieldType>(), "type; lists in a query are separated by commas"},
-         {"group", text(), "heading under which a form shows the field"},
-         {"unit", text(), "unit; empty if the field has none"},
-         {"symbol", text(), "symbol in the model; can be empty"},
-         {"description", text(), "meaning"},
+         {"group", word, "heading under which a form shows the field"},
+         {"unit", word, "unit; empty if the field has none"},
+         {"symbol", word, "symbol in the model; can be empty"},
+         {"description", word, "meaning"},
          {"default", Json::object(), "default; null with default_note if it is not a plain value"},
-         {"default_note?", text(), "how the default follows from other fields"},
-         {"minimum?", number(), "smallest value of a number"},
-         {"maximum?", number(), "largest value of a number"},
-         {"choices?", list_of(text()), "permitted values of a choice"},
+         {"default_note?", word, "how the default follows from other fields"},
+         {"minimum?", number, "smallest value of a number"},
+         {"maximum?", number, "largest value of a number"},
+         {"choices?", list_of(word), "permitted values of a choice"},
          {"fields?", list_of(reference("Field")), "sub-fields of an object"}});
     const Json preset = object_of(
-        {{"name", text(), "value for the field preset"},
-         {"source", text(), "figure or table of the paper, or machine"},
-         {"doi", or_null(text()), "DOI of the paper; null for a machine"},
-         {"title", text(), "what the figure, table or machine shows"},
-         {"note", text(), "remark on how the preset reproduces it; can be empty"},
+        {{"name", word, "value for the field preset"},
+         {"source", word, "figure or table of the paper, or machine"},
+         {"doi", word_or_null, "DOI of the paper; null for a machine"},
+         {"title", word, "what the figure, table or machine shows"},
+         {"note", word, "remark on how the preset reproduces it; can be empty"},
          {"parameters", reference("SimulateRequest"), "fields that the preset sets"}});
     schemas["Presets"] = object_of(
-        {{"citation", text(), "citation of the paper"},
-         {"doi", text(), "DOI of the paper"},
+        {{"citation", word, "citation of the paper"},
+         {"doi", word, "DOI of the paper"},
          {"presets", list_of(preset), "one preset for each figure and table"}});
     schemas["Version"] = object_of(
         {{"name", constant("vines"), "name of the program"},
-         {"version", text(), "version of the release"},
-         {"commit", text(), "commit of the source; empty if unknown"},
-         {"compiler", text(), "compiler and its version"}});
+         {"version", word, "version of the release"},
+         {"commit", word, "commit of the source; empty if unknown"},
+         {"compiler", word, "compiler and its version"}});
     schemas["OpenApi"] = {
         {"type", "object"},
         {"required", {"openapi", "paths"}},
-        {"properties", {{"openapi", text()}, {"paths", {{"type", "object"}}}}}};
+        {"properties", {{"openapi", schema_of(word)}, {"paths", {{"type", "object"}}}}}};
     schemas["Status"] = object_of({{"status", constant("ok"), "the service is healthy"}});
     schemas["Problem"] = problem();
 }
@@ -166,21 +166,19 @@ Json response_components() {
 }
 
 Json header_components() {
-    const auto header = [](const char* description, Json schema) {
-        return Json{{"description", description}, {"schema", std::move(schema)}};
-    };
-    return {
-        {"X-Request-ID", header(
-                             "name of the request in the server's log: the request's own "
-                             "X-Request-ID, or the trace-id "
-                             "of its traceparent, or 16 generated digits",
-                             text())},
-        {"Server-Timing", header("time in ms for each step: queue, parse, solve, encode", text())},
-        {"ETag",
-         header("identifies this response; a later request with If-None-Match gets 304", text())},
-        {"Retry-After", header("seconds after which to retry", whole())},
-        {"WWW-Authenticate", header("the server requires a bearer key", text())},
-        {"Allow", header("methods that the path allows", text())}};
+    const Keys headers = {
+        {"X-Request-ID", word,
+         "name of the request in the server's log: the request's own X-Request-ID, or the trace-id "
+         "of its traceparent, or 16 generated digits"},
+        {"Server-Timing", word, "time in ms for each step: queue, parse, solve, encode"},
+        {"ETag", word, "identifies this response; a later request with If-None-Match gets 304"},
+        {"Retry-After", whole, "seconds after which to retry"},
+        {"WWW-Authenticate", word, "the server requires a bearer key"},
+        {"Allow", word, "methods that the path allows"}};
+    Json components;
+    for (const Key& header : headers)
+        components[header.name] = {{"description", header.description}, {"schema", header.schema}};
+    return components;
 }
 
 Json error_responses(std::set<int> statuses) {

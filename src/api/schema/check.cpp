@@ -40,8 +40,7 @@ struct Checked {
     bool is_permitted(const Json& value) const {
         return field.choices.empty() ? value.is_string() : is_choice(value);
     }
-    /// Checks each entry of an array of this kind by check(JSON Pointer relative to the field,
-    /// entry).
+    /// Calls check(where, entry) for each entry of an array of this kind; `where` as in fail().
     template <class Check>
     void each(const Json& array, const std::string& kind, Check check) const {
         if (!array.is_array()) return fail("", array, "must be an array of " + kind);
@@ -139,11 +138,6 @@ void check_field(const Checked& c, const Json& value) {
     }
 }
 
-std::string unknown_field(const FieldTable& table, const std::string& name) {
-    const std::string nearest = nearest_name(table, name);
-    return "unknown field" + (nearest.empty() ? "" : "; did you mean " + nearest + "?");
-}
-
 constexpr std::size_t longest_text = 2 * longest_echo;
 
 /// Visits values depth first until `left` of them are copied: the text of each has at least two
@@ -178,7 +172,8 @@ std::vector<FieldError> check(const FieldTable& table, const Json& object) {
         if (const Field* f = find(table, name)) check_field({*f, errors}, value);
         else
             errors.push_back(
-                {pointer(name), beginning_of(value), nullptr, unknown_field(table, name)});
+                {pointer(name), beginning_of(value), nullptr,
+                 "unknown field" + did_you_mean(table, name)});
     }
     return errors;
 }

@@ -15,12 +15,10 @@ struct FieldError {
     std::string detail;   ///< a sentence
 };
 
-/// Errors listed per request; further ones are only counted, so that the response to a long request
-/// stays short.
+/// Errors listed per request; further ones are only counted.
 inline constexpr std::size_t most_errors = 20;
 
-/// The errors that each field shows on its own, up to most_errors: unknown name, wrong type, value
-/// out of range, NaN.
+/// The errors that each field shows on its own, up to most_errors.
 std::vector<FieldError> check(const FieldTable& table, const Json& object);
 
 /// Bytes of an invalid value that a response repeats.

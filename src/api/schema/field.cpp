@@ -11,19 +11,15 @@
 
 namespace vines::api {
 
-Field::Field(
-    std::string name_, std::string description_, FieldType type_, Limits limits, Json fallback_,
-    std::string note, std::string unit_, std::string symbol_)
-    : name(std::move(name_)),
-      type(type_),
-      unit(std::move(unit_)),
-      symbol(std::move(symbol_)),
+Field::Field(std::string name_, FieldKind kind, Json fallback_, std::string description_)
+    : FieldKind(std::move(kind)),
+      name(std::move(name_)),
       description(std::move(description_)),
-      fallback(std::move(fallback_)),
-      fallback_note(std::move(note)) {
-    if (const auto* limit = std::get_if<Range>(&limits)) range = *limit;
-    if (auto* all = std::get_if<Choices>(&limits)) choices = std::move(*all);
-    if (auto* all = std::get_if<FieldTable>(&limits)) fields = std::move(*all);
+      fallback(std::move(fallback_)) {}
+
+Field::Field(std::string name_, FieldKind kind, Note note, std::string description_)
+    : Field(std::move(name_), std::move(kind), nullptr, std::move(description_)) {
+    fallback_note = std::move(note.text);
 }
 
 FieldTable grouped(const char* group, FieldTable rows) {
@@ -66,8 +62,7 @@ std::size_t distance(const std::string& a, const std::string& b) {
     return row.back();
 }
 
-/// The text as a number if all of it is one finite number; otherwise the text, which check()
-/// reports.
+/// The text as a finite number; otherwise the text, which check() reports.
 Json number_or_text(const std::string& text) {
     double value;
     const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
@@ -84,20 +79,20 @@ Json numbers_of(const std::string& text) {
 
 }  // namespace
 
-std::string nearest_name(std::span<const std::string> names, const std::string& name) {
+std::string did_you_mean(std::span<const std::string> names, const std::string& name) {
     if (name.size() > max_compared_length) return "";
     const auto nearest = std::min_element(
         names.begin(), names.end(),
         [&](const auto& a, const auto& b) { return distance(name, a) < distance(name, b); });
     // Allows one typing error per three letters, at least one.
     const std::size_t errors = std::max<std::size_t>(1, name.size() / 3);
-    return distance(name, *nearest) <= errors ? *nearest : "";
+    return distance(name, *nearest) <= errors ? "; did you mean " + *nearest + "?" : "";
 }
 
-std::string nearest_name(const FieldTable& table, const std::string& name) {
+std::string did_you_mean(const FieldTable& table, const std::string& name) {
     std::vector<std::string> names;
     for (const Field& field : table) names.push_back(field.name);
-    return nearest_name(names, name);
+    return did_you_mean(names, name);
 }
 
 std::vector<std::string> split(const std::string& text, char separator) {

@@ -1,12 +1,13 @@
-// A field of a request: its name, type, range, unit, default and description, and how its value is
-// written in a query. Parsing, checks, defaults, GET /v1/parameters, the OpenAPI document, the
-// command line and the page's form all follow from the tables of fields (tables.hpp).
+// A field of a request, and how its value is written in a query. Parsing, checks, defaults, GET
+// /v1/parameters, the OpenAPI document, the command line and the page's form all follow from the
+// tables of fields (tables.hpp).
 #pragma once
 
 #include <optional>
 #include <span>
 #include <string>
-#include <variant>
+#include <type_traits>
+#include <utility>
 #include <vector>
 
 #include "api/schema/json.hpp"
@@ -36,24 +37,15 @@ using Choices = std::vector<std::string>;
 struct Field;
 using FieldTable = std::vector<Field>;
 
-/// The range of a number, the choices of a string, or the sub-fields of an object.
-using Limits = std::variant<std::monostate, Range, Choices, FieldTable>;
-inline constexpr std::monostate any_value;
 /// Prevents overflow of a number whose reader checks it against the range of its parameter.
 inline constexpr Range any_number{-1e300, 1e300};
+/// The unit of a dimensionless number.
+inline constexpr const char* dimensionless = "dimensionless";
 
-struct Field {
-    Field(
-        std::string name, std::string description, FieldType type, Limits limits = any_value,
-        Json fallback = nullptr, std::string fallback_note = "", std::string unit = "",
-        std::string symbol = "");
-
-    std::string name;
+/// What a field holds.
+struct FieldKind {
     FieldType type;
-    std::string group, unit, symbol, description;
-    /// The default; null if it follows from other fields.
-    Json fallback;
-    std::string fallback_note;   ///< how the default follows from other fields
+    std::string unit, symbol;
     std::optional<Range> range;  ///< every number and integer has one
     /// The permitted values of a choice or of choices; empty: any string. For objects: strings that
     /// are permitted in place of the array.
@@ -61,6 +53,49 @@ struct Field {
     /// Sub-fields of an object; empty if the reader of the request checks them.
     FieldTable fields;
 };
+
+/// How a default follows from other fields.
+struct Note {
+    std::string text;
+};
+
+struct Field : FieldKind {
+    Field(std::string name, FieldKind kind, Json fallback, std::string description);
+    Field(std::string name, FieldKind kind, Note fallback, std::string description);
+
+    std::string name, group, description;
+    Json fallback;  ///< the default; null if it follows from other fields
+    std::string fallback_note;
+};
+
+/// Names for the rows of tables: number({0, 1}, "m", "b") is a FieldKind.
+namespace kinds {
+
+template <FieldType type, class Limits>
+struct KindOf {
+    FieldKind operator()(
+        Limits limits = {}, const std::string& unit = "", const std::string& symbol = "") const {
+        FieldKind kind{type, unit, symbol, {}, {}, {}};
+        if constexpr (std::is_same_v<Limits, Choices>) kind.choices = std::move(limits);
+        else if constexpr (std::is_same_v<Limits, FieldTable>) kind.fields = std::move(limits);
+        else kind.range = limits;
+        return kind;
+    }
+};
+inline constexpr KindOf<FieldType::number, Range> number;
+inline constexpr KindOf<FieldType::integer, Range> integer;
+inline constexpr KindOf<FieldType::choice, Choices> choice;
+inline constexpr KindOf<FieldType::choices, Choices> choices;
+inline constexpr KindOf<FieldType::interval, std::optional<Range>> interval;
+inline constexpr KindOf<FieldType::intervals, std::optional<Range>> intervals;
+inline constexpr KindOf<FieldType::integers, std::optional<Range>> integers;
+inline constexpr KindOf<FieldType::numbers, std::optional<Range>> numbers;
+inline constexpr KindOf<FieldType::object, FieldTable> json_object;
+inline constexpr KindOf<FieldType::objects, Choices> json_objects;
+
+inline const Note none{"none"}, required{"required"};
+
+}  // namespace kinds
 
 /// The rows as one group.
 FieldTable grouped(const char* group, FieldTable rows);
@@ -72,10 +107,10 @@ const Field* find(const FieldTable& table, const std::string& name);
 /// The value of a field of the table in an object, otherwise the table's default.
 Json value_or_default(const FieldTable& table, const Json& object, const char* name);
 
-/// The name, of those known, that a mistyped name probably stands for; empty if none is similar.
-/// Names and table must not be empty.
-std::string nearest_name(std::span<const std::string> names, const std::string& name);
-std::string nearest_name(const FieldTable& table, const std::string& name);
+/// "; did you mean NAME?" for the name, of those known, that a mistyped name probably stands for;
+/// empty if none is similar. Names and table must not be empty.
+std::string did_you_mean(std::span<const std::string> names, const std::string& name);
+std::string did_you_mean(const FieldTable& table, const std::string& name);
 
 /// The value of a field of this type that a query's text stands for. Text that cannot be read as
 /// this type stays a string, in whole or in part, which check() reports.

@@ -1,9 +1,6 @@
-// The table of /v1/identify: the fields of /v1/simulate that apply to a record, and how to read the
-// columns of the record.
+// The table of /v1/identify, and the channels of a record.
 #include <fmt/format.h>
 #include <fmt/ranges.h>
-
-#include <utility>
 
 #include "api/schema/enum_names.hpp"
 #include "api/schema/tables.hpp"
@@ -21,6 +18,11 @@ const std::vector<Unit> acceleration_units = {
 const std::vector<Unit> displacement_units = {
     {"m", 1, {"m"}}, {"mm", 1e-3, {"mm"}}, {"um", 1e-6, {"um"}}};
 
+const std::vector<Unit> time_units = {
+    {"s", 1, {"s", "sec", "hh:mm:ss"}}, {"ms", 1e-3, {"ms", "msec"}}};
+
+const std::vector<Unit> force_units = {{"N", 1, {"n"}}, {"kN", 1e3, {"kn"}}};
+
 /// Adapts a field of /v1/simulate to a record: some of the system is measured, not given.
 void adapt_to_record(Field& f) {
     if (f.name == "F" || f.name == "G") f.description += "; fitted if there is a record";
@@ -34,21 +36,17 @@ void adapt_to_record(Field& f) {
 
 Field column_row(const Channel& c) {
     return {
-        c.name + "_column",
-        "name of the column of " + (c.forcing.empty() ? c.quantity : c.forcing),
-        FieldType::choice,
-        any_value,
-        nullptr,
-        fmt::format(
+        c.name + "_column", kinds::choice(),
+        Note{fmt::format(
             "{}, or the first name that begins with {}{}", c.column,
-            fmt::join(c.beginnings, " or "), c.forcing.empty() ? "" : "; optional")};
+            fmt::join(c.beginnings, " or "), c.forcing.empty() ? "" : "; optional")},
+        "name of the column of " + (c.forcing.empty() ? c.quantity : c.forcing)};
 }
 
 Field unit_row(const Channel& c) {
     return {
-        c.name + "_unit",
-        "unit of " + c.quantity + ", unless the column's name or a row of units gives one",
-        FieldType::choice, unit_names(c), c.units[0].name};
+        c.name + "_unit", kinds::choice(unit_names(c)), c.units[0].name,
+        "unit of " + c.quantity + ", unless the column's name or a row of units gives one"};
 }
 
 std::vector<std::string> fixable() {
@@ -58,17 +56,15 @@ std::vector<std::string> fixable() {
 }
 
 FieldTable record_rows() {
-    using enum FieldType;
+    using namespace kinds;
     FieldTable rows = {
-        {"fixed",
+        {"fixed", choices(fixable()), Json::array(),
          "quantities that are not fitted to the record: f, F, phase, omega0, zeta, b and R keep "
-         "the values of the other fields, a sensor counts as free of errors",
-         choices, fixable(), Json::array()},
-        {"phase",
+         "the values of the other fields, a sensor counts as free of errors"},
+        {"phase", number({-7, 7}, "rad"),
+         Note{"fitted; if fixed, the phase of the forcing channel"},
          "phase of the base, which moves by F sin(2 pi f t + phase), t as in the record; used "
-         "if fixed contains phase",
-         number, Range{-7, 7}, nullptr, "fitted; if fixed, the phase of the forcing channel",
-         "rad"}};
+         "if fixed contains phase"}};
     const std::vector<const Channel*> channels = {
         &time_channel,
         &displacement_channel,
@@ -79,78 +75,52 @@ FieldTable record_rows() {
     for (const Channel* channel : channels) rows.push_back(column_row(*channel));
     for (const Channel* channel : channels) rows.push_back(unit_row(*channel));
     rows.push_back(
-        {"threshold", "smallest height at which a spike of the acceleration can be an impact",
-         number, Range{3, 1000}, 6, "", "standard deviations of the noise"});
+        {"threshold", number({3, 1000}, "standard deviations of the noise"), 6,
+         "smallest height at which a spike of the acceleration can be an impact"});
     rows.push_back(
-        {"impact_times_s",
-         "times of the impacts, for example an edited list; replaces their detection", numbers,
-         any_value, nullptr, "detected in the record", "s"});
+        {"impact_times_s", numbers({}, "s"), Note{"detected in the record"},
+         "times of the impacts, for example an edited list; replaces their detection"});
     for (const std::string name : {"m1", "c1", "k1", "m2"})
         rows.push_back(
-            {name + "_uncertainty",
+            {name + "_uncertainty", number({0, 0.5}), 0,
              "relative standard error of the given " + name +
                  "; for a record it becomes part of the standard errors of b, R and the other "
-                 "fitted values",
-             number, Range{0, 0.5}, 0});
+                 "fitted values"});
     return rows;
 }
 
 FieldTable make_identify_fields() {
-    using enum FieldType;
+    using namespace kinds;
     FieldTable table = simulate_fields_where([](const Field& f) {
         return is_of_system(f) || f.name == "exponents" || f.name == "max_points" ||
                f.name == "friction" || f.name == "mu" || f.name.starts_with("restitution");
     });
     for (Field& field : table) adapt_to_record(field);
     const Field include = {
-        "include",
+        "include", choices({"motion", "direct_exponents"}), Json::array(),
         "additional parts of the response for a record: motion, the fitted motion at the samples; "
-        "direct_exponents, exponents with histories by the direct method of the paper",
-        choices, Choices{"motion", "direct_exponents"}, Json::array()};
+        "direct_exponents, exponents with histories by the direct method of the paper"};
     return table + grouped("output", {include}) + grouped("record", record_rows());
 }
 
 }  // namespace
 
-const Channel time_channel{
-    .name = "time",
-    .column = "time_s",
-    .beginnings = {"time", "t"},
-    .units = {{"s", 1, {"s", "sec", "hh:mm:ss"}}, {"ms", 1e-3, {"ms", "msec"}}},
-    .quantity = "time"};
+const Channel time_channel{"time", "time_s", {"time", "t"}, time_units, "time"};
 const Channel displacement_channel{
-    .name = "displacement",
-    .column = "displacement_m",
-    .beginnings = {"displacement", "x"},
-    .units = displacement_units,
-    .quantity = "displacement"};
+    "displacement", "displacement_m", {"displacement", "x"}, displacement_units, "displacement"};
 const Channel acceleration_channel{
-    .name = "acceleration",
-    .column = "acceleration_m_s2",
-    .beginnings = {"acceleration", "a"},
-    .units = acceleration_units,
-    .quantity = "acceleration"};
+    "acceleration", "acceleration_m_s2", {"acceleration", "a"}, acceleration_units, "acceleration"};
 const Channel base_acceleration_channel{
-    .name = "base_acceleration",
-    .column = "base_acceleration_m_s2",
-    .beginnings = {"base_acceleration"},
-    .units = acceleration_units,
-    .quantity = "the base's acceleration",
-    .forcing = "the base's acceleration, which gives the forcing"};
+    "base_acceleration",       "base_acceleration_m_s2",
+    {"base_acceleration"},     acceleration_units,
+    "the base's acceleration", "the base's acceleration, which gives the forcing"};
 const Channel base_displacement_channel{
-    .name = "base_displacement",
-    .column = "base_displacement_m",
-    .beginnings = {"base_displacement"},
-    .units = displacement_units,
-    .quantity = "the base's displacement",
-    .forcing = "the base's displacement, which gives the forcing"};
-const Channel force_channel{
-    .name = "force",
-    .column = "force_N",
-    .beginnings = {"force"},
-    .units = {{"N", 1, {"n"}}, {"kN", 1e3, {"kn"}}},
-    .quantity = "the force",
-    .forcing = "a force on m1 that drives it instead of the base"};
+    "base_displacement",       "base_displacement_m",
+    {"base_displacement"},     displacement_units,
+    "the base's displacement", "the base's displacement, which gives the forcing"};
+const Channel force_channel{"force",     "force_N",
+                            {"force"},   force_units,
+                            "the force", "a force on m1 that drives it instead of the base"};
 
 std::vector<std::string> unit_names(const Channel& channel) {
     std::vector<std::string> names;

@@ -31,97 +31,92 @@ constexpr Range any_mass{1e-9, 1e9}, any_absorber_mass{1e-12, 1e9}, any_frequenc
 // Doubles hold every whole number up to 2^53.
 constexpr Range any_seed{0, 9007199254740992};
 
-const char* const whole = "none: give all SI fields, or a preset for the rest";
-const char* const from_si = "from the SI fields if any is given";
+const Note whole{"none: give all SI fields, or a preset for the rest"};
 const char* const speed = "m per unit of tau";
 
 FieldTable system_rows() {
-    using enum FieldType;
+    using namespace kinds;
     const Parameters table_1;  // the defaults
     return {
         // The reader of the request reports an unknown preset with the list of presets.
-        {"preset",
+        {"preset", choice(), none,
          "figure or table of the paper (GET /v1/presets); each other field that is given "
-         "replaces one value of the preset",
-         choice, any_value, nullptr, "none"},
-        {"b", "clearance: half-width of the cavity in which the ball moves", number,
-         core_range("b"), table_1.b, "", "m", "b"},
-        {"R", "restitution coefficient of both walls; not together with R_plus or R_minus", number,
-         core_range("R_plus"), table_1.R_plus, "", dimensionless, "R"},
-        {"R_plus", "restitution coefficient of the wall at x - y = +b", number,
-         core_range("R_plus"), nullptr, "R", dimensionless, "R+"},
-        {"R_minus", "restitution coefficient of the wall at x - y = -b", number,
-         core_range("R_minus"), nullptr, "R", dimensionless, "R-"},
-        {"damping",
+         "replaces one value of the preset"},
+        {"b", number(core_range("b"), "m", "b"), table_1.b,
+         "clearance: half-width of the cavity in which the ball moves"},
+        {"R", number(core_range("R_plus"), dimensionless, "R"), table_1.R_plus,
+         "restitution coefficient of both walls; not together with R_plus or R_minus"},
+        {"R_plus", number(core_range("R_plus"), dimensionless, "R+"), Note{"R"},
+         "restitution coefficient of the wall at x - y = +b"},
+        {"R_minus", number(core_range("R_minus"), dimensionless, "R-"), Note{"R"},
+         "restitution coefficient of the wall at x - y = -b"},
+        {"damping", choice(enum_choices<Damping>(), "", "zeta"), enum_json(table_1.damping),
          "equation_of_motion: zeta = epsilon lambda/2, eqs. (1), (6), (17), the physical damper "
          "c1; closed_form: zeta = epsilon lambda, eqs. (8)-(11), (19), (20), used for the numbers "
-         "in the paper",
-         choice, enum_choices<Damping>(), enum_json(table_1.damping), "", "", "zeta"},
+         "in the paper"},
     };
 }
 
 FieldTable reduced_rows() {
-    using enum FieldType;
+    using namespace kinds;
     const Parameters table_1;  // the defaults
-    return {
-        {"epsilon", "mass ratio m2/m1", number, core_range("epsilon"), table_1.epsilon, from_si,
-         dimensionless, "epsilon"},
-        {"lambda", "damping c1/(m2 omega0)", number, core_range("lambda"), table_1.lambda, from_si,
-         dimensionless, "lambda"},
-        {"G", "amplitude of the base over epsilon", number, core_range("G"), table_1.G, from_si,
-         "m", "G"},
-        {"Omega", "forcing frequency over omega0", number, core_range("Omega"), table_1.Omega,
-         from_si, dimensionless, "Omega"},
+    FieldTable rows = {
+        {"epsilon", number(core_range("epsilon"), dimensionless, "epsilon"), table_1.epsilon,
+         "mass ratio m2/m1"},
+        {"lambda", number(core_range("lambda"), dimensionless, "lambda"), table_1.lambda,
+         "damping c1/(m2 omega0)"},
+        {"G", number(core_range("G"), "m", "G"), table_1.G, "amplitude of the base over epsilon"},
+        {"Omega", number(core_range("Omega"), dimensionless, "Omega"), table_1.Omega,
+         "forcing frequency over omega0"},
     };
+    for (Field& row : rows) row.fallback_note = "from the SI fields if any is given";
+    return rows;
 }
 
 FieldTable si_rows() {
-    using enum FieldType;
+    using namespace kinds;
     return {
-        {"m1", "mass of the linear oscillator; SI and reduced fields exclude each other", number,
-         any_mass, nullptr, whole, "kg", "m1"},
-        {"f0", "natural frequency of the oscillator, sqrt(k1/m1)/(2 pi), instead of k1", number,
-         any_frequency, nullptr, "from k1", "Hz", "f0"},
-        {"k1", "stiffness of the oscillator", number, any_stiffness, nullptr, whole, "N/m", "k1"},
-        {"damping_ratio", "damping ratio of the oscillator, instead of c1", number, Range{0, 10},
-         nullptr, "from c1", dimensionless, "c1/(2 m1 omega0)"},
-        {"c1", "damping of the oscillator", number, any_damping, nullptr, whole, "N s/m", "c1"},
-        {"mass_ratio", "mass ratio m2/m1, instead of m2", number, core_range("epsilon"), nullptr,
-         "from m2", dimensionless, "m2/m1"},
-        {"m2", "mass of the ball", number, any_absorber_mass, nullptr, whole, "kg", "m2"},
-        {"F", "amplitude of the base, which moves by F sin(2 pi f t)", number, any_amplitude,
-         nullptr, whole, "m", "F"},
-        {"acceleration", "amplitude of the base's acceleration, instead of F", number,
-         any_acceleration, nullptr, "from F", "m/s^2"},
-        {"f", "forcing frequency", number, any_frequency, nullptr, whole, "Hz", "f"},
+        {"m1", number(any_mass, "kg", "m1"), whole,
+         "mass of the linear oscillator; SI and reduced fields exclude each other"},
+        {"f0", number(any_frequency, "Hz", "f0"), Note{"from k1"},
+         "natural frequency of the oscillator, sqrt(k1/m1)/(2 pi), instead of k1"},
+        {"k1", number(any_stiffness, "N/m", "k1"), whole, "stiffness of the oscillator"},
+        {"damping_ratio", number({0, 10}, dimensionless, "c1/(2 m1 omega0)"), Note{"from c1"},
+         "damping ratio of the oscillator, instead of c1"},
+        {"c1", number(any_damping, "N s/m", "c1"), whole, "damping of the oscillator"},
+        {"mass_ratio", number(core_range("epsilon"), dimensionless, "m2/m1"), Note{"from m2"},
+         "mass ratio m2/m1, instead of m2"},
+        {"m2", number(any_absorber_mass, "kg", "m2"), whole, "mass of the ball"},
+        {"F", number(any_amplitude, "m", "F"), whole,
+         "amplitude of the base, which moves by F sin(2 pi f t)"},
+        {"acceleration", number(any_acceleration, "m/s^2"), Note{"from F"},
+         "amplitude of the base's acceleration, instead of F"},
+        {"f", number(any_frequency, "Hz", "f"), whole, "forcing frequency"},
     };
 }
 
 /// Laws of the ball and of the walls beyond the paper.
 FieldTable law_rows() {
-    using enum FieldType;
+    using namespace kinds;
     const auto table = [](const char* name, const char* description) {
         const FieldTable columns = {
-            {"speed", "speeds |x' - y'| before the impact, ascending", numbers, any_value, nullptr,
-             "", speed},
-            {"speed_m_s", "the same in m/s, for a system in SI", numbers, any_value, nullptr, "",
-             "m/s"},
-            {"R", "restitution coefficient at each speed", numbers, any_value, nullptr, "",
-             dimensionless}};
-        return Field(name, description, object, columns, nullptr, "none: a constant R", "", "R(w)");
+            {"speed", numbers({}, speed), nullptr, "speeds |x' - y'| before the impact, ascending"},
+            {"speed_m_s", numbers({}, "m/s"), nullptr, "the same in m/s, for a system in SI"},
+            {"R", numbers({}, dimensionless), nullptr, "restitution coefficient at each speed"}};
+        return Field(
+            name, json_object(columns, "", "R(w)"), Note{"none: a constant R"}, description);
     };
     return {
-        {"gravity",
+        {"gravity", number(core_range("gravity"), "m", "g'"), 0,
          "acceleration of the free ball along its track, g sin(inclination)/omega0^2, positive "
-         "along +x; x is measured from the oscillator's rest without ball",
-         number, core_range("gravity"), 0, "", "m", "g'"},
-        {"inclination",
-         "inclination of the track, for a system in SI; pi/2: the ball falls along +x", number,
-         Range{-std::numbers::pi / 2, std::numbers::pi / 2}, nullptr, "from gravity", "rad"},
-        {"friction", "deceleration of the sliding ball, mu g cos(inclination)/omega0^2", number,
-         core_range("friction"), 0, "", "m", "f'"},
-        {"mu", "friction coefficient of the ball, for a system in SI", number, Range{0, 100},
-         nullptr, "from friction", dimensionless, "mu"},
+         "along +x; x is measured from the oscillator's rest without ball"},
+        {"inclination", number({-std::numbers::pi / 2, std::numbers::pi / 2}, "rad"),
+         Note{"from gravity"},
+         "inclination of the track, for a system in SI; pi/2: the ball falls along +x"},
+        {"friction", number(core_range("friction"), "m", "f'"), 0,
+         "deceleration of the sliding ball, mu g cos(inclination)/omega0^2"},
+        {"mu", number({0, 100}, dimensionless, "mu"), Note{"from friction"},
+         "friction coefficient of the ball, for a system in SI"},
         table(
             "restitution",
             "R of both walls as a function of the speed: {speed or speed_m_s, R}, linear between "
@@ -132,159 +127,133 @@ FieldTable law_rows() {
 }
 
 FieldTable load_rows() {
-    using enum FieldType;
+    using namespace kinds;
     constexpr Range any{-1e9, 1e9};  // of a list: a number, too, which a formula needs
     const FieldTable rows = {
-        {"kind",
+        {"kind", choice({"half_sine", "chirp", "noise", "harmonics"}), Note{"none: a record"},
          "half_sine, of half a period: acceleration_m_s2, displacement_m or force_N as a "
          "number, and duration_s; chirp: the same, f_from, f_to, rate, phase; noise of an "
          "acceleration, normally distributed: rms_m_s2, f_low, f_high, duration_s, seed; "
-         "harmonics, the sum of F sin(2 pi f t + phase): f, F, phase",
-         choice, Choices{"half_sine", "chirp", "noise", "harmonics"}, nullptr, "none: a record"},
-        {"time_s", "ascending times; the first one is tau = 0", numbers, any_value, nullptr, "none",
-         "s"},
-        {"acceleration_m_s2",
-         "acceleration of the base, which starts at rest: at each time, or the amplitude", numbers,
-         any, nullptr, "none", "m/s^2"},
-        {"displacement_m", "displacement of the base: at each time, or the amplitude", numbers, any,
-         nullptr, "none", "m"},
-        {"force_N", "force on m1: at each time, or the amplitude", numbers, any, nullptr, "none",
-         "N"},
-        {"duration_s", "duration of half_sine, chirp or noise", number, Range{1e-9, 1e9}, nullptr,
-         "none", "s"},
-        {"f_from", "frequency at the beginning of a chirp", number, any_frequency, nullptr, "none",
-         "Hz"},
-        {"f_to", "frequency at its end", number, any_frequency, nullptr, "none", "Hz"},
-        {"rate", "growth of the frequency of a chirp", choice, Choices{"linear", "logarithmic"},
-         "linear"},
-        {"phase", "phase of a chirp at its beginning, or of each of harmonics", numbers,
-         Range{-1e3, 1e3}, nullptr, "none", "rad"},
-        {"rms_m_s2", "root mean square of noise", number, Range{0, 1e9}, nullptr, "none", "m/s^2"},
-        {"f_low", "lowest frequency of noise", number, any_frequency, nullptr, "none", "Hz"},
-        {"f_high", "highest frequency of noise", number, any_frequency, nullptr, "none", "Hz"},
-        {"seed", "seed of noise, the same on every computer", integer, any_seed, 1},
-        {"f", "frequencies of harmonics", numbers, any_value, nullptr, "none", "Hz"},
-        {"F", "amplitudes of the base at these frequencies", numbers, any_value, nullptr, "none",
-         "m"},
+         "harmonics, the sum of F sin(2 pi f t + phase): f, F, phase"},
+        {"time_s", numbers({}, "s"), none, "ascending times; the first one is tau = 0"},
+        {"acceleration_m_s2", numbers(any, "m/s^2"), none,
+         "acceleration of the base, which starts at rest: at each time, or the amplitude"},
+        {"displacement_m", numbers(any, "m"), none,
+         "displacement of the base: at each time, or the amplitude"},
+        {"force_N", numbers(any, "N"), none, "force on m1: at each time, or the amplitude"},
+        {"duration_s", number({1e-9, 1e9}, "s"), none, "duration of half_sine, chirp or noise"},
+        {"f_from", number(any_frequency, "Hz"), none, "frequency at the beginning of a chirp"},
+        {"f_to", number(any_frequency, "Hz"), none, "frequency at its end"},
+        {"rate", choice({"linear", "logarithmic"}), "linear", "growth of the frequency of a chirp"},
+        {"phase", numbers(Range{-1e3, 1e3}, "rad"), none,
+         "phase of a chirp at its beginning, or of each of harmonics"},
+        {"rms_m_s2", number({0, 1e9}, "m/s^2"), none, "root mean square of noise"},
+        {"f_low", number(any_frequency, "Hz"), none, "lowest frequency of noise"},
+        {"f_high", number(any_frequency, "Hz"), none, "highest frequency of noise"},
+        {"seed", integer(any_seed), 1, "seed of noise, the same on every computer"},
+        {"f", numbers({}, "Hz"), none, "frequencies of harmonics"},
+        {"F", numbers({}, "m"), none, "amplitudes of the base at these frequencies"},
     };
     return {
-        {"forcing",
+        {"forcing", json_object(rows), Note{"none: F and f"},
          "load instead of F and f, for a system in SI: a record, time_s and one of "
          "acceleration_m_s2, displacement_m and force_N, linear between the samples; or a formula, "
-         "kind",
-         object, rows, nullptr, "none: F and f"}};
+         "kind"}};
 }
 
 FieldTable start_rows() {
-    using enum FieldType;
+    using namespace kinds;
     return {
-        {"x0", "displacement of the linear oscillator at tau = 0", number, core_range("x0"), 0, "",
-         "m", "x(0)"},
-        {"x_dot0", "velocity of the linear oscillator at tau = 0", number, core_range("x_dot0"), 0,
-         "", speed, "x'(0)"},
-        {"x_velocity0", "x_dot0 in m/s, for a system in SI", number, any_velocity, nullptr,
-         "from x_dot0", "m/s", "dx/dt(0)"},
-        {"y0", "displacement of the ball at tau = 0; |x0 - y0| <= b", number, core_range("y0"),
-         nullptr, "x0 + 0.95 b", "m", "y(0)"},
-        {"y_dot0", "velocity of the ball at tau = 0", number, core_range("y_dot0"), 0, "", speed,
-         "y'(0)"},
-        {"y_velocity0", "y_dot0 in m/s, for a system in SI", number, any_velocity, nullptr,
-         "from y_dot0", "m/s", "dy/dt(0)"},
+        {"x0", number(core_range("x0"), "m", "x(0)"), 0,
+         "displacement of the linear oscillator at tau = 0"},
+        {"x_dot0", number(core_range("x_dot0"), speed, "x'(0)"), 0,
+         "velocity of the linear oscillator at tau = 0"},
+        {"x_velocity0", number(any_velocity, "m/s", "dx/dt(0)"), Note{"from x_dot0"},
+         "x_dot0 in m/s, for a system in SI"},
+        {"y0", number(core_range("y0"), "m", "y(0)"), Note{"x0 + 0.95 b"},
+         "displacement of the ball at tau = 0; |x0 - y0| <= b"},
+        {"y_dot0", number(core_range("y_dot0"), speed, "y'(0)"), 0,
+         "velocity of the ball at tau = 0"},
+        {"y_velocity0", number(any_velocity, "m/s", "dy/dt(0)"), Note{"from y_dot0"},
+         "y_dot0 in m/s, for a system in SI"},
     };
 }
 
 FieldTable perturbation_rows() {
-    using enum FieldType;
+    using namespace kinds;
     const auto component = [](const char* name, const char* unit, const std::string& of_start) {
         return Field(
-            name, "difference added to " + of_start, number, core_range(of_start), 0, "", unit);
+            name, number(core_range(of_start), unit), 0, "difference added to " + of_start);
     };
     return {
         component("x", "m", "x0"),
         component("x_dot", speed, "x_dot0"),
         component("y", "m", "y0"),
         component("y_dot", speed, "y_dot0"),
-        {"seed",
+        {"seed", integer(any_seed), 1,
          "seed of a random direction in (x', x, y', y), the same on every computer; only with "
-         "size",
-         integer, any_seed, 1},
-        {"size", "Euclidean length of the random difference", number, Range{1e-18, 1e3}, nullptr,
-         "none"},
+         "size"},
+        {"size", number({1e-18, 1e3}), none, "Euclidean length of the random difference"},
     };
 }
 
 FieldTable run_rows() {
-    using enum FieldType;
+    using namespace kinds;
     return {
-        {"tau_end", "length of the run; not together with cycles", number, Range{1e-6, longest_run},
-         1709, "", dimensionless, "tau"},  // beyond the end of the first window of Table 2
-        {"cycles", "length of the run in forcing cycles of 2 pi/Omega", number, Range{1e-6, 1e6},
-         nullptr, "from tau_end", dimensionless},
-        {"window",
+        // The default is beyond the end of the first window of Table 2.
+        {"tau_end", number({1e-6, longest_run}, dimensionless, "tau"), 1709,
+         "length of the run; not together with cycles"},
+        {"cycles", number({1e-6, 1e6}, dimensionless), Note{"from tau_end"},
+         "length of the run in forcing cycles of 2 pi/Omega"},
+        {"window", interval({}, dimensionless, "[tau_s, tau_e]"), Note{"the whole run"},
          "interval for exponents, regime, energy, section, eigenvalues, matrices and manifold; the "
-         "exponents refer to the part from its first to its last impact",
-         interval, any_value, nullptr, "the whole run", dimensionless, "[tau_s, tau_e]"},
-        {"windows", "additional windows for the exponents, without histories", intervals, any_value,
-         Json::array(), "", dimensionless, "[[tau_s, tau_e], ...]"},
-        {"perturbation",
+         "exponents refer to the part from its first to its last impact"},
+        {"windows", intervals({}, dimensionless, "[[tau_s, tau_e], ...]"), Json::array(),
+         "additional windows for the exponents, without histories"},
+        {"perturbation", json_object(perturbation_rows()), none,
          "second run with a slightly different start, and its distance from the first run; the "
-         "difference of the starts is {x, x_dot, y, y_dot}, or a random one by {seed, size}",
-         object, perturbation_rows(), nullptr, "none"},
+         "difference of the starts is {x, x_dot, y, y_dot}, or a random one by {seed, size}"},
     };
 }
 
 FieldTable output_rows() {
-    using enum FieldType;
+    using namespace kinds;
     const std::vector<std::string> estimators = {"qr", "eigenvalues", "raw_product"};
     return {
-        {"include", "parts of the response", choices,
-         Choices{
-             "series", "impacts", "exponents", "eigenvalues", "matrices", "section", "energy",
-             "regime", "manifold"},
-         Json{"series", "impacts", "exponents"}},
-        {"exponents",
+        {"include",
+         choices(
+             {"series", "impacts", "exponents", "eigenvalues", "matrices", "section", "energy",
+              "regime", "manifold"}),
+         Json{"series", "impacts", "exponents"}, "parts of the response"},
+        {"exponents", choices(estimators), estimators,
          "estimators of the Lyapunov exponents: qr (Benettin), eigenvalues (33), raw_product "
-         "((33) unscaled in double precision, as in the paper)",
-         choices, estimators, estimators},
-        {"settle_cycles",
+         "((33) unscaled in double precision, as in the paper)"},
+        {"settle_cycles", integer({0, 1e6}, dimensionless), 0,
          "with regime: further cycles, at most, for which a chaotic run is continued to find "
-         "out whether a periodic orbit captures it",
-         integer, Range{0, 1e6}, 0, "", dimensionless},
-        {"samples_per_cycle", "samples of the series per forcing cycle", number, Range{1, 10000},
-         32, "", dimensionless},
-        section_phase_row(),
-        {"max_points",
+         "out whether a periodic orbit captures it"},
+        {"samples_per_cycle", number({1, 10000}, dimensionless), 32,
+         "samples of the series per forcing cycle"},
+        {"section_phase", number({0, 2 * std::numbers::pi}, "rad"), 0,
+         "value of Omega tau, modulo 2 pi, at which the stroboscopic section samples the state"},
+        {"max_points", integer({256, 1000000}), 20000,
          "maximum length of series and histories; longer series get a larger step, longer "
-         "histories are thinned",
-         integer, Range{256, 1000000}, 20000},
-        {"max_impacts", "number of impacts after which the run ends", integer, Range{1, 2000000},
-         100000},
+         "histories are thinned"},
+        {"max_impacts", integer({1, 2000000}), 100000,
+         "number of impacts after which the run ends"},
     };
 }
 
 FieldTable manifold_rows() {
-    using enum FieldType;
+    using namespace kinds;
     return {
-        {"V_max",
+        {"V_max", number({1e-12, 1e6}, speed, "V"),
+         Note{"twice the speed at the symmetry breaking"},
          "largest speed of the ball on the branch beyond the symmetry breaking; the branch ends "
-         "earlier if the motion does",
-         number, Range{1e-12, 1e6}, nullptr, "twice the speed at the symmetry breaking", speed,
-         "V"},
-        {"points", "points on each branch", integer, Range{2, 100000}, 200}};
+         "earlier if the motion does"},
+        {"points", integer({2, 100000}), 200, "points on each branch"}};
 }
 
 }  // namespace
-
-Field section_phase_row() {
-    return {
-        "section_phase",
-        "value of Omega tau, modulo 2 pi, at which the stroboscopic section samples the state",
-        FieldType::number,
-        Range{0, 2 * std::numbers::pi},
-        0,
-        "",
-        "rad"};
-}
 
 const FieldTable& simulate_fields() {
     static const FieldTable table = grouped("system", system_rows()) +
@@ -302,19 +271,17 @@ const FieldTable& manifold_fields() {
 }
 
 const FieldTable& form_fields() {
-    using enum FieldType;
+    using namespace kinds;
     static const FieldTable table = grouped(
         "answer",
-        {{"format",
+        {{"format", choice({"json", "csv", "cbor", "npz"}),
+          Note{"the format that the header Accept requests, otherwise json"},
           "format of the response: json; csv: one table; cbor: with typed arrays (RFC 8746); "
-          "npz: arrays for numpy.load",
-          choice, Choices{"json", "csv", "cbor", "npz"}, nullptr,
-          "the format that the header Accept requests, otherwise json"},
-         {"fields",
+          "npz: arrays for numpy.load"},
+         {"fields", choices(), Note{"everything"},
           "keys to keep in the response: names, or paths with dots as in impacts.tau; version, "
           "status, warnings and provenance are always kept. Other keys are not computed, unless "
-          "include requests them",
-          choices, any_value, nullptr, "everything"}});
+          "include requests them"}});
     return table;
 }
 

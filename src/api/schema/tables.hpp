@@ -1,6 +1,5 @@
 // The fields of each route. A new field is a new row in simulate_fields.cpp (which also holds the
-// tables of /v1/manifold and of the response's format), sweep_fields.cpp (also /v1/basins),
-// continue_fields.cpp, design_fields.cpp or identify_fields.cpp.
+// tables of /v1/manifold and of the response's format), stream_fields.cpp or identify_fields.cpp.
 #pragma once
 
 #include "api/schema/field.hpp"
@@ -13,9 +12,6 @@ inline constexpr double most_cycles = 2e6;
 
 /// The string that is permitted in place of a list of starts.
 inline constexpr const char* default_set_of_starts = "default set";
-
-/// The unit of a dimensionless number.
-inline constexpr const char* dimensionless = "dimensionless";
 
 /// Fields of /v1/simulate, in the order in which a form shows them.
 const FieldTable& simulate_fields();
@@ -63,9 +59,6 @@ std::vector<std::string> unit_names(const Channel& channel);
 
 extern const Channel time_channel, displacement_channel, acceleration_channel,
     base_acceleration_channel, base_displacement_channel, force_channel;
-
-/// The row `section_phase` of /v1/simulate and /v1/sweep.
-Field section_phase_row();
 
 /// True for a field of /v1/simulate that defines the system: group system, reduced or SI.
 bool is_of_system(const Field& field);
