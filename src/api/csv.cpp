@@ -11,7 +11,7 @@
 #include <optional>
 #include <set>
 
-#include "api/text_encoding.hpp"
+#include "api/parse.hpp"
 #include "core/motion/elementary.hpp"
 
 namespace vines::api {

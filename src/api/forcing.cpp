@@ -218,8 +218,13 @@ struct Reader {
 
 }  // namespace
 
-std::shared_ptr<const Load> read_load(const Json& forcing, const SiParameters& si) {
-    return Reader{forcing, si}.load();
+std::shared_ptr<const Load> ForcingField::load(const SiParameters& si) const {
+    const std::lock_guard lock(mutex_);
+    if (!last_ || omega0_ != si.omega0() || k1_ != si.k1) {
+        last_ = Reader{given_, si}.load();
+        omega0_ = si.omega0(), k1_ = si.k1;
+    }
+    return last_;
 }
 
 }  // namespace vines::api

@@ -1,8 +1,6 @@
 // The preset is restated in the kind of fields that the request uses, SI or reduced; its fields
 // that do not apply to the request's system or motion are dropped; the request's fields replace the
 // rest.
-#include "api/merged_fields.hpp"
-
 #include <algorithm>
 #include <iterator>
 #include <numbers>
@@ -10,7 +8,7 @@
 
 #include "api/presets.hpp"
 #include "api/properties.hpp"
-#include "api/schema/check.hpp"
+#include "api/system.hpp"
 
 namespace vines::api {
 

@@ -52,25 +52,27 @@ AnswerSize size_of(const SimulateRequest& r) {
     return size;
 }
 
-/// Lowers max_points and the count of listed impacts to fit the answer; warns of max_points.
-void fit_answer(SimulateRequest& r, std::size_t bytes, Warnings& warnings) {
+/// Lowers max_points and the count of listed impacts to fit the answer. Warns of max_points, and
+/// then returns true.
+bool fit_answer(SimulateRequest& r, std::size_t bytes, Warnings& warnings) {
     const AnswerSize size = size_of(r);
     const double room = std::max(0.0, static_cast<double>(bytes) - size.fixed);
     const double points = static_cast<double>(r.wanted.most_points) * size.point,
                  impacts = static_cast<double>(r.wanted.most_listed) * size.impact;
-    if (points + impacts <= room) return;
+    if (points + impacts <= room) return false;
     // Points or impacts that need less than half of the room get all that they need.
     const double for_points = std::min(
                      points, std::max({room / 2, room - impacts, fewest_points * size.point})),
                  for_impacts = room - for_points;
     if (impacts > for_impacts)
         r.wanted.most_listed = static_cast<std::size_t>(std::max(1.0, for_impacts / size.impact));
-    if (points <= for_points) return;
+    if (points <= for_points) return false;
     const std::size_t fit = static_cast<std::size_t>(for_points / size.point);
     warnings.push_back(
         "max_points is " + std::to_string(fit) + " instead of " +
         std::to_string(r.wanted.most_points) + limit_of(bytes));
     r.wanted.most_points = r.wanted.estimators.history = fit;
+    return true;
 }
 
 Json describe_parameters(const SimulateRequest& r) {
@@ -132,13 +134,6 @@ Result taken(Result& result) {
 
 ImpactScales scales_of(const SimulateRequest& r, const Analysis& a) {
     return {r.wanted.parameters.epsilon, a.typical_speed};
-}
-
-/// True if a warning reports that the answer was cut to its size limit.
-bool mentions_limit(const Warnings& warnings, std::size_t most_bytes) {
-    return std::ranges::any_of(warnings, [limit = limit_of(most_bytes)](const auto& warning) {
-        return warning.find(limit) != std::string::npos;
-    });
 }
 
 /// Adds the parts of an answer with their SI counterparts, as long as there is time; returns the
@@ -228,7 +223,7 @@ void add_manifold_warnings(
 Answer simulate_in_parts(
     SimulateRequest r, const Stop& stop, std::size_t most_bytes, std::size_t most_kept) {
     Warnings warnings = r.system.notes;
-    fit_answer(r, most_bytes, warnings);
+    const bool has_fewer_points = fit_answer(r, most_bytes, warnings);
     r.wanted.most_kept = most_kept;
     Analysis analysis = analyse(r.wanted, {.run = stop.requested, .late = stop.analysis_late});
     Json answer = object(
@@ -251,7 +246,10 @@ Answer simulate_in_parts(
             "null: " +
             joined(left_out));
     answer["warnings"] = warnings;
-    const bool is_fitted = mentions_limit(warnings, most_bytes);
+    const bool is_fitted =
+        has_fewer_points || std::ranges::any_of(analysis.warnings, [](const Warning& w) {
+            return std::holds_alternative<warning::ListCut>(w);
+        });
     std::optional<ListedRun> run;
     if (analysis.unkept_impacts && answer.contains("impacts") && !answer["impacts"].is_null())
         run = ListedRun{r.wanted, *analysis.unkept_impacts, scales_of(r, analysis)};
@@ -264,10 +262,6 @@ std::string write_answer(
         answer.json, answer.provenance, take,
         answer.run ? list_generator(*answer.run, answer.json, control, list_bytes)
                    : list_in_memory);
-}
-
-Json simulate_answer(SimulateRequest r, const Stop& stop, std::size_t most_bytes) {
-    return simulate_in_parts(std::move(r), stop, most_bytes, everything).json;
 }
 
 Json manifold_answer(const ManifoldRequest& r, const Stop& stop) {

@@ -74,7 +74,7 @@ inline constexpr std::size_t most_listed_bytes = 24 << 20;
 /// large. More than `most_kept` listed impacts become streamed lists.
 Answer simulate_in_parts(
     SimulateRequest request, const Stop& stop, std::size_t most_bytes = any_size,
-    std::size_t most_kept = most_kept_impacts);
+    std::size_t most_kept = everything);
 
 /// write_sealed(). Streamed lists are generated meanwhile by runs at `control`, as many per run as
 /// fit into `list_bytes`. Throws Cancelled if `control` stops a run.
@@ -92,9 +92,6 @@ Json streamed_impacts(const std::optional<SiParameters>& si);
 /// control.begin() and control.end(). The function throws Cancelled if `control` stops a run.
 JsonText::ListOf list_generator(
     const ListedRun& run, const Json& answer, RunControl& control, std::size_t most_bytes);
-
-/// The answer with all lists in memory.
-Json simulate_answer(SimulateRequest request, const Stop& stop, std::size_t most_bytes = any_size);
 
 /// The manifold, and the recommended b: null once stop.requested() returns true.
 Json manifold_answer(const ManifoldRequest& request, const Stop& stop = {});

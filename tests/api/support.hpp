@@ -25,7 +25,7 @@ inline Json read_back(Json answer) { return Json::parse(json_text(std::move(answ
 
 inline Json simulated(
     const SimulateRequest& request, const Stop& stop, std::size_t most_bytes = any_size) {
-    return read_back(simulate_answer(request, stop, most_bytes));
+    return read_back(simulate_in_parts(request, stop, most_bytes).json);
 }
 inline Json identified(const IdentifyRequest& request) {
     return read_back(identify_answer(request));

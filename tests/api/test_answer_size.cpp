@@ -41,7 +41,7 @@ TEST_CASE("lists of a long run are cut to their last max_points, with a warning"
 TEST_CASE("lists generated while an answer is sent have the bytes of lists in memory") {
     const Json request = parse_object(
         R"({"preset":"fig20","tau_end":400,"include":["impacts","exponents","section"]})");
-    const std::string whole = json_text(simulate_answer(read_simulate_request(request), {})) + "\n";
+    const std::string whole = json_line(simulate_in_parts(read_simulate_request(request), {}).json);
     // One list at a time, several, all.
     for (const std::size_t list_bytes : {0, 5000, 10000000}) {
         Answer answer = simulate_in_parts(read_simulate_request(request), {}, any_size, 10);
@@ -63,7 +63,7 @@ TEST_CASE("lists generated while an answer is sent have the bytes of lists in me
 
 TEST_CASE("an answer with all lists in memory needs no second run") {
     const SimulateRequest request = read_simulate_request({{"include", {"section"}}});
-    CHECK_FALSE(simulate_in_parts(request, {}).run);
+    CHECK_FALSE(simulate_in_parts(request, {}, any_size, most_kept_impacts).run);
     // No impacts are listed.
     CHECK_FALSE(simulate_in_parts(request, {}, any_size, 10).run);
 }
