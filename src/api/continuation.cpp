@@ -1,15 +1,12 @@
 #include "api/continuation.hpp"
 
 #include <algorithm>
-#include <cmath>
 #include <numbers>
 
 #include "api/describe.hpp"
 #include "api/json_text.hpp"
-#include "api/schema/tables.hpp"
 #include "api/version.hpp"
 #include "core/continuation/orbit_start.hpp"
-#include "core/motion/elementary.hpp"
 
 namespace vines::api {
 

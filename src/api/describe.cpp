@@ -2,11 +2,7 @@
 
 #include <fmt/format.h>
 
-#include <cmath>
-
 #include "api/properties.hpp"
-#include "core/motion/elementary.hpp"
-#include "core/motion/load.hpp"
 
 namespace vines::api {
 

@@ -2,12 +2,10 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <numbers>
 #include <numeric>
 #include <set>
 
-#include "api/describe.hpp"
 #include "api/schema/enum_names.hpp"
 #include "api/schema/tables.hpp"
 

@@ -1,14 +1,11 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cmath>
 #include <cstdlib>
-#include <optional>
 
 #include "api/columns.hpp"
 #include "api/identify_parts.hpp"
 #include "api/parse.hpp"
-#include "api/schema/check.hpp"
 #include "core/measurement/identified_impact.hpp"
 #include "core/motion/elementary.hpp"
 

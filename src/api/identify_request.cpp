@@ -1,12 +1,10 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cmath>
 #include <numbers>
 
 #include "api/identify_parts.hpp"
 #include "api/parse.hpp"
-#include "api/schema/check.hpp"
 #include "api/simulate.hpp"
 #include "core/measurement/measured_load.hpp"
 #include "core/measurement/measured_record.hpp"

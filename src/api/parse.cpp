@@ -10,7 +10,6 @@
 #include <charconv>
 #include <iterator>
 #include <memory>
-#include <type_traits>
 #include <unordered_set>
 
 #include "api/problem.hpp"

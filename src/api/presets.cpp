@@ -7,7 +7,6 @@
 
 #include "api/simulate.hpp"
 #include "core/measurement/synthetic_record.hpp"
-#include "core/motion/parameters.hpp"
 
 namespace vines::api {
 

@@ -3,14 +3,9 @@
 #include <openssl/evp.h>
 
 #include <algorithm>
-#include <cmath>
-#include <cstring>
 #include <memory>
-#include <stdexcept>
-#include <utility>
 
 #include "api/parse.hpp"
-#include "api/problem.hpp"
 #include "api/version.hpp"
 
 namespace vines::api {

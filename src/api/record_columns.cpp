@@ -1,7 +1,6 @@
 // Finds the column of a record that holds a channel, and its unit.
 #include <algorithm>
 #include <cctype>
-#include <optional>
 
 #include "api/identify_parts.hpp"
 

@@ -2,8 +2,6 @@
 #include <algorithm>
 
 #include "api/simulate.hpp"
-#include "api/system.hpp"
-#include "core/motion/load.hpp"
 
 namespace vines::api {
 

@@ -3,9 +3,6 @@
 // An answer can list more impacts than are kept in memory. Its part `impacts` then holds a
 // placeholder for each column. While the answer is written, the run is repeated, which yields the
 // same bits, for a few columns at a time.
-#include <memory>
-#include <utility>
-
 #include "api/cancellation.hpp"
 #include "api/simulate.hpp"
 

@@ -3,15 +3,11 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cmath>
-#include <mutex>
 
 #include "api/describe.hpp"
 #include "api/json_text.hpp"
 #include "api/properties.hpp"
-#include "api/schema/tables.hpp"
 #include "api/version.hpp"
-#include "core/motion/elementary.hpp"
 
 namespace vines::api {
 

@@ -1,11 +1,9 @@
 #include "api/sweep.hpp"
 
 #include <algorithm>
-#include <map>
 #include <numeric>
 
 #include "api/schema/enum_names.hpp"
-#include "api/schema/tables.hpp"
 #include "core/motion/elementary.hpp"
 
 namespace vines::api {
