@@ -7,7 +7,6 @@
 #include <set>
 
 #include "api/schema/enum_names.hpp"
-#include "api/schema/tables.hpp"
 
 namespace vines::api {
 

@@ -2,11 +2,8 @@
 #pragma once
 
 #include <map>
-#include <optional>
-#include <vector>
 
 #include "api/json_text.hpp"
-#include "api/schema/json.hpp"
 
 namespace vines::api {
 

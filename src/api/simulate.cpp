@@ -5,7 +5,6 @@
 #include <algorithm>
 
 #include "api/properties.hpp"
-#include "api/schema/field.hpp"
 #include "api/version.hpp"
 
 namespace vines::api {

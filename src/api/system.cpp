@@ -3,7 +3,6 @@
 #include <algorithm>
 
 #include "api/properties.hpp"
-#include "api/schema/field.hpp"
 
 namespace vines::api {
 
