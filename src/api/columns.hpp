@@ -41,7 +41,6 @@ Json describe(const Property<Source> (&properties)[count], const std::optional<S
 
 /// Upper bound of a value as JSON text with a comma, in bytes; `si`: and of its SI counterpart.
 double value_bytes(const Quantity& quantity, bool si);
-/// Upper bound of a row of these columns.
 double row_bytes(const auto& columns, bool si) {
     double bytes = 0;
     for (const auto& column : columns) bytes += value_bytes(column.quantity, si);
@@ -172,7 +171,6 @@ inline constexpr Property<std::vector<ManifoldPoint>> branch_columns[] = {
     {quantity.V.with("speeds of the ball, m per unit of tau"), at<&ManifoldPoint::V>},
 };
 
-/// Exponents as functions of time.
 inline constexpr Property<ExponentHistory> history_columns[] = {
     {quantity.tau.with("every impact, or every second, fourth, ..."), at<&ExponentHistory::tau>},
     {{"lambda1", since_start, ValueType::number_or_null}, at<&ExponentHistory::lambda, entry<0>>},
@@ -195,7 +193,6 @@ inline constexpr Property<std::vector<SynchronyStretch>> stretch_columns[] = {
      at<&SynchronyStretch::contacts>},
 };
 
-/// The motion of the second run.
 inline constexpr Property<Perturbation> perturbation_columns[] = {
     {quantity.tau.with("times of the series, up to the end of the shorter run"),
      at<&Perturbation::series, &Series::tau>},

@@ -54,8 +54,7 @@ struct ListedRun {
     ImpactScales scales;
 };
 
-/// An answer. Impact lists too long for memory are placeholders, generated from `run` while it is
-/// sent.
+/// An answer. Impact lists too long for memory are placeholders, see list_generator().
 struct Answer {
     Json json;
     std::optional<ListedRun> run = {};
@@ -69,9 +68,8 @@ inline constexpr std::size_t most_kept_impacts = 1 << 15;
 // Memory in bytes for a column of numbers and one of sides of the longest possible list.
 inline constexpr std::size_t most_listed_bytes = 24 << 20;
 
-/// An answer of at most about `most_bytes` of JSON: max_points and the count of listed impacts are
-/// lowered until it fits. But max_points stays at 256 or more, so that the answer can still be too
-/// large. More than `most_kept` listed impacts become streamed lists.
+/// An answer of at most about `most_bytes` of JSON, for which max_points, down to 256, and the
+/// count of listed impacts are lowered. More than `most_kept` listed impacts become streamed lists.
 Answer simulate_in_parts(
     SimulateRequest request, const Stop& stop, std::size_t most_bytes = any_size,
     std::size_t most_kept = everything);

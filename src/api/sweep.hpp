@@ -106,11 +106,8 @@ std::string error_line(int status, const std::string& detail, std::size_t points
 /// The first members of each line: {type, index, values of the axes, start}, without a reduced
 /// axis.
 Json describe_place(const SweepRequest& request, std::size_t line);
-
-/// The line of one point.
+/// The line of one point, or of a row of points along a reduced axis.
 Json describe_point(const SweepRequest& request, std::size_t line, const SweepPoint& point);
-
-/// The line of a row of points along a reduced axis.
 Json describe_row(const SweepRequest& request, std::size_t line, const RowSummary& row);
 
 /// {attractors, basins}: the result of /v1/basins.
@@ -130,7 +127,6 @@ public:
     /// outside the sweep; a place that differs from that of the index in any bit; a missing or
     /// unknown field, or one of another type; text that this program would write differently.
     std::string fault_of(const std::string& line, const Json& parsed) const;
-
     /// The fault of the index alone.
     std::string fault_of_index(const Json& parsed) const;
 
