@@ -24,28 +24,29 @@ struct AnswerSize {
 
 AnswerSize size_of(const SimulateRequest& r) {
     const bool si = r.system.si.has_value();
+    const Parts& parts = r.wanted.parts;
     const auto row = [si](const auto& columns) { return row_bytes(columns, si); };
     const auto value = [si](const Quantity& q) { return value_bytes(q, si); };
     AnswerSize size;
     size.fixed += window_bytes * static_cast<double>(r.wanted.windows.size());
-    if (r.includes("series")) size.point += row(series_columns) + row(relative_columns);
-    if (r.includes("exponents")) {
+    if (parts.series) size.point += row(series_columns) + row(relative_columns);
+    if (parts.exponents) {
         const double history = row(history_columns);
         if (r.wanted.estimators.qr) size.point += history;
         if (r.wanted.estimators.raw_product) size.point += history + value(quantity.rounding_floor);
         if (r.wanted.estimators.eigenvalues)
             size.fixed += static_cast<double>(most_eigenvalue_entries) * history;
     }
-    if (r.includes("eigenvalues")) size.point += row(moduli_columns);
-    if (r.includes("matrices")) size.point += row(matrix_columns);
-    if (r.includes("section"))
+    if (parts.moduli) size.point += row(moduli_columns);
+    if (parts.matrices) size.point += row(matrix_columns);
+    if (parts.section)
         size.point += row(impact_section_columns) + value(quantity.tau) + row(state_columns);
-    if (r.includes("regime")) size.point += row(moving_z_columns) + row(stretch_columns);
-    if (r.includes("manifold")) size.point += value(quantity.tau) + row(branch_columns);
+    if (parts.regime) size.point += row(moving_z_columns) + row(stretch_columns);
+    if (parts.manifold) size.point += value(quantity.tau) + row(branch_columns);
     if (r.wanted.perturbation)
         size.point += row(perturbation_columns) + value(quantity.predicted_distance);
     size.impact = row(sticking_columns);
-    if (r.includes("impacts")) size.impact += row(impact_columns) + row(touch_columns);
+    if (parts.impacts) size.impact += row(impact_columns) + row(touch_columns);
     if (r.wanted.perturbation) size.impact += row(touch_columns);
     return size;
 }
@@ -148,31 +149,34 @@ std::vector<std::string> add_parts(
         if (late) left_out.push_back(name);
         add(name, late ? Json(nullptr) : describe_part());
     };
-    const auto part = [&](const char* name, auto describe_part) {
-        if (r.includes(name)) add_in_time(name, describe_part);
+    const auto part = [&](bool is_wanted, const char* name, auto describe_part) {
+        if (is_wanted) add_in_time(name, describe_part);
     };
+    const Parts& parts = r.wanted.parts;
     const ExponentOptions& shown = r.wanted.estimators;
-    part("series", [&] {
+    part(parts.series, "series", [&] {
         const Series series = *taken(a.series);
         Json columns = describe(series_columns, series);
         if (!series.x_relative.empty()) columns.update(describe(relative_columns, series));
         return columns;
     });
-    part("impacts", [&] {
+    part(parts.impacts, "impacts", [&] {
         if (a.unkept_impacts) return streamed_impacts(r.system.si);
         return describe_impacts(taken(a.impacts), scales_of(r, a));
     });
     add("sticking", describe(sticking_columns, a.sticks));
     if (!a.touches.empty()) add("touches", describe(touch_columns, a.touches));
-    part("exponents", [&] { return describe_exponents(*a.exponents, shown, *a.regime, true); });
+    part(parts.exponents, "exponents", [&] {
+        return describe_exponents(*a.exponents, shown, *a.regime, true);
+    });
     if (!a.windows.empty())
         add("windows", describe_windows(a.windows, shown, *a.regime, a.outcome.tau));
-    part("eigenvalues", [&] { return describe(moduli_columns, *taken(a.moduli)); });
-    part("matrices", [&] { return describe(matrix_columns, *taken(a.matrices)); });
-    part("section", [&] { return describe_sections(*taken(a.sections)); });
-    part("energy", [&] { return describe_energy(*a.energy); });
-    part("regime", [&] { return describe_regime(*a.regime); });
-    part("manifold", [&] { return describe_manifold(*a.manifold); });
+    part(parts.moduli, "eigenvalues", [&] { return describe(moduli_columns, *taken(a.moduli)); });
+    part(parts.matrices, "matrices", [&] { return describe(matrix_columns, *taken(a.matrices)); });
+    part(parts.section, "section", [&] { return describe_sections(*taken(a.sections)); });
+    part(parts.energy, "energy", [&] { return describe_energy(*a.energy); });
+    part(parts.regime, "regime", [&] { return describe_regime(*a.regime); });
+    part(parts.manifold, "manifold", [&] { return describe_manifold(*a.manifold); });
     if (a.perturbation)
         add_in_time("perturbation", [&] { return describe_perturbation(*taken(a.perturbation)); });
     return left_out;
@@ -233,7 +237,7 @@ Answer simulate_in_parts(
     for (const Warning& w : analysis.warnings) warnings.push_back(text_of(w, most_bytes));
     const std::vector<std::string> left_out = add_parts(answer, r, analysis, stop);
     if (r.system.si) {
-        if (r.includes("energy") && answer["energy"].is_object())
+        if (r.wanted.parts.energy && answer["energy"].is_object())
             add_joules(answer["energy"], *r.system.si);
         answer["status"]["time_s"] = analysis.outcome.tau / r.system.si->omega0();
         add_si(answer["parameters"], *r.system.si);

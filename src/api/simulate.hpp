@@ -12,10 +12,7 @@ namespace vines::api {
 
 struct SimulateRequest {
     System system;
-    AnalysisRequest wanted;         ///< the run and its results; parameters as in `system`
-    std::set<std::string> include;  ///< parts of the answer
-
-    bool includes(const char* part) const { return include.contains(part); }
+    AnalysisRequest wanted;  ///< the run and its results; parameters as in `system`
 };
 
 /// Problem 422 naming every invalid field.

@@ -79,11 +79,13 @@ inline Problem refused(const std::string& text) {
     return problem_of([&] { read_simulate_request(parse_object(text)); });
 }
 
-/// The invalid fields.
-inline std::set<std::string> pointers(const Problem& problem) {
+/// The invalid fields, in alphabetical order: "/R /b".
+inline std::string pointers(const Problem& problem) {
     std::set<std::string> all;
     for (const FieldError& e : problem.errors) all.insert(e.pointer);
-    return all;
+    std::string text;
+    for (const std::string& pointer : all) text += (text.empty() ? "" : " ") + pointer;
+    return text;
 }
 
 inline SweepRequest sweep_request(const std::string& text) {
@@ -91,7 +93,7 @@ inline SweepRequest sweep_request(const std::string& text) {
 }
 
 /// The invalid fields of a request to /v1/sweep.
-inline std::set<std::string> faults_of_sweep(const std::string& text) {
+inline std::string faults_of_sweep(const std::string& text) {
     CAPTURE(text);
     const Problem problem = problem_of([&] { sweep_request(text); });
     CHECK(problem.status == 422);

@@ -5,7 +5,6 @@
 #include <cmath>
 #include <map>
 #include <numbers>
-#include <set>
 
 #include "api/cancellation.hpp"
 #include "api/parse.hpp"
@@ -19,7 +18,7 @@ using namespace vines::api;
 using namespace vines::test;
 
 TEST_CASE("lists of a long run are cut to their last max_points, with a warning") {
-    CHECK(pointers(refused(R"({"Omega":100,"tau_end":1e6})")) == std::set<std::string>{"/tau_end"});
+    CHECK(pointers(refused(R"({"Omega":100,"tau_end":1e6})")) == "/tau_end");
     const Json a = answer(
         R"({"b":0.003,"tau_end":4000,"max_points":256,
             "include":["eigenvalues","matrices","section","regime","manifold","impacts"]})");

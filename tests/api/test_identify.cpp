@@ -6,7 +6,6 @@
 #include <cstdio>
 #include <functional>
 #include <numbers>
-#include <set>
 #include <sstream>
 
 #include "api/csv.hpp"

@@ -6,7 +6,6 @@
 #include <cstdio>
 #include <functional>
 #include <numbers>
-#include <set>
 #include <sstream>
 
 #include "api/csv.hpp"
@@ -21,9 +20,7 @@ using namespace vines::test;
 TEST_CASE("parts of a record cannot be included for a list of impacts") {
     const Json request =
         parse_object(R"({"b":0.015,"impacts":{"tau":[1,2]},"include":["motion"]})");
-    CHECK(pointers(problem_of([&] {
-              read_identify_request(request);
-          })) == std::set<std::string>{"/include"});
+    CHECK(pointers(problem_of([&] { read_identify_request(request); })) == "/include");
 }
 
 TEST_CASE("a list without a complete chatter yields the hidden impacts and the sticking phases") {
@@ -75,7 +72,7 @@ TEST_CASE("impacts of a simulation with their states give its exponents") {
     broken["x"][2] = "a";
     CHECK(pointers(problem_of([&] {
               read_identify_request({{"preset", "fig20"}, {"impacts", broken}});
-          })) == std::set<std::string>{"/impacts/x_dot_after", "/impacts/x/2"});
+          })) == "/impacts/x/2 /impacts/x_dot_after");
 }
 
 TEST_CASE(

@@ -5,7 +5,6 @@
 #include <cmath>
 #include <map>
 #include <numbers>
-#include <set>
 
 #include "api/cancellation.hpp"
 #include "api/identify.hpp"

@@ -236,18 +236,18 @@ TEST_CASE("a sweep that sets a field twice is refused") {
     CHECK(
         faults_of_sweep(
             R"({"axes":[{"parameter":"x0","values":[0,0.01]}],"starts":[{"x0":0.005}]})") ==
-        std::set<std::string>{"/starts/0/x0"});
+        "/starts/0/x0");
     CHECK(
         faults_of_sweep(
             R"({"base":{"y0":0},"axes":[{"parameter":"b","values":[0.01]}],
-                "starts":"default set"})") == std::set<std::string>{"/base/y0"});
+                "starts":"default set"})") == "/base/y0");
     CHECK(
         faults_of_sweep(
             R"({"axes":[{"parameter":"y0","values":[0.01]}],"starts":"default set"})") ==
-        std::set<std::string>{"/axes/0/parameter"});
+        "/axes/0/parameter");
     CHECK(
         faults_of_sweep(R"({"axes":[{"parameter":"b","values":[0.01]}],"starts":"default"})") ==
-        std::set<std::string>{"/starts"});
+        "/starts");
 }
 
 TEST_CASE("a simulation from the state in a sweep's line reproduces the motion") {
