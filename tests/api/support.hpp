@@ -61,6 +61,10 @@ inline bool warns(const Json& a, const std::string& of) {
     return false;
 }
 
+inline bool contains(const std::string& text, const std::string& part) {
+    return text.find(part) != std::string::npos;
+}
+
 /// The Problem thrown by reading or answering a request.
 template <class Work>
 Problem problem_of(Work work) {

@@ -34,7 +34,7 @@ TEST_CASE("lists of a long run are cut to their last max_points, with a warning"
     CHECK(a["warnings"].size() >= 2);
     const Json early =
         answer(R"({"b":0.015,"max_impacts":5,"window":[1000,1709],"include":["regime","energy"]})");
-    CHECK(early["warnings"].dump().find("before its window") != std::string::npos);
+    CHECK(contains(early["warnings"].dump(), "before its window"));
 }
 
 TEST_CASE("lists generated while an answer is sent have the bytes of lists in memory") {

@@ -48,7 +48,7 @@ TEST_CASE("a sweep detects a dependence on the start by a second start at some p
         R"(},"axes":[{"parameter":"f","from":13,"to":15,"count":33}],"transient_cycles":100,
             "cycles":200)";
     const Swept single = swept(sweep + "}");
-    CHECK(single.warning.find("depends on the start") != std::string::npos);
+    CHECK(contains(single.warning, "depends on the start"));
     long tried = 0;
     for (const auto& [index, line] : single.lines) {
         CHECK(line.contains("second_start") == (index % 3 == 0));
