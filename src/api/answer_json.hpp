@@ -100,13 +100,11 @@ Json column(const Elements& elements, Value value) {
     }
 }
 
-/// The elements themselves.
 template <class Elements>
 Json column(const Elements& elements) {
     return column(elements, std::identity());
 }
 
-/// The packing of a value of an answer.
 inline Packed packing_of(const Json& value) {
     return value.is_binary() ? static_cast<Packed>(value.get_binary().subtype()) : Packed::no;
 }

@@ -1,7 +1,6 @@
 // /v1/basins: its request as a sweep over starts, and its result.
 #include "api/describe.hpp"
 #include "api/properties.hpp"
-#include "api/schema/tables.hpp"
 #include "api/sweep.hpp"
 #include "core/motion/impact.hpp"
 

@@ -85,20 +85,30 @@ Packed ImpactColumn::packing() const {
                                               : Packed::numbers;
 }
 
+void ImpactColumn::put(
+    std::uint8_t* list, std::size_t k, const Impact& impact, const ImpactScales& scales,
+    double factor) const {
+    const double number = value(impact, scales);
+    const auto set = [&](auto entry) {
+        std::memcpy(list + k * sizeof entry, &entry, sizeof entry);
+    };
+    switch (packing()) {
+        case Packed::integers: return set(static_cast<int>(number));
+        case Packed::flags: return set(number != 0);
+        default: return set(number * factor);
+    }
+}
+
 Json describe_impacts(const std::vector<Impact>& impacts, const ImpactScales& scales) {
     Json columns = Json::object();
     make_room(columns, std::size(impact_columns));
-    const auto list_of = [&](const ImpactColumn& c) {
-        switch (c.packing()) {
-            case Packed::integers:
-                return column(
-                    impacts, [&](const Impact& i) { return static_cast<int>(c.value(i, scales)); });
-            case Packed::flags:
-                return column(impacts, [&](const Impact& i) { return c.value(i, scales) != 0; });
-            default: return column(impacts, [&](const Impact& i) { return c.value(i, scales); });
-        }
-    };
-    for (const ImpactColumn& c : impact_columns) append(columns, {{c.quantity.name, list_of(c)}});
+    for (const ImpactColumn& c : impact_columns) {
+        std::vector<std::uint8_t> list(impacts.size() * entry_size(c.packing()));
+        for (std::size_t k = 0; k < impacts.size(); ++k) c.put(list.data(), k, impacts[k], scales);
+        append(
+            columns, {{c.quantity.name,
+                       Json::binary(std::move(list), static_cast<std::uint8_t>(c.packing()))}});
+    }
     return columns;
 }
 

@@ -1,11 +1,13 @@
 // The lists of an answer: the columns of each, as quantities and their values for a source.
 #pragma once
 
+#include <concepts>
 #include <functional>
 #include <string>
 
 #include "api/answer_json.hpp"
 #include "api/quantity.hpp"
+#include "api/schema/enum_names.hpp"
 #include "core/analysis/analysis.hpp"
 #include "core/measurement/measurement.hpp"
 
@@ -39,7 +41,6 @@ Json describe(const Property<Source> (&properties)[count], const std::optional<S
 
 /// Upper bound of a value as JSON text with a comma, in bytes; `si`: and of its SI counterpart.
 double value_bytes(const Quantity& quantity, bool si);
-/// Upper bound of a row of these columns.
 double row_bytes(const auto& columns, bool si) {
     double bytes = 0;
     for (const auto& column : columns) bytes += value_bytes(column.quantity, si);
@@ -50,201 +51,210 @@ MatrixByRows by_rows(const Matrix4& m);
 /// ok, R is not known, hidden, or the reason why the exponents exclude the impact.
 std::string status_word(const IdentifiedImpact& impact);
 
-/// The column `member` of each entry of a list.
-template <auto member>
-inline constexpr auto of_each = [](const auto& entries) { return column(entries, member); };
+inline Json json_of(double value) { return finite_or_null(value); }
+inline Json json_of(std::integral auto value) { return value; }
+inline Json json_of(const Interval& interval) { return interval; }
+inline Json json_of(const Exponents& values) { return column(values); }
+inline Json json_of(const std::string& text) { return text; }
+inline Json json_of(RegimeType type) { return name_of(type); }
+inline Json json_of(Verdict verdict) { return enum_json(verdict); }
+inline Json json_of(Damping damping) { return enum_json(damping); }
+inline Json json_of(Json value) { return value; }
+template <class Entry>
+Json json_of(const std::vector<Entry>& list) {
+    return column(list);
+}
+template <class Value>
+Json json_of(const std::optional<Value>& value) {
+    return value ? json_of(*value) : Json(nullptr);
+}
 
-/// The list `member` of a result.
-template <auto member>
-inline constexpr auto of_result = [](const auto& result) { return column(result.*member); };
-
-template <auto member>
-inline constexpr auto matrices_of =
-    [](const TransferMatrices& m) { return column(m.*member, by_rows); };
-
-template <auto member>
-inline constexpr auto at_impact = [](const std::vector<SectionPoint>& points) {
-    return column(points, [](const SectionPoint& p) { return std::invoke(member, p.impact); });
-};
+/// The value at the end of a path of members; its last one can be a function. JSON null if an
+/// optional value on the path is missing; of a list, the column of the values of its entries.
+template <auto first, auto... rest>
+decltype(auto) value_at(const auto& source) {
+    if constexpr (requires { source.has_value(); })
+        return source ? json_of(value_at<first, rest...>(*source)) : Json(nullptr);
+    else if constexpr (requires { source.capacity(); })
+        return column(source, [](const auto& entry) { return value_at<first, rest...>(entry); });
+    else if constexpr (sizeof...(rest) > 0) return value_at<rest...>(std::invoke(first, source));
+    else return std::invoke(first, source);
+}
+template <auto... path>
+inline constexpr auto at =
+    [](const auto& source) -> Json { return json_of(value_at<path...>(source)); };
 
 template <std::size_t k>
-inline constexpr auto exponent_of = [](const ExponentHistory& history) {
-    return column(history.lambda, [](const Exponents& lambda) { return lambda[k]; });
-};
-
-template <auto member>
-inline constexpr auto of_second_run =
-    [](const Perturbation& p) { return column(p.series.*member); };
+inline constexpr auto entry = [](const Exponents& values) { return values[k]; };
 
 inline constexpr const char* since_start = "exponent from the window's start to tau";
 
 // Parts of a simulation. x and y in m, derivatives with respect to tau.
 
 inline constexpr Property<Series> series_columns[] = {
-    {quantity.tau.with("equal steps, then the end of the run"), of_result<&Series::tau>},
-    {quantity.x, of_result<&Series::x>},
-    {quantity.x_dot, of_result<&Series::x_dot>},
-    {quantity.y, of_result<&Series::y>},
-    {quantity.y_dot, of_result<&Series::y_dot>},
-    {quantity.x_ddot, of_result<&Series::x_ddot>},
+    {quantity.tau.with("equal steps, then the end of the run"), at<&Series::tau>},
+    {quantity.x, at<&Series::x>},
+    {quantity.x_dot, at<&Series::x_dot>},
+    {quantity.y, at<&Series::y>},
+    {quantity.y_dot, at<&Series::y_dot>},
+    {quantity.x_ddot, at<&Series::x_ddot>},
 };
 
 /// Where a load moves the base.
 inline constexpr Property<Series> relative_columns[] = {
-    {quantity.x_relative, of_result<&Series::x_relative>},
+    {quantity.x_relative, at<&Series::x_relative>},
 };
 
 inline constexpr Property<std::vector<StickingPhase>> sticking_columns[] = {
-    {quantity.side.with("side of the wall"),
-     [](const auto& sticks) { return column(sticks, [](auto& s) { return s.start.side; }); }},
+    {quantity.side.with("side of the wall"), at<&StickingPhase::start, &StickStart::side>},
     {quantity.tau_start.with("start: the end of the chatter"),
-     [](const auto& sticks) { return column(sticks, [](auto& s) { return s.start.tau; }); }},
-    {quantity.tau_end.with("release, or the end of the run"), of_each<&StickingPhase::tau_end>},
+     at<&StickingPhase::start, &StickStart::tau>},
+    {quantity.tau_end.with("release, or the end of the run"), at<&StickingPhase::tau_end>},
     {{"impacts",
       "impacts of the chatter, all on this side; it is followed until the remainder would last "
       "less than 1e-9 in tau",
       ValueType::whole},
-     [](const auto& sticks) { return column(sticks, [](auto& s) { return s.start.impacts; }); }},
+     at<&StickingPhase::start, &StickStart::impacts>},
 };
 
 inline constexpr Property<std::vector<GrazingEvent>> touch_columns[] = {
-    {quantity.tau, of_each<&GrazingEvent::tau>},
-    {quantity.side, of_each<&GrazingEvent::side>},
+    {quantity.tau, at<&GrazingEvent::tau>},
+    {quantity.side, at<&GrazingEvent::side>},
 };
 
 /// Moduli of the eigenvalues of J, M, T at each impact.
 inline constexpr Property<TransferModuli> moduli_columns[] = {
-    {quantity.tau, of_result<&TransferModuli::tau>},
+    {quantity.tau, at<&TransferModuli::tau>},
     {{"J", "transfer matrix of the flight before the impact: four moduli, descending",
       ValueType::moduli},
-     of_result<&TransferModuli::J>},
-    {{"M", "transfer matrix of the impact", ValueType::moduli}, of_result<&TransferModuli::M>},
+     at<&TransferModuli::J>},
+    {{"M", "transfer matrix of the impact", ValueType::moduli}, at<&TransferModuli::M>},
     {{"T", "T = M J; null if rounding leaves no accurate digit, at the end of a chatter",
       ValueType::exponents},
-     of_result<&TransferModuli::T>},
+     at<&TransferModuli::T>},
     {{"M_condition", "condition number of M in the Frobenius norm; null if R = 0",
       ValueType::number_or_null},
-     of_result<&TransferModuli::M_condition>},
+     at<&TransferModuli::M_condition>},
 };
 
 inline constexpr Property<TransferMatrices> matrix_columns[] = {
-    {quantity.tau, of_result<&TransferMatrices::tau>},
+    {quantity.tau, at<&TransferMatrices::tau>},
     {{"order", "order of rows and columns: x_dot, x, y_dot, y", ValueType::component},
      [](const TransferMatrices&) { return Json{"x_dot", "x", "y_dot", "y"}; }},
     {{"J", "transfer matrix of the flight before the impact, by rows", ValueType::matrix},
-     matrices_of<&TransferMatrices::J>},
+     at<&TransferMatrices::J, by_rows>},
     {{"M", "transfer matrix of the impact, by rows", ValueType::matrix},
-     matrices_of<&TransferMatrices::M>},
-    {{"T", "T = M J, by rows", ValueType::matrix}, matrices_of<&TransferMatrices::T>},
+     at<&TransferMatrices::M, by_rows>},
+    {{"T", "T = M J, by rows", ValueType::matrix}, at<&TransferMatrices::T, by_rows>},
 };
 
 inline constexpr Property<std::vector<SectionPoint>> impact_section_columns[] = {
-    {quantity.tau.with("time of each impact in the window"), at_impact<&Impact::tau>},
-    {quantity.side, at_impact<&Impact::side>},
-    {quantity.phase, at_impact<&Impact::phase>},
-    {quantity.x, at_impact<&Impact::x>},
-    {quantity.x_dot_after, at_impact<&Impact::x_dot_after>},
-    {quantity.y_dot_after, at_impact<&Impact::y_dot_after>},
-    {quantity.time_difference, of_each<&SectionPoint::since>},
+    {quantity.tau.with("time of each impact in the window"),
+     at<&SectionPoint::impact, &Impact::tau>},
+    {quantity.side, at<&SectionPoint::impact, &Impact::side>},
+    {quantity.phase, at<&SectionPoint::impact, &Impact::phase>},
+    {quantity.x, at<&SectionPoint::impact, &Impact::x>},
+    {quantity.x_dot_after, at<&SectionPoint::impact, &Impact::x_dot_after>},
+    {quantity.y_dot_after, at<&SectionPoint::impact, &Impact::y_dot_after>},
+    {quantity.time_difference, at<&SectionPoint::since>},
 };
 
 inline constexpr Property<std::vector<State>> state_columns[] = {
-    {quantity.x, of_each<&State::x>},
-    {quantity.x_dot, of_each<&State::x_dot>},
-    {quantity.y, of_each<&State::y>},
-    {quantity.y_dot, of_each<&State::y_dot>},
+    {quantity.x, at<&State::x>},
+    {quantity.x_dot, at<&State::x_dot>},
+    {quantity.y, at<&State::y>},
+    {quantity.y_dot, at<&State::y_dot>},
 };
 
 inline constexpr Property<std::vector<ManifoldPoint>> branch_columns[] = {
-    {quantity.C.with("amplitudes of the oscillator, m"), of_each<&ManifoldPoint::C>},
-    {quantity.V.with("speeds of the ball, m per unit of tau"), of_each<&ManifoldPoint::V>},
+    {quantity.C.with("amplitudes of the oscillator, m"), at<&ManifoldPoint::C>},
+    {quantity.V.with("speeds of the ball, m per unit of tau"), at<&ManifoldPoint::V>},
 };
 
-/// Exponents as functions of time.
 inline constexpr Property<ExponentHistory> history_columns[] = {
-    {quantity.tau.with("every impact, or every second, fourth, ..."),
-     of_result<&ExponentHistory::tau>},
-    {{"lambda1", since_start, ValueType::number_or_null}, exponent_of<0>},
-    {{"lambda2", since_start, ValueType::number_or_null}, exponent_of<1>},
-    {{"lambda3", since_start, ValueType::number_or_null}, exponent_of<2>},
-    {{"lambda4", since_start, ValueType::number_or_null}, exponent_of<3>},
+    {quantity.tau.with("every impact, or every second, fourth, ..."), at<&ExponentHistory::tau>},
+    {{"lambda1", since_start, ValueType::number_or_null}, at<&ExponentHistory::lambda, entry<0>>},
+    {{"lambda2", since_start, ValueType::number_or_null}, at<&ExponentHistory::lambda, entry<1>>},
+    {{"lambda3", since_start, ValueType::number_or_null}, at<&ExponentHistory::lambda, entry<2>>},
+    {{"lambda4", since_start, ValueType::number_or_null}, at<&ExponentHistory::lambda, entry<3>>},
 };
 
 inline constexpr Property<Regime> moving_z_columns[] = {
-    {quantity.tau.with("middle of ten cycles"), of_result<&Regime::moving_tau>},
-    {{"z", "contacts per cycle in these ten"}, of_result<&Regime::moving_z>},
+    {quantity.tau.with("middle of ten cycles"), at<&Regime::moving_tau>},
+    {{"z", "contacts per cycle in these ten"}, at<&Regime::moving_z>},
 };
 
 inline constexpr Property<std::vector<SynchronyStretch>> stretch_columns[] = {
-    {quantity.tau_start.with("start of each stretch"), of_each<&SynchronyStretch::tau_start>},
-    {quantity.tau_end.with("end of each stretch"), of_each<&SynchronyStretch::tau_end>},
+    {quantity.tau_start.with("start of each stretch"), at<&SynchronyStretch::tau_start>},
+    {quantity.tau_end.with("end of each stretch"), at<&SynchronyStretch::tau_end>},
     {{"synchronised", "true for a synchronised stretch", ValueType::flag},
-     of_each<&SynchronyStretch::synchronised>},
+     at<&SynchronyStretch::synchronised>},
     {{"contacts", "number of contacts in the stretch", ValueType::whole},
-     of_each<&SynchronyStretch::contacts>},
+     at<&SynchronyStretch::contacts>},
 };
 
-/// The motion of the second run.
 inline constexpr Property<Perturbation> perturbation_columns[] = {
     {quantity.tau.with("times of the series, up to the end of the shorter run"),
-     of_second_run<&Series::tau>},
+     at<&Perturbation::series, &Series::tau>},
     {quantity.x.with("displacement of the oscillator in the second run, m"),
-     of_second_run<&Series::x>},
+     at<&Perturbation::series, &Series::x>},
     {quantity.x_dot.with("velocity of the oscillator in the second run"),
-     of_second_run<&Series::x_dot>},
-    {quantity.y.with("displacement of the ball in the second run, m"), of_second_run<&Series::y>},
-    {quantity.y_dot.with("velocity of the ball in the second run"), of_second_run<&Series::y_dot>},
+     at<&Perturbation::series, &Series::x_dot>},
+    {quantity.y.with("displacement of the ball in the second run, m"),
+     at<&Perturbation::series, &Series::y>},
+    {quantity.y_dot.with("velocity of the ball in the second run"),
+     at<&Perturbation::series, &Series::y_dot>},
 };
 
 // Parts of an identification.
 
 /// Time and wall of an impact, which the direct estimate shares with the fit; the other columns.
 inline constexpr Property<std::vector<IdentifiedImpact>> identified_wall_columns[] = {
-    {quantity.tau, of_each<&IdentifiedImpact::tau>},
-    {quantity.side.with("wall"), of_each<&IdentifiedImpact::side>},
+    {quantity.tau, at<&IdentifiedImpact::tau>},
+    {quantity.side.with("wall"), at<&IdentifiedImpact::side>},
     {quantity.tau_error.with("standard error of the time; null in a list or if hidden"),
-     of_each<&IdentifiedImpact::tau_error>},
+     at<&IdentifiedImpact::tau_error>},
 };
 
 inline constexpr Property<std::vector<IdentifiedImpact>> identified_columns[] = {
-    {quantity.x.with("displacement, m").or_null(), of_each<&IdentifiedImpact::x>},
+    {quantity.x.with("displacement, m").or_null(), at<&IdentifiedImpact::x>},
     {quantity.x_dot_before.with("estimated velocity of the oscillator").or_null(),
-     of_each<&IdentifiedImpact::x_dot_before>},
+     at<&IdentifiedImpact::x_dot_before>},
     {quantity.x_dot_after.with("estimated velocity of the oscillator").or_null(),
-     of_each<&IdentifiedImpact::x_dot_after>},
+     at<&IdentifiedImpact::x_dot_after>},
     {quantity.x_ddot_before.with("estimated acceleration of the oscillator").or_null(),
-     of_each<&IdentifiedImpact::x_ddot_before>},
+     at<&IdentifiedImpact::x_ddot_before>},
     {quantity.y_dot_before.with("velocity of the ball, from its flights, eq. (43)").or_null(),
-     of_each<&IdentifiedImpact::y_dot_before>},
+     at<&IdentifiedImpact::y_dot_before>},
     {quantity.y_dot_after.with("velocity of the ball, from its flights, eq. (43)").or_null(),
-     of_each<&IdentifiedImpact::y_dot_after>},
+     at<&IdentifiedImpact::y_dot_after>},
     {{"R", "restitution coefficient, eq. (4); null for the first and the last impact",
       ValueType::number_or_null},
-     of_each<&IdentifiedImpact::R>},
+     at<&IdentifiedImpact::R>},
     {{"momentum_error", "error of x' + epsilon y', over the median jump of x'",
       ValueType::number_or_null},
-     of_each<&IdentifiedImpact::momentum_error>},
+     at<&IdentifiedImpact::momentum_error>},
     {{"status",
       "ok, R is not known, hidden, or the reason why the exponents exclude the impact: R outside "
       "[0, 1], momentum not kept, picked twice, ...",
       ValueType::word},
-     [](const auto& impacts) { return column(impacts, status_word); }},
+     at<status_word>},
 };
 
 /// The fitted motion at chosen times, without these.
 inline constexpr Property<std::vector<OscillatorMotion>> fitted_motion_columns[] = {
-    {quantity.x, of_each<&OscillatorMotion::x>},
-    {quantity.x_dot, of_each<&OscillatorMotion::x_dot>},
+    {quantity.x, at<&OscillatorMotion::x>},
+    {quantity.x_dot, at<&OscillatorMotion::x_dot>},
     {quantity.x_ddot.with("acceleration of the oscillator, without the pulses of impacts"),
-     of_each<&OscillatorMotion::x_ddot>},
+     at<&OscillatorMotion::x_ddot>},
 };
 
 /// Impacts of a run of the identified system.
 inline constexpr Property<std::vector<Impact>> forward_impact_columns[] = {
-    {quantity.tau, of_each<&Impact::tau>},
-    {quantity.side.with("wall"), of_each<&Impact::side>},
-    {quantity.x.with("displacement, m"), of_each<&Impact::x>},
-    {quantity.x_dot_after, of_each<&Impact::x_dot_after>},
+    {quantity.tau, at<&Impact::tau>},
+    {quantity.side.with("wall"), at<&Impact::side>},
+    {quantity.x.with("displacement, m"), at<&Impact::x>},
+    {quantity.x_dot_after, at<&Impact::x_dot_after>},
 };
 
 /// The columns of `impacts` in a request to /v1/identify.
@@ -280,6 +290,10 @@ struct ImpactColumn {
     double (*value)(const Impact& impact, const ImpactScales& scales);
 
     Packed packing() const;
+    /// Sets entry k of the packed list to the value for the impact; a number times `factor`.
+    void put(
+        std::uint8_t* list, std::size_t k, const Impact& impact, const ImpactScales& scales,
+        double factor = 1) const;
 };
 template <auto member>
 inline constexpr auto of_impact = [](const Impact& impact, const ImpactScales&) {

@@ -1,14 +1,11 @@
 #include "api/continuation.hpp"
 
 #include <algorithm>
-#include <cmath>
 #include <numbers>
 
 #include "api/describe.hpp"
 #include "api/json_text.hpp"
-#include "api/schema/tables.hpp"
 #include "api/version.hpp"
-#include "core/motion/elementary.hpp"
 
 namespace vines::api {
 
@@ -32,7 +29,7 @@ Json continued(const Json& given, const char* name) {
 
 /// The parameter's value in the base: given, of its preset, or the default.
 std::optional<double> value_in(const SystemFields& fields, const std::string& parameter) {
-    if (const auto given = fields.*system_number(parameter)) return *given;
+    if (fields.has(parameter)) return fields.number(parameter);
     const ResolvedSystem system = resolve(fields);
     Json values = describe(properties::reduced, system.parameters);
     values["R"] = system.parameters.R_plus;
@@ -50,11 +47,10 @@ std::optional<double> value_in(const SystemFields& fields, const std::string& pa
 
 std::function<std::optional<Parameters>(const std::vector<double>&)> systems_along(
     const SystemFields& fields, const std::vector<std::string>& parameters) {
-    std::vector<SystemNumber> numbers;
-    for (const std::string& name : parameters) numbers.push_back(system_number(name));
-    return [fields, numbers](const std::vector<double>& values) {
+    return [fields, parameters](const std::vector<double>& values) {
         SystemFields changed = fields;
-        for (std::size_t i = 0; i < numbers.size(); ++i) changed.*numbers[i] = values[i];
+        for (std::size_t i = 0; i < parameters.size(); ++i)
+            changed.numbers[parameters[i]] = values[i];
         const Parameters p = resolve(changed).parameters;
         const bool valid = validate(p, default_state(p)).empty();
         return valid ? std::optional(p) : std::nullopt;
@@ -249,10 +245,10 @@ SystemFields read_family(ContinueRequest& r, const Json& given) {
     if (!at)
         refuse(
             "/base",
-            r.parameter == "inclination" && fields.gravity
+            r.parameter == "inclination" && fields.has("gravity")
                 ? "the base states its gravity: continue along gravity, or state the "
                   "inclination instead"
-            : r.parameter == "mu" && fields.friction
+            : r.parameter == "mu" && fields.has("friction")
                 ? "the base states its friction: continue along friction, or state mu instead"
                 : r.parameter + " is a parameter of a system in SI: the base must be one, too");
     r.at = *at;

@@ -60,19 +60,18 @@ inline constexpr Property<OrbitPoint> branch_point[] = {
          return Json(static_cast<double>(o.sequence.impacts()) / o.sequence.cycles());
      }},
     {{"period_cycles", "period in forcing cycles", whole},
-     [](const OrbitPoint& o) { return Json(o.sequence.cycles()); }},
-    {{"impacts", "impacts per period", whole},
-     [](const OrbitPoint& o) { return Json(o.sequence.impacts()); }},
+     at<&OrbitPoint::sequence, &ImpactSequence::cycles>},
+    {{"impacts", "impacts per period", whole}, at<&OrbitPoint::sequence, &ImpactSequence::impacts>},
     {{"sticks", "sticking phases per period; the chatter before one is one impact", whole},
      [](const OrbitPoint& o) { return Json(o.sequence.sticks * (o.sequence.mirrored ? 2 : 1)); }},
     {{"symmetric", "true if a shift by half a period gives the mirror image", flag},
-     [](const OrbitPoint& o) { return Json(o.sequence.mirrored); }},
+     at<&OrbitPoint::sequence, &ImpactSequence::mirrored>},
     {{"x_max", "maximum of |x| over the period, m"},
-     [](const OrbitPoint& o) { return json_of(o.measures.x_max); }},
-    {{"x_rms", "rms of x, m"}, [](const OrbitPoint& o) { return json_of(o.measures.x_rms); }},
+     at<&OrbitPoint::measures, &OrbitMeasures::x_max>},
+    {{"x_rms", "rms of x, m"}, at<&OrbitPoint::measures, &OrbitMeasures::x_rms>},
     {{"share_impacts", "fraction of the dissipated energy; null if none is dissipated",
       number_or_null},
-     [](const OrbitPoint& o) { return json_of(o.measures.share_impacts); }},
+     at<&OrbitPoint::measures, &OrbitMeasures::share_impacts>},
 };
 
 }  // namespace properties

@@ -7,12 +7,9 @@
 #include <cctype>
 #include <charconv>
 #include <chrono>
-#include <cmath>
-#include <optional>
 #include <set>
 
-#include "api/text_encoding.hpp"
-#include "core/motion/elementary.hpp"
+#include "api/parse.hpp"
 
 namespace vines::api {
 
@@ -34,24 +31,13 @@ struct CsvLine {
     std::string_view text;
 };
 
-class CsvLines {
-public:
-    explicit CsvLines(std::string_view text) : rest_(text) {}
-
-    std::optional<CsvLine> next() {
-        if (rest_.empty()) return std::nullopt;
-        const std::size_t end = std::min(rest_.find_first_of("\r\n"), rest_.size());
-        const CsvLine line{++number_, rest_.substr(0, end)};
-        const bool two = rest_.substr(end, 2) == "\r\n";
-        rest_.remove_prefix(std::min(end + (two ? 2 : 1), rest_.size()));
-        return line;
-    }
-    std::size_t left() const { return rest_.size(); }  ///< bytes
-
-private:
-    std::string_view rest_;
-    std::size_t number_ = 0;
-};
+/// Takes the first line, without its end, off a text.
+std::string_view take_line(std::string_view& text) {
+    const std::string_view line = text.substr(0, text.find_first_of("\r\n"));
+    const bool two = text.substr(line.size(), 2) == "\r\n";
+    text.remove_prefix(std::min(line.size() + (two ? 2 : 1), text.size()));
+    return line;
+}
 
 /// The text of a comment; nullopt for any other line.
 std::optional<std::string_view> comment_of(std::string_view line) {
@@ -277,21 +263,6 @@ private:
     bool something_ = false;
 };
 
-/// The decimal signs of a record. A record with both is refused: one may group thousands.
-class DecimalSigns {
-public:
-    void see(std::string_view number, std::size_t line, const std::string& column) {
-        const std::size_t at = number.find_first_of(".,");
-        if (at == number.npos) return;
-        (number[at] == ',' ? comma_ : point_) = true;
-        if (comma_ && point_)
-            fault(line, column, number, "the record has decimal points and decimal commas");
-    }
-
-private:
-    bool comma_ = false, point_ = false;
-};
-
 /// The separator of a line "sep=;", which spreadsheets write and read.
 std::optional<char> declared_separator(std::string_view line) {
     line = trimmed(line);
@@ -319,51 +290,58 @@ Csv parse_csv(std::string_view bytes, const ReadLimits& limits) {
     CancelCheck cancel = limits.check();
     std::size_t numbers = 0;
     std::string room;
-    CsvLines lines(as_utf8(bytes, room));
+    std::string_view rest = as_utf8(bytes, room);
     Csv csv;
     Heading heading;
     std::optional<char> declared, separator;
     std::vector<Cell> cells;
-    DecimalSigns signs;
+    bool has_points = false, has_commas = false;  // as decimal signs
     std::optional<CsvLine> footer;
-    while (const auto line = lines.next()) {
+    for (CsvLine line; !rest.empty();) {
+        line = {line.number + 1, take_line(rest)};
         cancel.step();
-        if (trimmed(line->text).empty()) continue;
+        if (trimmed(line.text).empty()) continue;
         if (csv.columns.empty()) {
-            if (!declared && (declared = declared_separator(line->text))) continue;
-            if (!comment_of(line->text)) separator = separator_of_numbers(line->text, declared);
+            if (!declared && (declared = declared_separator(line.text))) continue;
+            if (!comment_of(line.text)) separator = separator_of_numbers(line.text, declared);
             if (!separator) {
-                heading.take(*line);
+                heading.take(line);
                 continue;
             }
-            csv.columns =
-                heading.columns(*line, cells_of(line->text, *separator).size(), *separator);
+            csv.columns = heading.columns(line, cells_of(line.text, *separator).size(), *separator);
             // Room for lines like this one: columns of a large record are not copied as they grow.
-            const std::size_t rows = lines.left() / (line->text.size() + 1) + 2;
+            const std::size_t rows = rest.size() / (line.text.size() + 1) + 2;
             for (CsvColumn& column : csv.columns) column.values.reserve(rows);
             csv.lines.reserve(rows);
-        } else if (comment_of(line->text)) {
+        } else if (comment_of(line.text)) {
             continue;
         }
-        split_cells(line->text, *separator, cells);
+        split_cells(line.text, *separator, cells);
         if (cells.empty()) continue;
         if (is_text(cells, *separator)) {
             if (!footer) footer = line;
             continue;
         }
         if (footer) fault(footer->number, "", footer->text, "is text, but lines of numbers follow");
-        complete_cells(cells, *line, csv.columns.size(), *separator);
+        complete_cells(cells, line, csv.columns.size(), *separator);
         if ((numbers += cells.size()) > limits.most_numbers)
             throw Problem(
                 413, "the record has more than " + std::to_string(limits.most_numbers) +
                          " numbers; send fewer samples or columns");
         for (std::size_t k = 0; k < cells.size(); ++k) {
             cancel.step();
-            csv.columns[k].values.push_back(
-                number_in(cells[k], *separator, line->number, csv.columns[k].name));
-            signs.see(cells[k].text, line->number, csv.columns[k].name);
+            const std::string_view text = cells[k].text;
+            CsvColumn& column = csv.columns[k];
+            column.values.push_back(number_in(cells[k], *separator, line.number, column.name));
+            if (const std::size_t sign = text.find_first_of(".,"); sign != text.npos)
+                (text[sign] == ',' ? has_commas : has_points) = true;
+            // One of them could group thousands.
+            if (has_points && has_commas)
+                fault(
+                    line.number, column.name, text,
+                    "the record has decimal points and decimal commas");
         }
-        csv.lines.push_back(static_cast<std::uint32_t>(line->number));
+        csv.lines.push_back(static_cast<std::uint32_t>(line.number));
     }
     if (csv.columns.empty())
         throw Problem(

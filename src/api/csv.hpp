@@ -40,7 +40,7 @@ struct Csv {
 /// The separator is the first of semicolon, tab, comma, blank that makes numbers of the first data
 /// line, or that of a first line "sep=;". Decimal commas are read where commas do not separate, and
 /// within quotation marks. Trailing empty cells are dropped. Lines end with LF, CR LF or CR;
-/// encodings as in text_encoding.hpp. Fortran's exponents (1.5D+03) are read, and time stamps
+/// encodings as in as_utf8(). Fortran's exponents (1.5D+03) are read, and time stamps
 /// hh:mm:ss with or without an ISO date, in seconds. Problem 422 naming line and column for a cell
 /// that is not a finite number, or a line of another length; Problem 413 and Cancelled by `limits`.
 Csv parse_csv(std::string_view text, const ReadLimits& limits = {});

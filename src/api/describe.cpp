@@ -2,11 +2,7 @@
 
 #include <fmt/format.h>
 
-#include <cmath>
-
 #include "api/properties.hpp"
-#include "core/motion/elementary.hpp"
-#include "core/motion/load.hpp"
 
 namespace vines::api {
 
@@ -245,34 +241,35 @@ Json describe_window(const TransferProduct& product) {
 void add_estimators(
     Json& j, const TransferProduct& product, const Growth& growth, const ExponentOptions& shown,
     bool histories) {
-    if (shown.qr) {
-        Json qr = describe_final(product.qr());
-        qr["standard_error"] = column(growth.standard_error);
-        qr["degrees_of_freedom"] = degrees_of_freedom;
-        qr["interval"] = describe_interval(product.qr(), growth.standard_error);
-        if (histories) qr["history"] = describe(history_columns, product.qr_history());
-        j["qr"] = std::move(qr);
-    }
-    if (shown.eigenvalues) {
-        j["eigenvalues"] = describe_final(product.eigenvalues());
-        if (histories)
-            j["eigenvalues"]["history"] = describe(history_columns, product.eigenvalues_history());
-    }
+    const auto add = [&](const char* name, const Exponents& values, const Json& more,
+                         const ExponentHistory& history) {
+        Json part = describe_final(values);
+        part.update(more);
+        if (histories) part["history"] = describe(history_columns, history);
+        j[name] = std::move(part);
+    };
+    if (shown.qr)
+        add("qr", product.qr(),
+            {{"standard_error", column(growth.standard_error)},
+             {"degrees_of_freedom", degrees_of_freedom},
+             {"interval", describe_interval(product.qr(), growth.standard_error)}},
+            product.qr_history());
+    if (shown.eigenvalues)
+        add("eigenvalues", product.eigenvalues(), Json::object(), product.eigenvalues_history());
     if (!shown.raw_product) return;
-    const double start = product.start_tau();
+    const auto floor_at = [start = product.start_tau()](const Exponents& values, double tau) {
+        return rounding_floor(values[0], tau - start);
+    };
     const Exponents final = product.raw_product();
-    Json raw = describe_final(final);
-    raw[quantity.rounding_floor.name] =
-        finite_or_null(rounding_floor(final[0], product.end_tau() - start));
-    if (histories) {
-        const ExponentHistory& history = product.raw_product_history();
-        raw["history"] = describe(history_columns, history);
-        std::vector<double> floor;
-        for (std::size_t i = 0; i < history.tau.size(); ++i)
-            floor.push_back(rounding_floor(history.lambda[i][0], history.tau[i] - start));
-        raw["history"][quantity.rounding_floor.name] = column(floor);
-    }
-    j["raw_product"] = std::move(raw);
+    const ExponentHistory& history = product.raw_product_history();
+    const char* const floor = quantity.rounding_floor.name;
+    add("raw_product", final, {{floor, finite_or_null(floor_at(final, product.end_tau()))}},
+        history);
+    if (!histories) return;
+    std::vector<double> floors;
+    for (std::size_t i = 0; i < history.tau.size(); ++i)
+        floors.push_back(floor_at(history.lambda[i], history.tau[i]));
+    j["raw_product"]["history"][floor] = column(floors);
 }
 
 Json describe_exponents(

@@ -2,14 +2,11 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <numbers>
 #include <numeric>
 #include <set>
 
-#include "api/describe.hpp"
 #include "api/schema/enum_names.hpp"
-#include "api/schema/tables.hpp"
 
 namespace vines::api {
 

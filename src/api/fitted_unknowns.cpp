@@ -1,9 +1,7 @@
 #include <fmt/format.h>
 
-#include <cmath>
 #include <numbers>
 
-#include "api/answer_json.hpp"
 #include "api/identify_parts.hpp"
 #include "api/schema/enum_names.hpp"
 #include "core/motion/elementary.hpp"

@@ -22,15 +22,12 @@ struct Formula {
     bool of_quantity;  ///< its amplitude is one of `quantities`
     std::vector<std::string> required, optional;
 };
-const std::vector<Formula>& formulas() {
-    static const std::vector<Formula> list = {
-        {"half_sine", true, {"duration_s"}, {}},
-        {"chirp", true, {"f_from", "f_to", "duration_s"}, {"rate", "phase"}},
-        {"noise", false, {"rms_m_s2", "f_low", "f_high", "duration_s"}, {"seed"}},
-        {"harmonics", false, {"f", "F"}, {"phase"}},
-    };
-    return list;
-}
+const std::vector<Formula> formulas = {
+    {"half_sine", true, {"duration_s"}, {}},
+    {"chirp", true, {"f_from", "f_to", "duration_s"}, {"rate", "phase"}},
+    {"noise", false, {"rms_m_s2", "f_low", "f_high", "duration_s"}, {"seed"}},
+    {"harmonics", false, {"f", "F"}, {"phase"}},
+};
 
 struct Reader {
     const Json& given;
@@ -205,7 +202,7 @@ struct Reader {
     std::shared_ptr<const Load> load() {
         if (!given.contains("kind")) return record();
         const Formula& formula = *std::ranges::find_if(
-            formulas(), [this](const Formula& f) { return given["kind"] == f.kind; });
+            formulas, [this](const Formula& f) { return given["kind"] == f.kind; });
         check_fields(formula);
         if (!formula.of_quantity) return given["kind"] == "noise" ? noise() : harmonics();
         const auto [name, kind, unit] = moved();
@@ -218,8 +215,13 @@ struct Reader {
 
 }  // namespace
 
-std::shared_ptr<const Load> read_load(const Json& forcing, const SiParameters& si) {
-    return Reader{forcing, si}.load();
+std::shared_ptr<const Load> ForcingField::load(const SiParameters& si) const {
+    const std::lock_guard lock(mutex_);
+    if (!last_ || omega0_ != si.omega0() || k1_ != si.k1) {
+        last_ = Reader{given_, si}.load();
+        omega0_ = si.omega0(), k1_ = si.k1;
+    }
+    return last_;
 }
 
 }  // namespace vines::api

@@ -1,15 +1,12 @@
-#include "api/identify.hpp"
 
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cmath>
 
 #include "api/describe.hpp"
 #include "api/identify_parts.hpp"
 #include "api/properties.hpp"
 #include "api/version.hpp"
-#include "core/motion/elementary.hpp"
 
 namespace vines::api {
 

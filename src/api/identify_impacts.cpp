@@ -1,14 +1,11 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cmath>
 #include <cstdlib>
-#include <optional>
 
 #include "api/columns.hpp"
 #include "api/identify_parts.hpp"
 #include "api/parse.hpp"
-#include "api/schema/check.hpp"
 #include "core/measurement/identified_impact.hpp"
 #include "core/motion/elementary.hpp"
 
@@ -62,9 +59,7 @@ public:
         if (errors_.size() < most_errors)
             errors_.push_back({"/impacts/" + at, value, nullptr, text});
     }
-    void refuse_faults() {
-        if (!errors_.empty()) refuse(std::move(errors_));
-    }
+    void refuse_faults() const { refuse_any(errors_); }
 
 private:
     std::vector<double> values_of(const std::string& name, double factor, bool may_be_null) {

@@ -3,7 +3,6 @@
 
 #include "api/csv.hpp"
 #include "api/identify.hpp"
-#include "api/schema/tables.hpp"
 
 namespace vines::api {
 

@@ -1,12 +1,10 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cmath>
 #include <numbers>
 
 #include "api/identify_parts.hpp"
 #include "api/parse.hpp"
-#include "api/schema/check.hpp"
 #include "api/simulate.hpp"
 #include "core/measurement/measured_load.hpp"
 #include "core/measurement/measured_record.hpp"
@@ -312,13 +310,6 @@ void take_load(IdentifyRequest& r, ForcingSamples s, CancelCheck& cancel) {
     m.sin *= ratio, m.cos *= ratio;
 }
 
-/// Moves a member out of an object; null if the member is missing.
-Json taken(Json& object, const char* name) {
-    Json value = object.contains(name) ? std::move(object[name]) : Json();
-    object.erase(name);
-    return value;
-}
-
 /// Request with a record: reads the forcing, the fields and the columns in this order, because a
 /// measured channel of the forcing supplies f unless the request gives it; then its load.
 IdentifyRequest read_request_of_record(const Json& given, Csv csv, CancelCheck& cancel) {
@@ -345,7 +336,8 @@ IdentifyRequest read_request_of_record(const Json& given, Csv csv, CancelCheck& 
 IdentifyRequest read_identify_request(Json fields, const ReadLimits& limits) {
     CancelCheck cancel = limits.check();
     const bool has_record = fields.contains("record"), has_impacts = fields.contains("impacts");
-    Json record = taken(fields, "record"), impacts = taken(fields, "impacts");
+    Json record = std::move(fields["record"]), impacts = std::move(fields["impacts"]);
+    for (const char* name : {"record", "impacts"}) fields.erase(name);
     if (has_record == has_impacts)
         refuse(
             "/record",

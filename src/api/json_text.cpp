@@ -7,11 +7,6 @@ namespace vines::api {
 
 namespace {
 
-char* write_word(char* to, const char* word, std::size_t length) {
-    std::memcpy(to, word, length);
-    return to + length;
-}
-
 /// Plain form of a number between 1e-4 and 1e15 that is not an integer. std::to_chars writes 17
 /// digits in scientific form, "d.ddde-04" to "d.ddde+14", in 5/6 of its time for the plain form;
 /// here only the point is moved.
@@ -46,14 +41,14 @@ constexpr std::size_t longest_integer = 20;
 }  // namespace
 
 char* write_number(char* to, double value) {
-    if (!std::isfinite(value)) return write_word(to, "null", 4);
+    if (!std::isfinite(value)) return std::copy_n("null", 4, to);
     const double size = std::abs(value);
     if (std::signbit(value)) *to++ = '-';
     if (size != 0 && !(size >= 1e-4 && size < 1e15))
         return std::to_chars(to, to + room_for_number - 1, size, std::chars_format::scientific).ptr;
     const auto whole = static_cast<std::int64_t>(size);
     if (static_cast<double>(whole) != size) return write_fraction(to, size);
-    return write_word(std::to_chars(to, to + room_for_number - 1, whole).ptr, ".0", 2);
+    return std::copy_n(".0", 2, std::to_chars(to, to + room_for_number - 1, whole).ptr);
 }
 
 bool needs_no_escape(std::string_view text) {

@@ -1,8 +1,6 @@
 // The preset is restated in the kind of fields that the request uses, SI or reduced; its fields
 // that do not apply to the request's system or motion are dropped; the request's fields replace the
 // rest.
-#include "api/merged_fields.hpp"
-
 #include <algorithm>
 #include <iterator>
 #include <numbers>
@@ -10,7 +8,7 @@
 
 #include "api/presets.hpp"
 #include "api/properties.hpp"
-#include "api/schema/check.hpp"
+#include "api/system.hpp"
 
 namespace vines::api {
 
@@ -41,51 +39,46 @@ struct Alternative {
     std::vector<std::string> one, other;
     std::string detail;
 };
-const std::vector<Alternative>& alternatives() {
-    static const std::vector<Alternative> list = {
-        {reduced_names, si_names,
-         "reduced (epsilon, lambda, G, Omega) and SI (m1, c1, k1, m2, F, f; damping_ratio, f0, "
-         "mass_ratio, acceleration) fields cannot be mixed"},
-        {{"R"},
-         {"R_plus", "R_minus"},
-         "R stands for both walls and cannot be mixed with R_plus or R_minus"},
-        {{"R", "R_plus", "R_minus", "restitution_plus", "restitution_minus"},
-         {"restitution"},
-         "restitution is R of both walls as a function of the speed; give no other R"},
-        {{"R", "R_plus"}, {"restitution_plus"}, "R_plus and restitution_plus are of the same wall"},
-        {{"R", "R_minus"},
-         {"restitution_minus"},
-         "R_minus and restitution_minus are of the same wall"},
-        {{"F", "acceleration", "f", "G", "Omega"},
-         {"forcing"},
-         "forcing replaces F and f; give one of them"},
-        {{"F"},
-         {"acceleration"},
-         "acceleration stands for F = acceleration/(2 pi f)^2; give one of them"},
-        {{"gravity"},
-         {"inclination"},
-         "inclination stands for gravity = g sin(inclination)/omega0^2; give one of them"},
-        {{"friction"},
-         {"mu"},
-         "mu stands for friction = mu g cos(inclination)/omega0^2; give one of them"},
-        {{"tau_end"}, {"cycles"}, "tau_end and cycles both say how long to run; give one of them"},
-        {{"k1"}, {"f0"}, "f0 stands for k1 = m1 (2 pi f0)^2; give one of them"},
-        {{"c1"},
-         {"damping_ratio"},
-         "damping_ratio stands for c1 = 2 damping_ratio m1 omega0; give one of them"},
-        {{"m2"}, {"mass_ratio"}, "mass_ratio stands for m2 = mass_ratio m1; give one of them"},
-        {{"x_dot0"},
-         {"x_velocity0"},
-         "x_dot0 (m per unit of tau) and x_velocity0 (m/s) are the same; give one of them"},
-        {{"y_dot0"},
-         {"y_velocity0"},
-         "y_dot0 (m per unit of tau) and y_velocity0 (m/s) are the same; give one of them"},
-    };
-    return list;
-}
+const std::vector<Alternative> alternatives = {
+    {reduced_names, si_names,
+     "reduced (epsilon, lambda, G, Omega) and SI (m1, c1, k1, m2, F, f; damping_ratio, f0, "
+     "mass_ratio, acceleration) fields cannot be mixed"},
+    {{"R"},
+     {"R_plus", "R_minus"},
+     "R stands for both walls and cannot be mixed with R_plus or R_minus"},
+    {{"R", "R_plus", "R_minus", "restitution_plus", "restitution_minus"},
+     {"restitution"},
+     "restitution is R of both walls as a function of the speed; give no other R"},
+    {{"R", "R_plus"}, {"restitution_plus"}, "R_plus and restitution_plus are of the same wall"},
+    {{"R", "R_minus"}, {"restitution_minus"}, "R_minus and restitution_minus are of the same wall"},
+    {{"F", "acceleration", "f", "G", "Omega"},
+     {"forcing"},
+     "forcing replaces F and f; give one of them"},
+    {{"F"},
+     {"acceleration"},
+     "acceleration stands for F = acceleration/(2 pi f)^2; give one of them"},
+    {{"gravity"},
+     {"inclination"},
+     "inclination stands for gravity = g sin(inclination)/omega0^2; give one of them"},
+    {{"friction"},
+     {"mu"},
+     "mu stands for friction = mu g cos(inclination)/omega0^2; give one of them"},
+    {{"tau_end"}, {"cycles"}, "tau_end and cycles both say how long to run; give one of them"},
+    {{"k1"}, {"f0"}, "f0 stands for k1 = m1 (2 pi f0)^2; give one of them"},
+    {{"c1"},
+     {"damping_ratio"},
+     "damping_ratio stands for c1 = 2 damping_ratio m1 omega0; give one of them"},
+    {{"m2"}, {"mass_ratio"}, "mass_ratio stands for m2 = mass_ratio m1; give one of them"},
+    {{"x_dot0"},
+     {"x_velocity0"},
+     "x_dot0 (m per unit of tau) and x_velocity0 (m/s) are the same; give one of them"},
+    {{"y_dot0"},
+     {"y_velocity0"},
+     "y_dot0 (m per unit of tau) and y_velocity0 (m/s) are the same; give one of them"},
+};
 
 void check_alternatives(const Json& object, std::vector<FieldError>& errors) {
-    for (const Alternative& a : alternatives()) {
+    for (const Alternative& a : alternatives) {
         if (present(object, a.one).empty() || present(object, a.other).empty()) continue;
         for (const auto& names : {a.one, a.other})
             for (const std::string& name : present(object, names))
@@ -152,7 +145,7 @@ void split_walls(Json& preset, const Json& given) {
 /// Removes from a preset the fields that the request's fields exclude, except those of the system,
 /// which is restated.
 void drop_excluded(Json& preset, const Json& given) {
-    for (const Alternative& a : alternatives()) {
+    for (const Alternative& a : alternatives) {
         if (a.one == reduced_names) continue;
         for (const auto& [by, names] : {std::tie(a.one, a.other), std::tie(a.other, a.one)})
             if (!present(given, by).empty())

@@ -1,4 +1,5 @@
-// Parses the text of requests: JSON bodies from untrusted clients, and queries.
+// Parses the text of requests: JSON bodies from untrusted clients, queries, and the encodings of
+// measurement programs and spreadsheets.
 #pragma once
 
 #include <string_view>
@@ -43,6 +44,13 @@ void take_entries(Json& list, Take take) {
         entry = nullptr;
     }
 }
+
+bool is_utf8(std::string_view bytes);
+
+/// Converts to UTF-8 without byte order mark from UTF-16 (by its mark, or the zero bytes of its
+/// first two characters), UTF-8 or else Latin-1. UTF-8 is not copied; other text is stored in
+/// `room`.
+std::string_view as_utf8(std::string_view bytes, std::string& room);
 
 /// Names and values in their order.
 using Query = std::vector<std::pair<std::string, std::string>>;

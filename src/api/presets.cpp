@@ -7,7 +7,6 @@
 
 #include "api/simulate.hpp"
 #include "core/measurement/synthetic_record.hpp"
-#include "core/motion/parameters.hpp"
 
 namespace vines::api {
 
@@ -44,11 +43,10 @@ Json experiment(double b, double cycles) {
     return p;
 }
 
-const char* const smr_text = "Type II, chaotic strongly modulated response";
+const std::string smr = "Type II, chaotic strongly modulated response";
 
 /// Simulations with Table 1.
 std::vector<Preset> figures() {
-    const std::string smr = smr_text;
     return {
         {"fig3", "Fig. 3", smr + ", b = 22 mm: displacement x of the linear oscillator",
          "The exponents are those of the window between the paper's broken lines.",
@@ -102,7 +100,7 @@ void add_table_2(std::vector<Preset>& list) {
         const std::string number = std::to_string(row + 1);
         list.push_back(
             {"table2_" + number, "Table 2, row " + number,
-             std::string(smr_text) + ", b = 22 mm: window of the exponents",
+             smr + ", b = 22 mm: window of the exponents",
              "The printed lambda3 is lambda1 - ln(1/2.2e-16)/T: rounding. It is negative (qr).",
              with(closed_form(0.022, 5521.3), {{"window", windows[row]}, {"windows", windows}})});
     }
@@ -122,8 +120,8 @@ void add_table_3(std::vector<Preset>& list) {
     for (const auto& [b, tau_end] : rows)
         list.push_back(
             {"table3_b" + std::string(b), "Table 3",
-             std::string(std::stod(b) > 0.032 ? "Type I" : smr_text) +
-                 ", b = " + Json(std::stod(b) * 1000).dump() + " mm",
+             (std::stod(b) > 0.032 ? "Type I" : smr) + ", b = " + Json(std::stod(b) * 1000).dump() +
+                 " mm",
              "The printed lambda3 is lambda1 - ln(1/2.2e-16)/T, which is rounding; the length of "
              "the window follows from it: about 400 contacts. One window determines lambda1 to "
              "about 10 %.",

@@ -2,10 +2,7 @@
 // values for a source. Lists are in columns.hpp.
 #pragma once
 
-#include <concepts>
-
 #include "api/columns.hpp"
-#include "api/schema/enum_names.hpp"
 #include "core/motion/elementary.hpp"
 #include "core/sweep/basins.hpp"
 #include "core/sweep/recommend.hpp"
@@ -20,23 +17,6 @@ inline Json statuses_of(const Exponents& values) {
 namespace properties {
 
 using enum ValueType;
-
-inline Json json_of(double value) { return finite_or_null(value); }
-inline Json json_of(std::integral auto value) { return value; }
-inline Json json_of(const Interval& interval) { return interval; }
-inline Json json_of(const Exponents& values) { return column(values); }
-inline Json json_of(const std::string& text) { return text; }
-inline Json json_of(RegimeType type) { return name_of(type); }
-inline Json json_of(Verdict verdict) { return enum_json(verdict); }
-inline Json json_of(Damping damping) { return enum_json(damping); }
-template <class Value>
-Json json_of(const std::optional<Value>& value) {
-    return value ? json_of(*value) : Json(nullptr);
-}
-
-/// The member of a source, or the value of its member function.
-template <auto member>
-inline constexpr auto at = [](const auto& source) { return json_of(std::invoke(member, source)); };
 
 // Parameters.
 
@@ -206,13 +186,10 @@ inline constexpr Property<QuasiPeriodic> quasi_periodic[] = {
 inline constexpr Property<PeriodicOrbit> orbit_state[] = {
     {quantity.tau.with("a time on the orbit, during a flight"), at<&PeriodicOrbit::tau>},
     {{"x_dot", "velocity of the oscillator at that time"},
-     [](const PeriodicOrbit& o) { return Json(o.state.x_dot); }},
-    {{"x", "displacement of the oscillator at that time, m"},
-     [](const PeriodicOrbit& o) { return Json(o.state.x); }},
-    {{"y_dot", "velocity of the ball at that time"},
-     [](const PeriodicOrbit& o) { return Json(o.state.y_dot); }},
-    {{"y", "displacement of the ball at that time, m"},
-     [](const PeriodicOrbit& o) { return Json(o.state.y); }},
+     at<&PeriodicOrbit::state, &State::x_dot>},
+    {{"x", "displacement of the oscillator at that time, m"}, at<&PeriodicOrbit::state, &State::x>},
+    {{"y_dot", "velocity of the ball at that time"}, at<&PeriodicOrbit::state, &State::y_dot>},
+    {{"y", "displacement of the ball at that time, m"}, at<&PeriodicOrbit::state, &State::y>},
 };
 
 inline constexpr Property<Regime> rhythm[] = {
@@ -267,28 +244,8 @@ inline constexpr Property<MeasuredSlope> slope[] = {
 // Points of a sweep.
 
 /// A measured point, and the length of its forcing cycle.
-struct MeasuredPoint {
-    const PointResult& result;
+struct MeasuredPoint : PointResult {
     double cycle;
-};
-
-inline const PointResult& result_of(const PointResult& result) { return result; }
-inline const PointResult& result_of(const MeasuredPoint& point) { return point.result; }
-inline const PointResult& result_of(const Basin& basin) { return basin.motion; }
-
-/// Members of the result, its regime and its name, for each of these sources.
-template <auto member>
-inline constexpr auto result_at = [](const auto& of) { return json_of(result_of(of).*member); };
-template <auto member>
-inline constexpr auto regime_at =
-    [](const auto& of) { return json_of(result_of(of).regime.*member); };
-template <auto member>
-inline constexpr auto name_at = [](const auto& of) { return json_of(result_of(of).name.*member); };
-/// Null without an orbit.
-template <auto member>
-inline constexpr auto orbit_at = [](const auto& of) {
-    const auto& orbit = result_of(of).regime.orbit;
-    return orbit ? json_of(std::invoke(member, *orbit)) : Json(nullptr);
 };
 
 inline constexpr Quantity attractor_quantity{
@@ -303,80 +260,81 @@ inline constexpr Quantity mirror_quantity{
     word_or_null};
 
 inline constexpr Property<MeasuredPoint> point[] = {
-    {{"lambda", "four exponents by qr", exponents}, result_at<&PointResult::lambda>},
+    {{"lambda", "four exponents by qr", exponents}, at<&PointResult::lambda>},
     {{"status", "status of each exponent", statuses},
-     [](const MeasuredPoint& p) { return statuses_of(p.result.lambda); }},
+     [](const MeasuredPoint& p) { return statuses_of(p.lambda); }},
     {{"standard_error",
       "standard error of each exponent, with seven degrees of freedom: 95 % intervals are 2.365 "
       "errors on both sides; 2.776 for the other standard errors, which have four",
       exponents},
-     result_at<&PointResult::standard_error>},
+     at<&PointResult::standard_error>},
     {{"verdict",
       "regular if a periodic orbit captures the motion, otherwise the verdict on the measured "
       "cycles: chaos found there can be a transient; null without forcing, or if the ball meets no "
       "wall in the end",
       verdict},
-     result_at<&PointResult::verdict>},
-    {{"z", "contacts per cycle"}, regime_at<&Regime::z>},
+     at<&PointResult::verdict>},
+    {{"z", "contacts per cycle"}, at<&PointResult::regime, &Regime::z>},
     {{"z_standard_error", "standard error of z; null if periodic", number_or_null},
-     [](const MeasuredPoint& p) {
-         return json_of(p.result.regime.orbit ? nan : p.result.regime.z_error);
-     }},
-    {{"regime", "I to VI, or none", regime}, regime_at<&Regime::type>},
+     [](const MeasuredPoint& p) { return json_of(p.regime.orbit ? nan : p.regime.z_error); }},
+    {{"regime", "I to VI, or none", regime}, at<&PointResult::regime, &Regime::type>},
     {{"periodic", "true if a stable orbit attracts the motion", flag},
-     [](const MeasuredPoint& p) { return Json(p.result.regime.orbit.has_value()); }},
-    {{"period_cycles", "period in forcing cycles", whole}, orbit_at<&PeriodicOrbit::cycles>},
-    {{"impacts_per_period", "contacts per period", whole}, orbit_at<&PeriodicOrbit::contacts>},
+     [](const MeasuredPoint& p) { return Json(p.regime.orbit.has_value()); }},
+    {{"period_cycles", "period in forcing cycles", whole},
+     at<&PointResult::regime, &Regime::orbit, &PeriodicOrbit::cycles>},
+    {{"impacts_per_period", "contacts per period", whole},
+     at<&PointResult::regime, &Regime::orbit, &PeriodicOrbit::contacts>},
     {{"symmetric", "true if a shift by half a period gives the mirror image", flag},
-     orbit_at<&PeriodicOrbit::symmetric>},
+     at<&PointResult::regime, &Regime::orbit, &PeriodicOrbit::symmetric>},
     {{"capture_cycle",
       "measured cycle in which the orbit captured the motion, later than the last one if "
       "settle_cycles was needed; if it is late, lambda is a mean over a transient; null if not "
       "periodic or not yet captured"},
      [](const MeasuredPoint& p) {
-         const auto& capture = p.result.regime.capture;
+         const auto& capture = p.regime.capture;
          return capture && capture->tau ? Json(std::round(*capture->tau / p.cycle)) : Json(nullptr);
      }},
     {{"lambda1_before", "lambda1 up to the capture; null if not periodic", number_or_null},
-     result_at<&PointResult::lambda1_before>},
+     at<&PointResult::lambda1_before>},
     {{"lambda1_after", "lambda1 of the orbit, from its multipliers", number_or_null},
-     result_at<&PointResult::lambda1_after>},
-    {attractor_quantity, name_at<&AttractorName::motion>},
-    {mirror_quantity, name_at<&AttractorName::mirror>},
+     at<&PointResult::lambda1_after>},
+    {attractor_quantity, at<&PointResult::name, &AttractorName::motion>},
+    {mirror_quantity, at<&PointResult::name, &AttractorName::mirror>},
     {{"multiplier", "largest modulus of the Floquet multipliers"},
-     orbit_at<[](const PeriodicOrbit& o) { return elementary::modulus(o.multipliers[0]); }>},
+     at<&PointResult::regime, &Regime::orbit,
+        [](const PeriodicOrbit& o) { return elementary::modulus(o.multipliers[0]); }>},
     {{"synchronised", "fraction of the contacts that lie in synchronised stretches"},
-     regime_at<&Regime::synchronised>},
+     at<&PointResult::regime, &Regime::synchronised>},
     {{"x_max",
       "maximum of |x| over the measured cycles, m; that of an irregular motion grows with their "
       "number"},
-     result_at<&PointResult::x_max>},
-    {{"x_rms", "rms of x, m"}, result_at<&PointResult::x_rms>},
+     at<&PointResult::x_max>},
+    {{"x_rms", "rms of x, m"}, at<&PointResult::x_rms>},
     {{"x_rms_standard_error",
       "standard error of x_rms, m; as those of z and share_impacts null for fewer than 32 cycles",
       number_or_null},
-     result_at<&PointResult::x_rms_error>},
+     at<&PointResult::x_rms_error>},
     {{"x_rms_ratio", "x_rms over that of the steady motion without the absorber"},
-     result_at<&PointResult::x_rms_ratio>},
-    {{"x_free", "steady amplitude without the absorber, m"}, result_at<&PointResult::x_free>},
+     at<&PointResult::x_rms_ratio>},
+    {{"x_free", "steady amplitude without the absorber, m"}, at<&PointResult::x_free>},
     {{"share_impacts", "fraction of the energy that impacts dissipate"},
-     result_at<&PointResult::share_impacts>},
+     at<&PointResult::share_impacts>},
     {{"share_impacts_standard_error", "standard error of share_impacts", number_or_null},
-     result_at<&PointResult::share_impacts_error>},
-    {{"impacts", "number of impacts", whole}, result_at<&PointResult::impacts>},
-    {{"sticks", "number of sticking phases", whole}, result_at<&PointResult::sticks>},
+     at<&PointResult::share_impacts_error>},
+    {{"impacts", "number of impacts", whole}, at<&PointResult::impacts>},
+    {{"sticks", "number of sticking phases", whole}, at<&PointResult::sticks>},
     {{"stationary",
       "false if lambda1 or x_rms differs between the halves of the measured cycles by more than "
       "chance permits, or if nothing dissipates (zeta = 0, R = 1): then the standard errors do not "
       "cover",
       flag},
-     result_at<&PointResult::stationary>},
+     at<&PointResult::stationary>},
     {{"chaotic_cycles",
       "measured cycles of shown chaos: up to its capture, or as long as the motion was followed; "
       "null "
       "without shown chaos",
       number_or_null},
-     result_at<&PointResult::chaotic_cycles>},
+     at<&PointResult::chaotic_cycles>},
 };
 
 /// If requested.
@@ -399,24 +357,24 @@ inline constexpr Property<Extremes> impact_extremes[] = {
 inline constexpr Property<PointResult> motion[] = {
     {{"x_max", "maximum of |x| over the measured cycles, m"}, at<&PointResult::x_max>},
     {{"x_rms", "rms of x, m"}, at<&PointResult::x_rms>},
-    {{"regime", "as for a point", regime}, regime_at<&Regime::type>},
+    {{"regime", "as for a point", regime}, at<&PointResult::regime, &Regime::type>},
     {{"verdict", "as for a point", verdict}, at<&PointResult::verdict>},
-    {{"z", "as for a point"}, regime_at<&Regime::z>},
+    {{"z", "as for a point"}, at<&PointResult::regime, &Regime::z>},
     {{"lambda1", "largest exponent by qr", number_or_null},
      [](const PointResult& p) { return json_of(p.lambda[0]); }},
 };
 
 /// Quantities of the motion at the peak of a row.
 inline constexpr Property<PointResult> peak[] = {
-    {{"regime", "regime at x_peak", regime}, regime_at<&Regime::type>},
+    {{"regime", "regime at x_peak", regime}, at<&PointResult::regime, &Regime::type>},
     {{"verdict", "verdict at x_peak", verdict}, at<&PointResult::verdict>},
-    {{"z", "contacts per cycle at x_peak"}, regime_at<&Regime::z>},
+    {{"z", "contacts per cycle at x_peak"}, at<&PointResult::regime, &Regime::z>},
     {{"x_rms", "rms of x at x_peak, m"}, at<&PointResult::x_rms>},
 };
 
 inline constexpr Property<PointResult> motion_name[] = {
-    {attractor_quantity, name_at<&AttractorName::motion>},
-    {mirror_quantity, name_at<&AttractorName::mirror>},
+    {attractor_quantity, at<&PointResult::name, &AttractorName::motion>},
+    {mirror_quantity, at<&PointResult::name, &AttractorName::mirror>},
 };
 
 /// The starts that lead to a motion.
@@ -425,13 +383,15 @@ inline constexpr Property<Basin> basin[] = {
       "number of the branch of orbits, the same at neighbouring values; null without an orbit",
       whole},
      at<&Basin::branch>},
-    {attractor_quantity, name_at<&AttractorName::motion>},
-    {mirror_quantity, name_at<&AttractorName::mirror>},
-    {{"regime", "I to VI, or none", regime}, regime_at<&Regime::type>},
+    {attractor_quantity, at<&Basin::motion, &PointResult::name, &AttractorName::motion>},
+    {mirror_quantity, at<&Basin::motion, &PointResult::name, &AttractorName::mirror>},
+    {{"regime", "I to VI, or none", regime},
+     at<&Basin::motion, &PointResult::regime, &Regime::type>},
     {{"period_cycles", "period in forcing cycles; null without an orbit", whole},
-     orbit_at<&PeriodicOrbit::cycles>},
-    {{"z", "contacts per cycle"}, regime_at<&Regime::z>},
-    {{"x_max", "maximum of |x| over the measured cycles, m"}, result_at<&PointResult::x_max>},
+     at<&Basin::motion, &PointResult::regime, &Regime::orbit, &PeriodicOrbit::cycles>},
+    {{"z", "contacts per cycle"}, at<&Basin::motion, &PointResult::regime, &Regime::z>},
+    {{"x_max", "maximum of |x| over the measured cycles, m"},
+     at<&Basin::motion, &PointResult::x_max>},
     {{"starts", "number of starts that lead to it", whole}, at<&Basin::starts>},
     {{"fraction", "fraction of all starts"}, at<&Basin::fraction>},
     {{"interval", "95 % interval of the fraction, from the number of starts", interval},

@@ -3,14 +3,9 @@
 #include <openssl/evp.h>
 
 #include <algorithm>
-#include <cmath>
-#include <cstring>
 #include <memory>
-#include <stdexcept>
-#include <utility>
 
 #include "api/parse.hpp"
-#include "api/problem.hpp"
 #include "api/version.hpp"
 
 namespace vines::api {
@@ -146,7 +141,7 @@ std::string list_form(const Json& list) {
 }
 
 void add_lists(const Json& value, ContentHash& hash) {
-    if (value.is_binary()) hash.add(list_in_memory(value));
+    if (value.is_binary()) hash.add(value, list_in_memory(value));
     if (value.is_structured())
         for (const Json& part : value) add_lists(part, hash);
 }
@@ -158,19 +153,10 @@ std::string text_sha256(std::string_view sealed) {
 
 }  // namespace
 
-ContentHash::ContentHash(const Json& answer) {
-    number_lists(answer);
-    put(answer);
-}
-
-void ContentHash::number_lists(const Json& value) {
-    if (value.is_binary()) number_.emplace(&value, number_.size());
-    if (holds_object(value))
-        for (const Json& part : value) number_lists(part);
-}
+ContentHash::ContentHash(const Json& answer) { put(answer); }
 
 void ContentHash::put(const Json& value) {
-    if (value.is_binary()) return places_.push_back({text_.size(), number_.at(&value)});
+    if (value.is_binary()) return places_.push_back({text_.size(), &value});
     if (value.is_object()) {
         std::map<std::string_view, const Json*> members;  // by name
         for (const auto& [name, member] : value.get_ref<const Json::object_t&>())
@@ -192,7 +178,9 @@ void ContentHash::put(const Json& value) {
     }
 }
 
-void ContentHash::add(const PackedList& list) { lists_.push_back(list_form(list)); }
+void ContentHash::add(const Json& value, const PackedList& list) {
+    lists_[&value] = list_form(list);
+}
 
 std::string ContentHash::end() const {
     Sha256 hash;
@@ -256,7 +244,7 @@ std::string write_sealed(
         },
         [&](const Json& value) {
             const PackedList list = list_of(value);
-            if (hash) hash->add(list);
+            if (hash) hash->add(value, list);
             return list;
         });
     text.write(answer);

@@ -2,11 +2,8 @@
 #pragma once
 
 #include <map>
-#include <optional>
-#include <vector>
 
 #include "api/json_text.hpp"
-#include "api/schema/json.hpp"
 
 namespace vines::api {
 
@@ -32,22 +29,21 @@ class ContentHash {
 public:
     /// Reads everything but packed lists.
     explicit ContentHash(const Json& answer);
-    /// Adds the next packed list, in the order of the answer.
-    void add(const PackedList& list);
+    /// Adds the packed list of a value of the answer.
+    void add(const Json& value, const PackedList& list);
     /// Expects all lists.
     std::string end() const;
 
 private:
-    void number_lists(const Json& value);
     void put(const Json& value);
 
     struct Place {
-        std::size_t at, list;
+        std::size_t at;
+        const Json* list;
     };
-    std::string text_;                           ///< the form without packed lists
-    std::vector<Place> places_;                  ///< of these
-    std::map<const Json*, std::size_t> number_;  ///< of these, in the order of the answer
-    std::vector<std::string> lists_;             ///< their forms, in this order
+    std::string text_;                          ///< the form without packed lists
+    std::vector<Place> places_;                 ///< of these
+    std::map<const Json*, std::string> lists_;  ///< their forms
 };
 
 /// The same for an answer whose lists are all in memory.

@@ -1,7 +1,6 @@
 // Finds the column of a record that holds a channel, and its unit.
 #include <algorithm>
 #include <cctype>
-#include <optional>
 
 #include "api/identify_parts.hpp"
 
@@ -9,11 +8,11 @@ namespace vines::api {
 
 namespace {
 
-bool is_same_letter(unsigned char a, unsigned char b) { return std::tolower(a) == std::tolower(b); }
+int lower_case(unsigned char letter) { return std::tolower(letter); }
 
 /// Ignores case and does not copy: a name can be as long as a record.
 bool is_same_name(std::string_view a, std::string_view b) {
-    return a.size() == b.size() && std::equal(a.begin(), a.end(), b.begin(), is_same_letter);
+    return std::ranges::equal(a, b, {}, lower_case, lower_case);
 }
 
 /// True for this name, and for names that continue it after a separator.

@@ -3,10 +3,8 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <utility>
 
 #include "api/properties.hpp"
-#include "api/schema/field.hpp"
 #include "api/version.hpp"
 
 namespace vines::api {
@@ -26,51 +24,54 @@ struct AnswerSize {
 
 AnswerSize size_of(const SimulateRequest& r) {
     const bool si = r.system.si.has_value();
+    const Parts& parts = r.wanted.parts;
     const auto row = [si](const auto& columns) { return row_bytes(columns, si); };
     const auto value = [si](const Quantity& q) { return value_bytes(q, si); };
     AnswerSize size;
     size.fixed += window_bytes * static_cast<double>(r.wanted.windows.size());
-    if (r.includes("series")) size.point += row(series_columns) + row(relative_columns);
-    if (r.includes("exponents")) {
+    if (parts.series) size.point += row(series_columns) + row(relative_columns);
+    if (parts.exponents) {
         const double history = row(history_columns);
         if (r.wanted.estimators.qr) size.point += history;
         if (r.wanted.estimators.raw_product) size.point += history + value(quantity.rounding_floor);
         if (r.wanted.estimators.eigenvalues)
             size.fixed += static_cast<double>(most_eigenvalue_entries) * history;
     }
-    if (r.includes("eigenvalues")) size.point += row(moduli_columns);
-    if (r.includes("matrices")) size.point += row(matrix_columns);
-    if (r.includes("section"))
+    if (parts.moduli) size.point += row(moduli_columns);
+    if (parts.matrices) size.point += row(matrix_columns);
+    if (parts.section)
         size.point += row(impact_section_columns) + value(quantity.tau) + row(state_columns);
-    if (r.includes("regime")) size.point += row(moving_z_columns) + row(stretch_columns);
-    if (r.includes("manifold")) size.point += value(quantity.tau) + row(branch_columns);
+    if (parts.regime) size.point += row(moving_z_columns) + row(stretch_columns);
+    if (parts.manifold) size.point += value(quantity.tau) + row(branch_columns);
     if (r.wanted.perturbation)
         size.point += row(perturbation_columns) + value(quantity.predicted_distance);
     size.impact = row(sticking_columns);
-    if (r.includes("impacts")) size.impact += row(impact_columns) + row(touch_columns);
+    if (parts.impacts) size.impact += row(impact_columns) + row(touch_columns);
     if (r.wanted.perturbation) size.impact += row(touch_columns);
     return size;
 }
 
-/// Lowers max_points and the count of listed impacts to fit the answer; warns of max_points.
-void fit_answer(SimulateRequest& r, std::size_t bytes, Warnings& warnings) {
+/// Lowers max_points and the count of listed impacts to fit the answer. Warns of max_points, and
+/// then returns true.
+bool fit_answer(SimulateRequest& r, std::size_t bytes, Warnings& warnings) {
     const AnswerSize size = size_of(r);
     const double room = std::max(0.0, static_cast<double>(bytes) - size.fixed);
     const double points = static_cast<double>(r.wanted.most_points) * size.point,
                  impacts = static_cast<double>(r.wanted.most_listed) * size.impact;
-    if (points + impacts <= room) return;
+    if (points + impacts <= room) return false;
     // Points or impacts that need less than half of the room get all that they need.
     const double for_points = std::min(
                      points, std::max({room / 2, room - impacts, fewest_points * size.point})),
                  for_impacts = room - for_points;
     if (impacts > for_impacts)
         r.wanted.most_listed = static_cast<std::size_t>(std::max(1.0, for_impacts / size.impact));
-    if (points <= for_points) return;
+    if (points <= for_points) return false;
     const std::size_t fit = static_cast<std::size_t>(for_points / size.point);
     warnings.push_back(
         "max_points is " + std::to_string(fit) + " instead of " +
         std::to_string(r.wanted.most_points) + limit_of(bytes));
     r.wanted.most_points = r.wanted.estimators.history = fit;
+    return true;
 }
 
 Json describe_parameters(const SimulateRequest& r) {
@@ -134,13 +135,6 @@ ImpactScales scales_of(const SimulateRequest& r, const Analysis& a) {
     return {r.wanted.parameters.epsilon, a.typical_speed};
 }
 
-/// True if a warning reports that the answer was cut to its size limit.
-bool mentions_limit(const Warnings& warnings, std::size_t most_bytes) {
-    return std::ranges::any_of(warnings, [limit = limit_of(most_bytes)](const auto& warning) {
-        return warning.find(limit) != std::string::npos;
-    });
-}
-
 /// Adds the parts of an answer with their SI counterparts, as long as there is time; returns the
 /// names of those that are null for lack of it.
 std::vector<std::string> add_parts(
@@ -155,31 +149,34 @@ std::vector<std::string> add_parts(
         if (late) left_out.push_back(name);
         add(name, late ? Json(nullptr) : describe_part());
     };
-    const auto part = [&](const char* name, auto describe_part) {
-        if (r.includes(name)) add_in_time(name, describe_part);
+    const auto part = [&](bool is_wanted, const char* name, auto describe_part) {
+        if (is_wanted) add_in_time(name, describe_part);
     };
+    const Parts& parts = r.wanted.parts;
     const ExponentOptions& shown = r.wanted.estimators;
-    part("series", [&] {
+    part(parts.series, "series", [&] {
         const Series series = *taken(a.series);
         Json columns = describe(series_columns, series);
         if (!series.x_relative.empty()) columns.update(describe(relative_columns, series));
         return columns;
     });
-    part("impacts", [&] {
+    part(parts.impacts, "impacts", [&] {
         if (a.unkept_impacts) return streamed_impacts(r.system.si);
         return describe_impacts(taken(a.impacts), scales_of(r, a));
     });
     add("sticking", describe(sticking_columns, a.sticks));
     if (!a.touches.empty()) add("touches", describe(touch_columns, a.touches));
-    part("exponents", [&] { return describe_exponents(*a.exponents, shown, *a.regime, true); });
+    part(parts.exponents, "exponents", [&] {
+        return describe_exponents(*a.exponents, shown, *a.regime, true);
+    });
     if (!a.windows.empty())
         add("windows", describe_windows(a.windows, shown, *a.regime, a.outcome.tau));
-    part("eigenvalues", [&] { return describe(moduli_columns, *taken(a.moduli)); });
-    part("matrices", [&] { return describe(matrix_columns, *taken(a.matrices)); });
-    part("section", [&] { return describe_sections(*taken(a.sections)); });
-    part("energy", [&] { return describe_energy(*a.energy); });
-    part("regime", [&] { return describe_regime(*a.regime); });
-    part("manifold", [&] { return describe_manifold(*a.manifold); });
+    part(parts.moduli, "eigenvalues", [&] { return describe(moduli_columns, *taken(a.moduli)); });
+    part(parts.matrices, "matrices", [&] { return describe(matrix_columns, *taken(a.matrices)); });
+    part(parts.section, "section", [&] { return describe_sections(*taken(a.sections)); });
+    part(parts.energy, "energy", [&] { return describe_energy(*a.energy); });
+    part(parts.regime, "regime", [&] { return describe_regime(*a.regime); });
+    part(parts.manifold, "manifold", [&] { return describe_manifold(*a.manifold); });
     if (a.perturbation)
         add_in_time("perturbation", [&] { return describe_perturbation(*taken(a.perturbation)); });
     return left_out;
@@ -228,7 +225,7 @@ void add_manifold_warnings(
 Answer simulate_in_parts(
     SimulateRequest r, const Stop& stop, std::size_t most_bytes, std::size_t most_kept) {
     Warnings warnings = r.system.notes;
-    fit_answer(r, most_bytes, warnings);
+    const bool has_fewer_points = fit_answer(r, most_bytes, warnings);
     r.wanted.most_kept = most_kept;
     Analysis analysis = analyse(r.wanted, {.run = stop.requested, .late = stop.analysis_late});
     Json answer = object(
@@ -240,7 +237,7 @@ Answer simulate_in_parts(
     for (const Warning& w : analysis.warnings) warnings.push_back(text_of(w, most_bytes));
     const std::vector<std::string> left_out = add_parts(answer, r, analysis, stop);
     if (r.system.si) {
-        if (r.includes("energy") && answer["energy"].is_object())
+        if (r.wanted.parts.energy && answer["energy"].is_object())
             add_joules(answer["energy"], *r.system.si);
         answer["status"]["time_s"] = analysis.outcome.tau / r.system.si->omega0();
         add_si(answer["parameters"], *r.system.si);
@@ -251,7 +248,10 @@ Answer simulate_in_parts(
             "null: " +
             joined(left_out));
     answer["warnings"] = warnings;
-    const bool is_fitted = mentions_limit(warnings, most_bytes);
+    const bool is_fitted =
+        has_fewer_points || std::ranges::any_of(analysis.warnings, [](const Warning& w) {
+            return std::holds_alternative<warning::ListCut>(w);
+        });
     std::optional<ListedRun> run;
     if (analysis.unkept_impacts && answer.contains("impacts") && !answer["impacts"].is_null())
         run = ListedRun{r.wanted, *analysis.unkept_impacts, scales_of(r, analysis)};
@@ -264,10 +264,6 @@ std::string write_answer(
         answer.json, answer.provenance, take,
         answer.run ? list_generator(*answer.run, answer.json, control, list_bytes)
                    : list_in_memory);
-}
-
-Json simulate_answer(SimulateRequest r, const Stop& stop, std::size_t most_bytes) {
-    return simulate_in_parts(std::move(r), stop, most_bytes, everything).json;
 }
 
 Json manifold_answer(const ManifoldRequest& r, const Stop& stop) {

@@ -12,10 +12,7 @@ namespace vines::api {
 
 struct SimulateRequest {
     System system;
-    AnalysisRequest wanted;         ///< the run and its results; parameters as in `system`
-    std::set<std::string> include;  ///< parts of the answer
-
-    bool includes(const char* part) const { return include.contains(part); }
+    AnalysisRequest wanted;  ///< the run and its results; parameters as in `system`
 };
 
 /// Problem 422 naming every invalid field.
@@ -54,8 +51,7 @@ struct ListedRun {
     ImpactScales scales;
 };
 
-/// An answer. Impact lists too long for memory are placeholders, generated from `run` while it is
-/// sent.
+/// An answer. Impact lists too long for memory are placeholders, see list_generator().
 struct Answer {
     Json json;
     std::optional<ListedRun> run = {};
@@ -69,12 +65,11 @@ inline constexpr std::size_t most_kept_impacts = 1 << 15;
 // Memory in bytes for a column of numbers and one of sides of the longest possible list.
 inline constexpr std::size_t most_listed_bytes = 24 << 20;
 
-/// An answer of at most about `most_bytes` of JSON: max_points and the count of listed impacts are
-/// lowered until it fits. But max_points stays at 256 or more, so that the answer can still be too
-/// large. More than `most_kept` listed impacts become streamed lists.
+/// An answer of at most about `most_bytes` of JSON, for which max_points, down to 256, and the
+/// count of listed impacts are lowered. More than `most_kept` listed impacts become streamed lists.
 Answer simulate_in_parts(
     SimulateRequest request, const Stop& stop, std::size_t most_bytes = any_size,
-    std::size_t most_kept = most_kept_impacts);
+    std::size_t most_kept = everything);
 
 /// write_sealed(). Streamed lists are generated meanwhile by runs at `control`, as many per run as
 /// fit into `list_bytes`. Throws Cancelled if `control` stops a run.
@@ -92,9 +87,6 @@ Json streamed_impacts(const std::optional<SiParameters>& si);
 /// control.begin() and control.end(). The function throws Cancelled if `control` stops a run.
 JsonText::ListOf list_generator(
     const ListedRun& run, const Json& answer, RunControl& control, std::size_t most_bytes);
-
-/// The answer with all lists in memory.
-Json simulate_answer(SimulateRequest request, const Stop& stop, std::size_t most_bytes = any_size);
 
 /// The manifold, and the recommended b: null once stop.requested() returns true.
 Json manifold_answer(const ManifoldRequest& request, const Stop& stop = {});

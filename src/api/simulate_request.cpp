@@ -2,8 +2,6 @@
 #include <algorithm>
 
 #include "api/simulate.hpp"
-#include "api/system.hpp"
-#include "core/motion/load.hpp"
 
 namespace vines::api {
 
@@ -195,8 +193,7 @@ SimulateRequest read_simulate_request(const Json& given) {
     refuse_any(errors);
     w.perturbation = read_perturbation(l, w.parameters, w.start);
 
-    r.include = l["include"].get<std::set<std::string>>();
-    w.parts = parts_of(r.include);
+    w.parts = parts_of(l["include"]);
     w.settle_cycles = l["settle_cycles"];
     w.samples_per_cycle = l["samples_per_cycle"];
     w.section_phase = l["section_phase"];

@@ -3,11 +3,6 @@
 // An answer can list more impacts than are kept in memory. Its part `impacts` then holds a
 // placeholder for each column. While the answer is written, the run is repeated, which yields the
 // same bits, for a few columns at a time.
-#include <algorithm>
-#include <cstring>
-#include <memory>
-#include <utility>
-
 #include "api/cancellation.hpp"
 #include "api/simulate.hpp"
 
@@ -45,11 +40,7 @@ void find_placeholders(const Json& json, std::vector<Placeholder>& found) {
         for (const Json& part : json) find_placeholders(part, found);
 }
 
-template <class Entry>
-void put_entry(std::uint8_t* list, long k, Entry entry) {
-    std::memcpy(list + static_cast<std::size_t>(k) * sizeof entry, &entry, sizeof entry);
-}
-
+/// Generates the lists of the placeholders in the order of the answer.
 class Generator {
 public:
     Generator(const ListedRun& run, const Json& answer, RunControl& control, std::size_t most_bytes)
@@ -57,46 +48,35 @@ public:
           control_(control),
           most_bytes_(most_bytes) {
         find_placeholders(answer, lists_);
-        std::size_t all = 0, largest = 0;
-        for (const Placeholder& list : lists_) {
-            all += size_of(list);
-            largest = std::max(largest, size_of(list));
-        }
-        bytes_.reserve(std::max(largest, std::min(all, most_bytes_)));
     }
 
     PackedList next() {
-        if (taken_ == filled_.size()) fill();
-        const Filled& list = filled_[taken_++];
+        if (next_ == end_) fill();
+        const Placeholder& list = lists_[next_++];
+        const std::size_t size = size_of(list);
         return {
-            list.placeholder.source().packing(),
-            std::span(bytes_).subspan(list.at, size_of(list.placeholder))};
+            list.source().packing(),
+            std::span(bytes_).subspan(std::exchange(at_, at_ + size), size)};
     }
 
 private:
-    /// A generated list and its offset in bytes_.
-    struct Filled {
-        Placeholder placeholder;
-        std::size_t at;
-    };
-
     std::size_t size_of(const Placeholder& list) const {
         return static_cast<std::size_t>(run_.listed.count) * entry_size(list.source().packing());
     }
 
+    /// Generates the next lists, as many as fit into most_bytes_, by one run.
     void fill() {
-        filled_.clear();
-        taken_ = 0;
-        std::size_t end = 0;
-        for (; next_ < lists_.size(); ++next_) {
-            const std::size_t size = size_of(lists_[next_]);
-            if (end > 0 && end + size > most_bytes_) break;
-            filled_.push_back({lists_[next_], end});
-            end += size;
+        std::size_t bytes = 0;
+        for (; end_ < lists_.size(); ++end_) {
+            const std::size_t size = size_of(lists_[end_]);
+            if (bytes > 0 && bytes + size > most_bytes_) break;
+            bytes += size;
         }
-        bytes_.resize(end);
+        bytes_ = {};  // freed before the next are allocated
+        bytes_.resize(bytes);
+        at_ = 0;
         const AnalysisRequest& w = run_.wanted;
-        long k = 0;
+        std::size_t k = 0;
         control_.begin();
         const bool complete = repeat_impacts(
             w.parameters, w.start,
@@ -104,31 +84,23 @@ private:
              .max_impacts = w.max_impacts,
              .stop = [this] { return control_.stop_or_yield(); }},
             run_.listed, [&](const Impact& impact) {
-                for (const Filled& list : filled_) put(list, k, impact);
+                std::uint8_t* list = bytes_.data();
+                for (std::size_t l = next_; l < end_; ++l) {
+                    lists_[l].source().put(list, k, impact, run_.scales, lists_[l].factor);
+                    list += size_of(lists_[l]);
+                }
                 ++k;
             });
         control_.end();
         if (!complete) throw Cancelled();
     }
 
-    void put(const Filled& to, long k, const Impact& impact) {
-        const ImpactColumn& column = to.placeholder.source();
-        const double value = column.value(impact, run_.scales);
-        std::uint8_t* const list = bytes_.data() + to.at;
-        switch (column.packing()) {
-            case Packed::integers: return put_entry(list, k, static_cast<int>(value));
-            case Packed::flags: return put_entry(list, k, value != 0);
-            default: return put_entry(list, k, value * to.placeholder.factor);
-        }
-    }
-
     const ListedRun run_;
     RunControl& control_;
     const std::size_t most_bytes_;
-    std::vector<Placeholder> lists_;  // in the order of the answer
-    std::size_t next_ = 0;            // index of the next list to generate
-    std::vector<Filled> filled_;
-    std::size_t taken_ = 0;  // count of filled_ lists already returned
+    std::vector<Placeholder> lists_;
+    std::size_t next_ = 0, end_ = 0;  // lists_ from next_ to end_ are in bytes_, from at_ on
+    std::size_t at_ = 0;
     std::vector<std::uint8_t> bytes_;
 };
 

@@ -3,15 +3,11 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cmath>
-#include <mutex>
 
 #include "api/describe.hpp"
 #include "api/json_text.hpp"
 #include "api/properties.hpp"
-#include "api/schema/tables.hpp"
 #include "api/version.hpp"
-#include "core/motion/elementary.hpp"
 
 namespace vines::api {
 
@@ -34,7 +30,7 @@ void add_extremes(Json& j, const SweepRequest& r, const Extremes* extremes) {
 
 void add_motion(
     Json& line, const SweepRequest& r, const PointSystem& system, const PointResult& p) {
-    const properties::MeasuredPoint point{p, system.parameters.cycle()};
+    const properties::MeasuredPoint point{{p}, system.parameters.cycle()};
     line.update(describe(properties::point, p.measured ? &point : nullptr));
     add_extremes(line, r, p.measured ? &p.extremes : nullptr);
     line["reason"] = !p.measured                        ? "transient_max_impacts"
@@ -255,24 +251,20 @@ std::string start_line(const SweepRequest& r) {
     return json_line(std::move(start));
 }
 
-std::string progress_line(const SweepProgress& p) {
-    const double rate = p.seconds > 0 ? static_cast<double>(p.done) / p.seconds : 0;
-    const double left = p.done < p.of && p.runs > 0
-                            ? static_cast<double>(p.runs_of - std::min(p.runs, p.runs_of)) *
-                                  p.seconds / static_cast<double>(p.runs)
-                            : 0;
+std::string progress_line(
+    const SweepRequest& r, std::size_t done, const RunControl& control, double seconds) {
+    const std::size_t of = r.plan.lines.size(), runs = control.runs, runs_of = r.plan.runs(),
+                      runs_left = done < of ? runs_of - std::min(runs, runs_of) : 0;
     return json_line(
         {{"type", "progress"},
-         {"done", p.done},
-         {"of", p.of},
-         {"per_second", rate},
-         {"seconds_left", p.runs > 0 ? Json(left) : Json(nullptr)},
-         {"runs", p.runs},
-         {"runs_of", p.runs_of}});
-}
-
-std::string warning_line(const std::string& message) {
-    return json_line({{"type", "warning"}, {"message", message}});
+         {"done", done},
+         {"of", of},
+         {"per_second", seconds > 0 ? static_cast<double>(done) / seconds : 0},
+         {"seconds_left",
+          runs > 0 ? Json(static_cast<double>(runs_left) * seconds / static_cast<double>(runs))
+                   : Json(nullptr)},
+         {"runs", runs},
+         {"runs_of", runs_of}});
 }
 
 std::string done_line(std::size_t points, const SweepRequest* r) {

@@ -18,20 +18,19 @@ struct Axis {
 
 /// The systems of a sweep's points, by arithmetic alone: the request is read once.
 struct SweepSystems {
-    /// The numbers of a start, and the fields that it changes.
+    /// Starts that give the same fields.
+    struct Kind {
+        std::vector<std::string> names;
+        /// Checked, and merged with the preset. Those of the start and the axes replace them.
+        SystemFields fields;
+    };
     struct Start {
-        std::size_t base;  ///< index of the fields
-        std::vector<std::pair<SystemNumber, double>> numbers;
+        std::size_t kind;
+        std::vector<double> values;  ///< of the names of the kind
     };
-    struct Column {
-        SystemNumber number;
-        std::vector<double> values;
-    };
-    /// The checked fields of a point, merged with the preset, for each set of fields that starts
-    /// have. The numbers of the start and the values of the axes replace theirs.
-    std::vector<SystemFields> bases = {};
+    std::vector<Kind> kinds = {};
     std::vector<Start> starts = {};
-    std::vector<Column> axes = {};
+    std::vector<Axis> axes = {};
     long max_impacts = 0;
 
     /// nullopt if the point's values form no valid system.
@@ -92,17 +91,10 @@ Json sweep_start(const SweepRequest& request);
 /// sweep_start() with {of}: the count of requested lines.
 std::string start_line(const SweepRequest& request);
 
-/// Progress of a sweep.
-struct SweepProgress {
-    std::size_t done, of;       ///< lines, of those requested
-    std::size_t runs, runs_of;  ///< simulations; they determine the remaining time
-    double seconds;             ///< since the start of the sweep
-};
-/// {type: progress, done, of, per_second, seconds_left, runs, runs_of}.
-std::string progress_line(const SweepProgress& progress);
-
-/// {type: warning, message}, about all points.
-std::string warning_line(const std::string& message);
+/// {type: progress, done, of, per_second, seconds_left, runs, runs_of} after `done` lines. The runs
+/// determine the remaining time.
+std::string progress_line(
+    const SweepRequest& request, std::size_t done, const RunControl& control, double seconds);
 
 /// {type: done, points}: the sweep is complete, with `points` lines of points. With a request of
 /// basins also describe_basins().
@@ -114,11 +106,8 @@ std::string error_line(int status, const std::string& detail, std::size_t points
 /// The first members of each line: {type, index, values of the axes, start}, without a reduced
 /// axis.
 Json describe_place(const SweepRequest& request, std::size_t line);
-
-/// The line of one point.
+/// The line of one point, or of a row of points along a reduced axis.
 Json describe_point(const SweepRequest& request, std::size_t line, const SweepPoint& point);
-
-/// The line of a row of points along a reduced axis.
 Json describe_row(const SweepRequest& request, std::size_t line, const RowSummary& row);
 
 /// {attractors, basins}: the result of /v1/basins.
@@ -138,7 +127,6 @@ public:
     /// outside the sweep; a place that differs from that of the index in any bit; a missing or
     /// unknown field, or one of another type; text that this program would write differently.
     std::string fault_of(const std::string& line, const Json& parsed) const;
-
     /// The fault of the index alone.
     std::string fault_of_index(const Json& parsed) const;
 

@@ -4,7 +4,6 @@
 
 #include <algorithm>
 
-#include "api/json_text.hpp"
 #include "api/provenance.hpp"
 #include "api/sweep.hpp"
 
@@ -79,8 +78,6 @@ bool is_alike(const Json& one, const Json& other) {
 
 using Samples = std::vector<const Json*>;
 
-std::string fault_among(const std::string& name, const Json& value, const Samples& samples);
-
 bool has_same_names(const Json& one, const Json& other) {
     return one.size() == other.size() &&
            std::equal(
@@ -88,17 +85,14 @@ bool has_same_names(const Json& one, const Json& other) {
                [](const auto& a, const auto& b) { return a.key() == b.key(); });
 }
 
-std::size_t common_names(const Json& one, const Json& other) {
-    std::size_t common = 0;
-    for (const auto& [name, value] : one.items()) common += other.contains(name);
-    return common;
-}
-
 /// The difference between an object's fields and those of the nearest sample.
 std::string fault_of_names(const std::string& name, const Json& object, const Samples& samples) {
-    const Json& nearest = **std::max_element(samples.begin(), samples.end(), [&](auto* a, auto* b) {
-        return common_names(object, *a) < common_names(object, *b);
-    });
+    const auto common_names = [&object](const Json* sample) {
+        std::size_t common = 0;
+        for (const auto& [field, value] : object.items()) common += sample->contains(field);
+        return common;
+    };
+    const Json& nearest = **std::ranges::max_element(samples, {}, common_names);
     const std::string where = name.empty() ? "" : " in " + name;
     for (const auto& [field, value] : nearest.items())
         if (!object.contains(field)) return fmt::format("{} is missing{}", field, where);
@@ -107,44 +101,34 @@ std::string fault_of_names(const std::string& name, const Json& object, const Sa
     return "its fields are in another order" + where;
 }
 
-std::string fault_of_object(const std::string& name, const Json& object, const Samples& samples) {
-    if (std::none_of(samples.begin(), samples.end(), [&](const Json* sample) {
-            return has_same_names(object, *sample);
-        }))
-        return fault_of_names(name, object, samples);
-    for (const auto& [field, value] : object.items()) {
-        Samples of_field;
-        for (const Json* sample : samples)
-            if (sample->contains(field)) of_field.push_back(&(*sample)[field]);
-        const std::string path = name.empty() ? field : name + "." + field;
-        if (std::string fault = fault_among(path, value, of_field); !fault.empty()) return fault;
-    }
-    return "";
-}
-
-/// Lists that are empty in all samples are not checked.
-std::string fault_of_list(const std::string& name, const Json& list, const Samples& samples) {
-    Samples entries;
-    for (const Json* sample : samples)
-        for (const Json& entry : *sample) entries.push_back(&entry);
-    if (entries.empty()) return "";
-    for (const Json& entry : list)
-        if (std::string fault = fault_among(name, entry, entries); !fault.empty()) return fault;
-    const bool of_objects = entries[0]->is_object();  // a set of starts has any size
-    const auto same_size = [&](const Json* sample) { return sample->size() == list.size(); };
-    if (!of_objects && std::none_of(samples.begin(), samples.end(), same_size))
-        return fmt::format("{} has {} entries", name, list.size());
-    return "";
-}
-
-/// The fault of a value that must resemble one of the samples; empty if none.
+/// The fault of a value that must resemble one of the samples; empty if none. Lists that are empty
+/// in all samples are not checked.
 std::string fault_among(const std::string& name, const Json& value, const Samples& samples) {
-    Samples alike;
-    for (const Json* sample : samples)
-        if (is_alike(*sample, value)) alike.push_back(sample);
+    Samples alike, parts;
+    std::ranges::copy_if(
+        samples, std::back_inserter(alike), [&](auto* sample) { return is_alike(*sample, value); });
     if (alike.empty()) return fmt::format("{} is {}", name, value.dump());
-    if (value.is_object()) return fault_of_object(name, value, alike);
-    if (value.is_array()) return fault_of_list(name, value, alike);
+    if (value.is_object()) {
+        if (std::ranges::none_of(alike, [&](auto* s) { return has_same_names(value, *s); }))
+            return fault_of_names(name, value, alike);
+        for (const auto& [field, of_field] : value.items()) {
+            parts.clear();
+            for (const Json* sample : alike)
+                if (sample->contains(field)) parts.push_back(&(*sample)[field]);
+            const std::string path = name.empty() ? field : name + "." + field;
+            if (std::string fault = fault_among(path, of_field, parts); !fault.empty())
+                return fault;
+        }
+    } else if (value.is_array()) {
+        for (const Json* sample : alike)
+            for (const Json& entry : *sample) parts.push_back(&entry);
+        if (parts.empty()) return "";
+        for (const Json& entry : value)
+            if (std::string fault = fault_among(name, entry, parts); !fault.empty()) return fault;
+        const bool of_objects = parts[0]->is_object();  // a set of starts has any size
+        if (!of_objects && std::ranges::find(alike, value.size(), &Json::size) == alike.end())
+            return fmt::format("{} has {} entries", name, value.size());
+    }
     return "";
 }
 
@@ -216,7 +200,7 @@ std::string SweepLineCheck::fault_of(const std::string& line, const Json& parsed
         return "reason is " + reason->dump();
     const Samples of_kind = samples_for(parsed, samples);
     if (of_kind.empty()) return "reason does not belong to such a line";
-    if (std::string fault = fault_of_object("", parsed, of_kind); !fault.empty()) return fault;
+    if (std::string fault = fault_among("", parsed, of_kind); !fault.empty()) return fault;
     return json_text(parsed) == line ? "" : "it is written in another way than by this program";
 }
 

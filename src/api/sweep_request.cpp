@@ -1,25 +1,26 @@
 #include "api/sweep.hpp"
 
 #include <algorithm>
-#include <map>
 #include <numeric>
 
 #include "api/schema/enum_names.hpp"
-#include "api/schema/tables.hpp"
 #include "core/motion/elementary.hpp"
 
 namespace vines::api {
 
 bool SweepSystems::has_load() const {
-    return std::ranges::any_of(bases, [](const SystemFields& s) { return s.forcing != nullptr; });
+    return std::ranges::any_of(
+        kinds, [](const Kind& kind) { return kind.fields.forcing != nullptr; });
 }
 
 SystemFields SweepSystems::fields_at(const Place& place) const {
     const Start& start = starts[place.start];
-    SystemFields fields = bases[start.base];
-    for (const auto& [number, value] : start.numbers) fields.*number = value;
+    const Kind& kind = kinds[start.kind];
+    SystemFields fields = kind.fields;
+    for (std::size_t k = 0; k < kind.names.size(); ++k)
+        fields.numbers[kind.names[k]] = start.values[k];
     for (std::size_t a = 0; a < axes.size(); ++a)
-        fields.*axes[a].number = axes[a].values[place.at[a]];
+        fields.numbers[axes[a].parameter] = axes[a].values[place.at[a]];
     return fields;
 }
 
@@ -29,13 +30,15 @@ std::optional<PointSystem> SweepSystems::at(const Place& place) const {
 
 std::optional<PointSystem> SweepSystems::at_value(double value) const {
     SystemFields fields = fields_at({0, std::vector<std::size_t>(axes.size(), 0)});
-    if (!axes.empty()) fields.*axes[0].number = value;
+    if (!axes.empty()) fields.numbers[axes[0].parameter] = value;
     return system_of(fields);
 }
 
 std::optional<PointSystem> SweepSystems::system_of(const SystemFields& fields) const {
     // f can be omitted only without forcing.
-    if (fields.is_in_si() && !fields.is_reduced() && !fields.f && fields.is_forced())
+    const bool is_forced =
+        !fields.forcing && fields.number("F", 1) != 0 && fields.number("acceleration", 1) != 0;
+    if (fields.is_in_si() && !fields.is_reduced() && !fields.has("f") && is_forced)
         return std::nullopt;
     try {
         const ResolvedSystem system = resolve(fields);
@@ -176,16 +179,18 @@ std::vector<std::string> names_of(const Json& object) {
 }
 
 /// The starts that are the first with their set of fields.
-std::map<std::vector<std::string>, std::size_t> kinds_of_starts(const SweepRequest& r) {
-    std::map<std::vector<std::string>, std::size_t> first;
+using KindsOfStarts = std::map<std::vector<std::string>, std::size_t>;
+KindsOfStarts kinds_of_starts(const SweepRequest& r) {
+    KindsOfStarts first;
     for (std::size_t start = 0; start < r.starts.size(); ++start)
         first.try_emplace(names_of(r.starts[start]), start);
     return first;
 }
 
 /// Checks that the fields can be combined, with the first and with the last values of the axes.
-void check_fields(const SweepRequest& r, std::vector<FieldError>& errors) {
-    for (const auto& [names, start] : kinds_of_starts(r))
+void check_fields(
+    const SweepRequest& r, const KindsOfStarts& kinds, std::vector<FieldError>& errors) {
+    for (const auto& [names, start] : kinds)
         for (const bool last : {false, true}) {
             Place place{start, {}};
             for (const Axis& a : r.axes) place.at.push_back(last ? a.values.size() - 1 : 0);
@@ -341,24 +346,18 @@ void check_loaded(const SweepRequest& r, const Json& given, std::vector<FieldErr
 }
 
 /// Expects fields that can be combined: then only their values can make a point invalid.
-std::shared_ptr<const SweepSystems> systems_of(const SweepRequest& r) {
-    SweepSystems systems;
-    std::map<std::vector<std::string>, std::size_t> base_of;
-    for (std::size_t s = 0; s < r.starts.size(); ++s) {
-        const auto [base, is_new] = base_of.try_emplace(names_of(r.starts[s]), base_of.size());
-        if (is_new) {
-            const MergedFields l = merge_with_preset(
-                sweep_base_fields(), fields_of(r, {s, std::vector<std::size_t>(r.axes.size(), 0)}));
-            systems.bases.push_back(system_fields(l.fields));
-            systems.max_impacts = l["max_impacts"];
-        }
-        SweepSystems::Start& start = systems.starts.emplace_back();
-        start.base = base->second;
-        for (const auto& [name, value] : r.starts[s].items())
-            start.numbers.emplace_back(system_number(name), value.get<double>());
+std::shared_ptr<const SweepSystems> systems_of(const SweepRequest& r, const KindsOfStarts& kinds) {
+    SweepSystems systems{.axes = r.axes};
+    for (const auto& [names, start] : kinds) {
+        const MergedFields l = merge_with_preset(
+            sweep_base_fields(), fields_of(r, {start, std::vector<std::size_t>(r.axes.size(), 0)}));
+        systems.kinds.push_back({names, system_fields(l.fields)});
+        systems.max_impacts = l["max_impacts"];
     }
-    for (const Axis& axis : r.axes)
-        systems.axes.push_back({system_number(axis.parameter), axis.values});
+    for (const Json& start : r.starts)
+        systems.starts.push_back(
+            {static_cast<std::size_t>(std::distance(kinds.begin(), kinds.find(names_of(start)))),
+             {start.begin(), start.end()}});
     return std::make_shared<const SweepSystems>(std::move(systems));
 }
 
@@ -393,11 +392,12 @@ SweepRequest read_grid(const Json& given, std::size_t starts, std::size_t most_p
             {{starts > 0 ? "/count" : "/axes", computed, Json::array({1, most_points}),
               "the sweep has " + std::to_string(computed) + " points; at most " +
                   std::to_string(most_points) + " are computed at once"}});
-    check_fields(r, errors);
+    const KindsOfStarts kinds = kinds_of_starts(r);
+    check_fields(r, kinds, errors);
     read_options(r, given, errors);
     read_indices(r, given, errors);
     refuse_any(errors);
-    r.systems = systems_of(r);
+    r.systems = systems_of(r, kinds);
     check_loaded(r, given, errors);
     check_systems(r, errors);
     refuse_any(errors);

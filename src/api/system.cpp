@@ -3,7 +3,6 @@
 #include <algorithm>
 
 #include "api/properties.hpp"
-#include "api/schema/field.hpp"
 
 namespace vines::api {
 
@@ -11,25 +10,20 @@ namespace {
 
 constexpr std::size_t most_table_points = 1000;
 
-/// The fields from which each field of the core follows if it is not given. The first field of a
-/// group in si_groups stands for the whole group.
+/// The fields from which each field of the core follows if it is not given.
 const std::map<std::string, std::vector<std::string>> sources = {
-    {"epsilon", {"m2", "m1"}},    {"lambda", {"c1", "k1", "m1", "m2"}}, {"G", {"F", "m1", "m2"}},
-    {"Omega", {"f", "k1", "m1"}}, {"gravity", {"inclination"}},         {"friction", {"mu"}},
-    {"x_dot0", {"x_velocity0"}},  {"y_dot0", {"y_velocity0"}}};
-
-/// A field and its alternative.
-std::vector<std::string> group_with(const std::string& name) {
-    for (const auto& group : si_groups)
-        if (group[0] == name) return group;
-    return {name};
-}
+    {"epsilon", {"m2", "mass_ratio", "m1"}},
+    {"lambda", {"c1", "damping_ratio", "k1", "f0", "m1", "m2", "mass_ratio"}},
+    {"G", {"F", "acceleration", "m1", "m2", "mass_ratio"}},
+    {"Omega", {"f", "k1", "f0", "m1"}},
+    {"gravity", {"inclination"}},
+    {"friction", {"mu"}},
+    {"x_dot0", {"x_velocity0"}},
+    {"y_dot0", {"y_velocity0"}}};
 
 /// The given fields that `name` follows from. With f0, Omega = f/f0 is independent of m1.
 std::vector<std::string> sources_of(const std::string& name, const Json& fields) {
-    std::vector<std::string> names;
-    for (const std::string& source : sources.at(name))
-        for (std::string& there : present(fields, group_with(source))) names.push_back(there);
+    std::vector<std::string> names = present(fields, sources.at(name));
     if (name == "Omega" && fields.contains("f0")) std::erase(names, "m1");
     return names;
 }

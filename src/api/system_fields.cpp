@@ -1,46 +1,14 @@
-#include "api/system_fields.hpp"
-
-#include <map>
+// The core's parameters and initial state from the fields of a request or of a sweep's point.
+#include <algorithm>
 #include <numbers>
 
 #include "api/schema/enum_names.hpp"
+#include "api/system.hpp"
 #include "core/motion/elementary.hpp"
 
 namespace vines::api {
 
 namespace {
-
-using S = SystemFields;
-const std::map<std::string, SystemNumber> numbers = {
-    {"b", &S::b},
-    {"R", &S::R},
-    {"R_plus", &S::R_plus},
-    {"R_minus", &S::R_minus},
-    {"epsilon", &S::epsilon},
-    {"lambda", &S::lambda},
-    {"G", &S::G},
-    {"Omega", &S::Omega},
-    {"m1", &S::m1},
-    {"k1", &S::k1},
-    {"f0", &S::f0},
-    {"c1", &S::c1},
-    {"damping_ratio", &S::damping_ratio},
-    {"m2", &S::m2},
-    {"mass_ratio", &S::mass_ratio},
-    {"F", &S::F},
-    {"f", &S::f},
-    {"acceleration", &S::acceleration},
-    {"gravity", &S::gravity},
-    {"inclination", &S::inclination},
-    {"friction", &S::friction},
-    {"mu", &S::mu},
-    {"x0", &S::x0},
-    {"x_dot0", &S::x_dot0},
-    {"x_velocity0", &S::x_velocity0},
-    {"y0", &S::y0},
-    {"y_dot0", &S::y_dot0},
-    {"y_velocity0", &S::y_velocity0},
-};
 
 constexpr double standard_gravity = 9.80665;  // m/s^2
 
@@ -60,10 +28,10 @@ std::optional<RestitutionField> restitution_field(const Json& fields, const char
 void resolve_laws(const SystemFields& s, ResolvedSystem& system) {
     Parameters& p = system.parameters;
     const double omega0 = system.si ? system.si->omega0() : nan,
-                 g = standard_gravity / (omega0 * omega0);
-    p.gravity = s.gravity.value_or(s.inclination ? g * elementary::sin(*s.inclination) : 0);
+                 g = standard_gravity / (omega0 * omega0), inclination = s.number("inclination");
+    p.gravity = s.number("gravity", s.has("inclination") ? g * elementary::sin(inclination) : 0);
     p.friction =
-        s.friction.value_or(s.mu ? *s.mu * g * elementary::cos(s.inclination.value_or(0)) : 0);
+        s.number("friction", s.has("mu") ? s.number("mu") * g * elementary::cos(inclination) : 0);
     const auto wall = [&](const std::optional<RestitutionField>& own, double& R) {
         const auto& given = own ? own : s.restitution;
         if (!given) return std::shared_ptr<const RestitutionTable>();
@@ -80,15 +48,19 @@ void resolve_laws(const SystemFields& s, ResolvedSystem& system) {
 
 }  // namespace
 
-SystemNumber system_number(const std::string& name) {
-    const auto found = numbers.find(name);
-    return found == numbers.end() ? nullptr : found->second;
+bool SystemFields::has_any(const std::vector<std::string>& names) const {
+    return std::ranges::any_of(names, [this](const std::string& name) { return has(name); });
+}
+
+double SystemFields::number(const std::string& name, double fallback) const {
+    const auto given = numbers.find(name);
+    return given == numbers.end() ? fallback : given->second;
 }
 
 SystemFields system_fields(const Json& fields) {
     SystemFields s;
     for (const auto& [name, value] : fields.items())
-        if (const SystemNumber number = system_number(name)) s.*number = value.get<double>();
+        if (value.is_number()) s.numbers[name] = value.get<double>();
     s.restitution = restitution_field(fields, "restitution");
     s.restitution_plus = restitution_field(fields, "restitution_plus");
     s.restitution_minus = restitution_field(fields, "restitution_minus");
@@ -100,25 +72,17 @@ SystemFields system_fields(const Json& fields) {
 
 SiParameters si_of(const SystemFields& s) {
     SiParameters si;
-    si.m1 = s.m1.value_or(si.m1);
-    const double omega0 = 2 * std::numbers::pi * s.f0.value_or(0);
-    si.k1 = s.f0 ? si.m1 * omega0 * omega0 : s.k1.value_or(si.k1);
-    si.m2 = s.mass_ratio ? *s.mass_ratio * si.m1 : s.m2.value_or(si.m2);
-    si.c1 = s.damping_ratio ? 2 * *s.damping_ratio * si.m1 * si.omega0() : s.c1.value_or(si.c1);
-    si.f = s.f.value_or(si.f0());
+    si.m1 = s.number("m1", si.m1);
+    const double omega0 = 2 * std::numbers::pi * s.number("f0");
+    si.k1 = s.has("f0") ? si.m1 * omega0 * omega0 : s.number("k1", si.k1);
+    si.m2 = s.has("mass_ratio") ? s.number("mass_ratio") * si.m1 : s.number("m2", si.m2);
+    si.c1 = s.has("damping_ratio") ? 2 * s.number("damping_ratio") * si.m1 * si.omega0()
+                                   : s.number("c1", si.c1);
+    si.f = s.number("f", si.f0());
     const double omega = 2 * std::numbers::pi * si.f;
-    si.F = s.acceleration ? *s.acceleration / (omega * omega)
-                          : s.F.value_or(Parameters{}.G * si.epsilon());
+    si.F = s.has("acceleration") ? s.number("acceleration") / (omega * omega)
+                                 : s.number("F", Parameters{}.G * si.epsilon());
     return si;
-}
-
-std::shared_ptr<const Load> ForcingField::load(const SiParameters& si) const {
-    const std::lock_guard lock(mutex_);
-    if (!last_ || omega0_ != si.omega0() || k1_ != si.k1) {
-        last_ = read_load(given_, si);
-        omega0_ = si.omega0(), k1_ = si.k1;
-    }
-    return last_;
 }
 
 ResolvedSystem resolve(const SystemFields& s) {
@@ -131,17 +95,17 @@ ResolvedSystem resolve(const SystemFields& s) {
         p.G = system.si->G();
         p.Omega = system.si->Omega();
     } else {
-        p.epsilon = s.epsilon.value_or(p.epsilon);
-        p.lambda = s.lambda.value_or(p.lambda);
-        p.G = s.G.value_or(p.G);
-        p.Omega = s.Omega.value_or(p.Omega);
+        p.epsilon = s.number("epsilon", p.epsilon);
+        p.lambda = s.number("lambda", p.lambda);
+        p.G = s.number("G", p.G);
+        p.Omega = s.number("Omega", p.Omega);
         // A preset in SI supplies the scale of reduced fields.
-        if (s.is_in_si()) system.si = in_si(p, s.m1.value_or(0), s.k1.value_or(0));
+        if (s.is_in_si()) system.si = in_si(p, s.number("m1"), s.number("k1"));
     }
-    p.b = s.b.value_or(p.b);
-    const double R = s.R.value_or(p.R_plus);
-    p.R_plus = s.R_plus.value_or(R);
-    p.R_minus = s.R_minus.value_or(R);
+    p.b = s.number("b", p.b);
+    const double R = s.number("R", p.R_plus);
+    p.R_plus = s.number("R_plus", R);
+    p.R_minus = s.number("R_minus", R);
     p.damping = s.damping;
     resolve_laws(s, system);
     if (s.forcing && system.si) {
@@ -154,15 +118,15 @@ ResolvedSystem resolve(const SystemFields& s) {
 }
 
 State start_of(const SystemFields& s, const ResolvedSystem& system) {
-    auto velocity = [&](std::optional<double> in_tau, std::optional<double> in_si) {
-        return in_si && system.si ? *in_si / system.si->omega0() : in_tau.value_or(0);
+    const auto velocity = [&](const char* in_tau, const char* in_si) {
+        return system.si && s.has(in_si) ? s.number(in_si) / system.si->omega0() : s.number(in_tau);
     };
-    const double x = s.x0.value_or(0);
+    const double x = s.number("x0");
     return {
-        .x_dot = velocity(s.x_dot0, s.x_velocity0),
+        .x_dot = velocity("x_dot0", "x_velocity0"),
         .x = x,
-        .y_dot = velocity(s.y_dot0, s.y_velocity0),
-        .y = s.y0.value_or(x + default_state(system.parameters).y)};
+        .y_dot = velocity("y_dot0", "y_velocity0"),
+        .y = s.number("y0", x + default_state(system.parameters).y)};
 }
 
 }  // namespace vines::api

@@ -285,18 +285,14 @@ LineWork work_of(
         {},
         [=](std::size_t done) {
             if (table) return table->end(*warning);
-            return (warning->empty() ? "" : api::warning_line(*warning)) +
-                   api::done_line(done, request.get());
+            const std::string last = api::done_line(done, request.get());
+            if (warning->empty()) return last;
+            return api::json_line({{"type", "warning"}, {"message", *warning}}) + last;
         },
         table ? nullptr : "request the missing indices again"};
     if (table) return work;
     work.progress = [=](std::size_t done, const api::RunControl& control, double seconds) {
-        return api::progress_line(
-            {.done = done,
-             .of = request->plan.lines.size(),
-             .runs = control.runs,
-             .runs_of = request->plan.runs(),
-             .seconds = seconds});
+        return api::progress_line(*request, done, control, seconds);
     };
     return work;
 }

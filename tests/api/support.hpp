@@ -25,7 +25,7 @@ inline Json read_back(Json answer) { return Json::parse(json_text(std::move(answ
 
 inline Json simulated(
     const SimulateRequest& request, const Stop& stop, std::size_t most_bytes = any_size) {
-    return read_back(simulate_answer(request, stop, most_bytes));
+    return read_back(simulate_in_parts(request, stop, most_bytes).json);
 }
 inline Json identified(const IdentifyRequest& request) {
     return read_back(identify_answer(request));
@@ -61,6 +61,10 @@ inline bool warns(const Json& a, const std::string& of) {
     return false;
 }
 
+inline bool contains(const std::string& text, const std::string& part) {
+    return text.find(part) != std::string::npos;
+}
+
 /// The Problem thrown by reading or answering a request.
 template <class Work>
 Problem problem_of(Work work) {
@@ -79,11 +83,13 @@ inline Problem refused(const std::string& text) {
     return problem_of([&] { read_simulate_request(parse_object(text)); });
 }
 
-/// The invalid fields.
-inline std::set<std::string> pointers(const Problem& problem) {
+/// The invalid fields, in alphabetical order: "/R /b".
+inline std::string pointers(const Problem& problem) {
     std::set<std::string> all;
     for (const FieldError& e : problem.errors) all.insert(e.pointer);
-    return all;
+    std::string text;
+    for (const std::string& pointer : all) text += (text.empty() ? "" : " ") + pointer;
+    return text;
 }
 
 inline SweepRequest sweep_request(const std::string& text) {
@@ -91,7 +97,7 @@ inline SweepRequest sweep_request(const std::string& text) {
 }
 
 /// The invalid fields of a request to /v1/sweep.
-inline std::set<std::string> faults_of_sweep(const std::string& text) {
+inline std::string faults_of_sweep(const std::string& text) {
     CAPTURE(text);
     const Problem problem = problem_of([&] { sweep_request(text); });
     CHECK(problem.status == 422);

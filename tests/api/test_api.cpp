@@ -5,7 +5,6 @@
 #include <cmath>
 #include <map>
 #include <numbers>
-#include <set>
 
 #include "api/cancellation.hpp"
 #include "api/parse.hpp"
@@ -77,10 +76,7 @@ TEST_CASE("every invalid or unknown field is named with its pointer, value and r
         R"({"b":-1,"Omga":2,"R":"x","samples_per_cycle":0,"max_impacts":1.5,
             "include":["series","plots"],"window":[5,1],"damping":"none"})");
     CHECK(p.status == 422);
-    CHECK(
-        pointers(p) == std::set<std::string>{
-                           "/b", "/Omga", "/R", "/samples_per_cycle", "/max_impacts", "/include/1",
-                           "/window", "/damping"});
+    CHECK(pointers(p) == "/Omga /R /b /damping /include/1 /max_impacts /samples_per_cycle /window");
     CHECK(p.errors[0].value == -1);
     CHECK(p.errors[0].range == Json({1e-9, 1000.0}));
     CHECK(p.errors[1].detail == "unknown field; did you mean Omega?");
@@ -91,28 +87,22 @@ TEST_CASE("every invalid or unknown field is named with its pointer, value and r
 }
 
 TEST_CASE("fields that exclude each other are refused") {
-    CHECK(
-        pointers(refused(R"({"epsilon":0.01,"m1":4})")) ==
-        std::set<std::string>{"/epsilon", "/m1"});
-    CHECK(pointers(refused(R"({"R":0.5,"R_plus":0.6})")) == std::set<std::string>{"/R", "/R_plus"});
-    CHECK(
-        pointers(refused(R"({"tau_end":5,"cycles":6})")) ==
-        std::set<std::string>{"/tau_end", "/cycles"});
+    CHECK(pointers(refused(R"({"epsilon":0.01,"m1":4})")) == "/epsilon /m1");
+    CHECK(pointers(refused(R"({"R":0.5,"R_plus":0.6})")) == "/R /R_plus");
+    CHECK(pointers(refused(R"({"tau_end":5,"cycles":6})")) == "/cycles /tau_end");
 }
 
 TEST_CASE("an error of several fields together is reported at the given field") {
-    CHECK(pointers(refused(R"({"b":0.01,"y0":0.02})")) == std::set<std::string>{"/y0"});
-    CHECK(pointers(refused(R"({"epsilon":1,"lambda":100})")) == std::set<std::string>{"/lambda"});
-    CHECK(pointers(refused(R"({"cycles":1e6,"Omega":0.001})")) == std::set<std::string>{"/cycles"});
+    CHECK(pointers(refused(R"({"b":0.01,"y0":0.02})")) == "/y0");
+    CHECK(pointers(refused(R"({"epsilon":1,"lambda":100})")) == "/lambda");
+    CHECK(pointers(refused(R"({"cycles":1e6,"Omega":0.001})")) == "/cycles");
     // epsilon = m2/m1: the given field is reported, with its own value.
     const Problem si = refused(R"({"preset":"table4","m1":1e-9})");
-    CHECK(pointers(si) == std::set<std::string>{"/m1"});
+    CHECK(pointers(si) == "/m1");
     CHECK(si.errors[0].value == 1e-9);
-    CHECK(si.errors[0].detail.find("epsilon must lie in") != std::string::npos);
-    CHECK(
-        pointers(refused(R"({"tau_end":100,"window":[200,300]})")) ==
-        std::set<std::string>{"/window/0"});
-    CHECK(pointers(refused(R"({"preset":"fig99"})")) == std::set<std::string>{"/preset"});
+    CHECK(contains(si.errors[0].detail, "epsilon must lie in"));
+    CHECK(pointers(refused(R"({"tau_end":100,"window":[200,300]})")) == "/window/0");
+    CHECK(pointers(refused(R"({"preset":"fig99"})")) == "/preset");
 }
 
 TEST_CASE("the field table describes exactly what a request takes") {
@@ -190,10 +180,8 @@ TEST_CASE("several windows give the exponents and verdicts of separate requests"
     }
     CHECK(
         pointers(refused(R"({"windows":[[1,2],[3,2],[5,6,7],"x",[1,2000]],"tau_end":100})")) ==
-        std::set<std::string>{"/windows/1", "/windows/2", "/windows/3"});
-    CHECK(
-        pointers(refused(R"({"windows":[[1,2],[200,300]],"tau_end":100})")) ==
-        std::set<std::string>{"/windows/1/0"});
+        "/windows/1 /windows/2 /windows/3");
+    CHECK(pointers(refused(R"({"windows":[[1,2],[200,300]],"tau_end":100})")) == "/windows/1/0");
     const Json q = from_query(simulate_fields(), {{"windows", "1,2;3,4.5"}});
     CHECK(q["windows"] == Json::parse("[[1.0,2.0],[3.0,4.5]]"));
 }
@@ -260,9 +248,7 @@ TEST_CASE("each window has its own verdict and exponents") {
     for (int i : {0, 1}) {
         CHECK(a["windows"][i]["verdict"] == "chaotic");
         CHECK(a["windows"][i]["qr"]["final"][0] > 0.05);
-        CHECK(
-            a["windows"][i]["verdict_reason"].get<std::string>().find("captures the motion") !=
-            std::string::npos);
+        CHECK(contains(a["windows"][i]["verdict_reason"], "captures the motion"));
     }
     CHECK(a["windows"][2]["verdict"] == "regular");
     CHECK(a["regime"]["capture"]["chaotic_before"] == true);
@@ -273,8 +259,7 @@ TEST_CASE("nearly tangent impacts are recognised at any restitution coefficient"
         const Json a = answer(
             std::string(R"({"damping":"closed_form","tau_end":800,"include":["impacts"],"R":)") +
             R + "}");
-        for (const Json& warning : a["warnings"])
-            CHECK(warning.get<std::string>().find("nearly tangent") == std::string::npos);
+        for (const Json& warning : a["warnings"]) CHECK_FALSE(contains(warning, "nearly tangent"));
     }
 }
 
@@ -284,10 +269,8 @@ TEST_CASE("an impact next to a tangent contact causes a warning") {
         R"({"G":0,"x0":0.02,"x_dot0":1e-4,"y0":-0.00199975002,"tau_end":60,
             "include":["impacts","eigenvalues"]})");
     REQUIRE(a["warnings"].size() == 1);
-    CHECK(a["warnings"][0].get<std::string>().find("ill-conditioned") != std::string::npos);
-    CHECK(
-        a["warnings"][0].get<std::string>().find("at 1 nearly tangent impact(s)") !=
-        std::string::npos);
+    CHECK(contains(a["warnings"][0], "ill-conditioned"));
+    CHECK(contains(a["warnings"][0], "at 1 nearly tangent impact(s)"));
     // The distance of each impact of an ordinary run from grazing: its relative speed over the
     // median.
     std::vector<double> ratios = answer(
@@ -314,7 +297,7 @@ TEST_CASE(
         doctest::Approx(m["free_amplitude"].get<double>()).epsilon(1e-12));
     const Problem two_walls =
         problem_of([] { read_manifold_request(parse_object(R"({"R_plus":0.5,"R_minus":0.6})")); });
-    CHECK(pointers(two_walls) == std::set<std::string>{"/R_minus"});
+    CHECK(pointers(two_walls) == "/R_minus");
     const Json run = answer(R"({"R_plus":0.5,"R_minus":0.6,"tau_end":50,"include":["manifold"]})");
     CHECK(run["manifold"].contains("points"));
     CHECK_FALSE(run["manifold"].contains("fold"));
@@ -338,7 +321,7 @@ TEST_CASE("the manifold ends where the motion does, with the reason") {
         ordinary["asymmetric"]["V"].back() == 2 * ordinary["symmetry_breaking"]["V"].get<double>());
     const Json far = manifold({{"R", 0.6}, {"b", 0.02}, {"V_max", 1}});
     CHECK(far["manifold"]["asymmetric"]["V"].back() == far["manifold"]["second_contact"]["V"]);
-    CHECK(far["warnings"].dump().find("before V_max") != std::string::npos);
+    CHECK(contains(far["warnings"].dump(), "before V_max"));
     CHECK(
         answer(
             R"({"R":0.05,"b":0.02,"tau_end":10,"include":["manifold"]})")["manifold"]["stable"] ==

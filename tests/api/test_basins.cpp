@@ -2,7 +2,6 @@
 #include <doctest/doctest.h>
 
 #include <map>
-#include <set>
 
 #include "api/format/sweep_table.hpp"
 #include "api/parse.hpp"
@@ -37,7 +36,7 @@ Json basins_result(const SweepRequest& request) {
 }
 
 /// Pointers of the fields at fault.
-std::set<std::string> basins_faults(const std::string& fields) {
+std::string basins_faults(const std::string& fields) {
     return pointers(problem_of([&] { basins_request(fields); }));
 }
 
@@ -100,17 +99,17 @@ TEST_CASE("a table of basins has a row for each start") {
 
 TEST_CASE("errors of basins are reported at their field") {
     CHECK_NOTHROW(basins_request(twin_system));
-    CHECK(basins_faults(R"("base":{"b":0.01})") == std::set<std::string>{"/box"});
-    CHECK(basins_faults(R"("box":{"x0":[1,0]})") == std::set<std::string>{"/box/x0"});
-    CHECK(basins_faults(R"("box":{"x0":[0,1e9]})") == std::set<std::string>{"/box/x0"});
-    CHECK(basins_faults(R"("box":{"x1":[0,1]})") == std::set<std::string>{"/box/x1"});
-    CHECK(basins_faults(R"("base":{"y0":0},"box":{"x0":[1,2]})") == std::set<std::string>{"/box"});
+    CHECK(basins_faults(R"("base":{"b":0.01})") == "/box");
+    CHECK(basins_faults(R"("box":{"x0":[1,0]})") == "/box/x0");
+    CHECK(basins_faults(R"("box":{"x0":[0,1e9]})") == "/box/x0");
+    CHECK(basins_faults(R"("box":{"x1":[0,1]})") == "/box/x1");
+    CHECK(basins_faults(R"("base":{"y0":0},"box":{"x0":[1,2]})") == "/box");
     CHECK(
         basins_faults(twin_system + R"(,"axis":{"parameter":"R","from":0.5,"to":2,"count":3})") ==
-        std::set<std::string>{"/axis"});
+        "/axis");
     CHECK(
         basins_faults(twin_system + R"(,"axis":{"parameter":"q","values":[1]})") ==
-        std::set<std::string>{"/axis/parameter"});
-    CHECK(basins_faults(twin_system + R"(,"count":200000)") == std::set<std::string>{"/count"});
-    CHECK(basins_faults(twin_system + R"(,"indices":[2000])") == std::set<std::string>{"/indices"});
+        "/axis/parameter");
+    CHECK(basins_faults(twin_system + R"(,"count":200000)") == "/count");
+    CHECK(basins_faults(twin_system + R"(,"indices":[2000])") == "/indices");
 }

@@ -30,7 +30,7 @@ Json special_of(const std::vector<Json>& lines, const std::string& kind) {
 }
 
 /// Pointers of the fields at fault.
-std::set<std::string> faults_of(const std::string& text) {
+std::string faults_of(const std::string& text) {
     return pointers(problem_of([&] { read_continue_request(parse_object(text)); }));
 }
 
@@ -159,22 +159,19 @@ TEST_CASE("a curve in two parameters has both in its points") {
 }
 
 TEST_CASE("invalid continuations are refused by field") {
-    using Names = std::set<std::string>;
-    CHECK(faults_of("{}") == Names{"/parameter", "/from", "/to"});
-    CHECK(faults_of(R"({"parameter":"x0","from":0,"to":1})") == Names{"/parameter"});
-    CHECK(faults_of(R"({"parameter":"b","from":0.03,"to":0.04})") == Names{"/from"});
-    CHECK(faults_of(R"({"parameter":"b","from":-0.03,"to":0.04})") == Names{"/from"});
-    CHECK(faults_of(R"({"parameter":"R","from":0.5,"to":1.4})") == Names{"/to"});
-    CHECK(faults_of(R"({"parameter":"f","from":5,"to":9})") == Names{"/base"});
-    CHECK(
-        faults_of(R"({"base":{"q":1},"parameter":"b","from":0.01,"to":0.04})") == Names{"/base/q"});
-    CHECK(faults_of(R"({"parameter":"b","from":0.01,"to":0.04,"switch":9})") == Names{"/switch"});
+    CHECK(faults_of("{}") == "/from /parameter /to");
+    CHECK(faults_of(R"({"parameter":"x0","from":0,"to":1})") == "/parameter");
+    CHECK(faults_of(R"({"parameter":"b","from":0.03,"to":0.04})") == "/from");
+    CHECK(faults_of(R"({"parameter":"b","from":-0.03,"to":0.04})") == "/from");
+    CHECK(faults_of(R"({"parameter":"R","from":0.5,"to":1.4})") == "/to");
+    CHECK(faults_of(R"({"parameter":"f","from":5,"to":9})") == "/base");
+    CHECK(faults_of(R"({"base":{"q":1},"parameter":"b","from":0.01,"to":0.04})") == "/base/q");
+    CHECK(faults_of(R"({"parameter":"b","from":0.01,"to":0.04,"switch":9})") == "/switch");
     CHECK(
         faults_of(R"({"base":{"preset":"chirp"},"parameter":"b","from":0.0001,"to":0.5})") ==
-        Names{"/base"});
-    CHECK(faults_of(R"({"parameter":"mu","from":0,"to":0.01})") == Names{"/base"});
-    CHECK(
-        faults_of(R"({"parameter":"b","from":0.01,"to":0.04,"curve":"fold"})") == Names{"/second"});
+        "/base");
+    CHECK(faults_of(R"({"parameter":"mu","from":0,"to":0.01})") == "/base");
+    CHECK(faults_of(R"({"parameter":"b","from":0.01,"to":0.04,"curve":"fold"})") == "/second");
     CHECK(
         read_continue_request(
             parse_object(R"({"parameter":"b","from":0.01,"to":0.04,"switch":true})"))

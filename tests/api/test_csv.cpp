@@ -78,7 +78,7 @@ TEST_CASE("a row of units below the names is read") {
         REQUIRE(csv.columns.size() == 2);
         CHECK(csv.columns[0].name == "Time");
         CHECK(csv.columns[1].name == "Acceleration 1");
-        CHECK(csv.columns[1].unit.find("m/s^2") != std::string::npos);
+        CHECK(contains(csv.columns[1].unit, "m/s^2"));
         CHECK(csv.columns[1].values == std::vector{1.0, 2.0});
     }
     for (const char* text :
@@ -163,7 +163,7 @@ TEST_CASE("reading a record stops when it is cancelled or exceeds the limit of n
     CHECK(parse_csv(rows, {.most_numbers = 100000}).lines.size() == 50000);
     const Problem many = problem_of([&] { parse_csv(rows, {.most_numbers = 99999}); });
     CHECK(many.status == 413);
-    CHECK(std::string(many.what()).find("more than 99999 numbers") != std::string::npos);
+    CHECK(contains(many.what(), "more than 99999 numbers"));
 }
 
 TEST_CASE("a data line can begin with any character that a number or a quoted cell begins with") {

@@ -6,7 +6,6 @@
 #include <cstdio>
 #include <functional>
 #include <numbers>
-#include <set>
 #include <sstream>
 
 #include "api/csv.hpp"
@@ -21,9 +20,7 @@ using namespace vines::test;
 TEST_CASE("parts of a record cannot be included for a list of impacts") {
     const Json request =
         parse_object(R"({"b":0.015,"impacts":{"tau":[1,2]},"include":["motion"]})");
-    CHECK(pointers(problem_of([&] {
-              read_identify_request(request);
-          })) == std::set<std::string>{"/include"});
+    CHECK(pointers(problem_of([&] { read_identify_request(request); })) == "/include");
 }
 
 TEST_CASE("a list without a complete chatter yields the hidden impacts and the sticking phases") {
@@ -53,7 +50,7 @@ TEST_CASE("a list without a complete chatter yields the hidden impacts and the s
     const Json& status = a["impacts"]["status"];
     CHECK(std::count(status.begin(), status.end(), "hidden") > 0);
     CHECK(a["impacts"]["tau"].size() < all["tau"].size());
-    CHECK(a["warnings"].dump().find("missing from the list were inserted") != std::string::npos);
+    CHECK(contains(a["warnings"].dump(), "missing from the list were inserted"));
     CHECK(a["verdict"] == "chaotic");
 }
 
@@ -75,7 +72,7 @@ TEST_CASE("impacts of a simulation with their states give its exponents") {
     broken["x"][2] = "a";
     CHECK(pointers(problem_of([&] {
               read_identify_request({{"preset", "fig20"}, {"impacts", broken}});
-          })) == std::set<std::string>{"/impacts/x_dot_after", "/impacts/x/2"});
+          })) == "/impacts/x/2 /impacts/x_dot_after");
 }
 
 TEST_CASE(
@@ -126,23 +123,21 @@ TEST_CASE(
                gaps = thinned([](std::size_t i) { return i % 200 < 193; }),
                many = thinned([](std::size_t i) { return i % 15 < 8; });
     CHECK(few["verdict"] == "chaotic");
-    CHECK(few["warnings"].dump().find("missing from the list were inserted") != std::string::npos);
+    CHECK(contains(few["warnings"].dump(), "missing from the list were inserted"));
     CHECK(few["impacts"]["tau"].size() <= n);
     CHECK(few["impacts"]["tau"].size() + 2 >= n);
     CHECK(
         few["exponents"]["qr"]["final"][0].get<double>() ==
         doctest::Approx(run["exponents"]["qr"]["final"][0].get<double>()).epsilon(0.01));
     CHECK(gaps["verdict"] == "chaotic");
-    CHECK(gaps["warnings"].dump().find("did not fly freely") != std::string::npos);
+    CHECK(contains(gaps["warnings"].dump(), "did not fly freely"));
     CHECK(
         gaps["exponents"]["duration"].get<double>() <
         gaps["exponents"]["window"][1].get<double>() -
             gaps["exponents"]["window"][0].get<double>());
     CHECK(gaps["exponents"]["eigenvalues"]["window"][0] >= gaps["exponents"]["window"][0]);
     CHECK(many["verdict"] == "not_decided");
-    CHECK(
-        many["verdict_reason"].get<std::string>().find(
-            "% of the impacts are left out or missing") != std::string::npos);
+    CHECK(contains(many["verdict_reason"], "% of the impacts are left out or missing"));
 }
 
 TEST_CASE("a list of impacts needs only quantities that a laboratory measures") {
@@ -184,7 +179,7 @@ TEST_CASE("a list of impacts needs only quantities that a laboratory measures") 
     Json wrong = request;
     wrong["f"] = 0.97 * system["f"].get<double>();
     const Json off = identified(read_identify_request(wrong));
-    CHECK(off["warnings"].dump().find("no forcing at this") != std::string::npos);
+    CHECK(contains(off["warnings"].dump(), "no forcing at this"));
     CHECK(off["verdict"] == "not_decided");
 }
 

@@ -60,20 +60,19 @@ TEST_CASE("a table of R applies to both walls or to one, at speeds in m/s or per
 
 TEST_CASE("invalid laws are named at their pointers") {
     const auto at = [](const std::string& fields) { return pointers(refused(forced(fields))); };
-    using Pointers = std::set<std::string>;
-    CHECK(at(R"("gravity":1,"inclination":0.1)") == Pointers{"/gravity", "/inclination"});
-    CHECK(at(R"("friction":1,"mu":0.1)") == Pointers{"/friction", "/mu"});
-    CHECK(at(R"("mu":-0.1)") == Pointers{"/mu"});
-    CHECK(at(R"("restitution":{"R":[0.5]})") == Pointers{"/restitution"});
-    CHECK(at(R"("restitution":{"speed":[1,0],"R":[0.5,0.4]})") == Pointers{"/restitution/speed/1"});
-    CHECK(at(R"("restitution":{"speed":[0,1],"R":[0.5,1.4]})") == Pointers{"/restitution/R/1"});
-    CHECK(at(R"("restitution":{"speed":[0,1],"R":[0.5]})") == Pointers{"/restitution/R"});
-    CHECK(at(R"("R":0.4,"restitution":{"speed":[0],"R":[0.5]})") == Pointers{"/R", "/restitution"});
-    CHECK(at(R"("gravity":1e-4,"perturbation":{"y":1e-9})") == Pointers{"/perturbation"});
-    CHECK(pointers(refused(R"({"mu":0.1})")) == Pointers{"/mu"});
+    CHECK(at(R"("gravity":1,"inclination":0.1)") == "/gravity /inclination");
+    CHECK(at(R"("friction":1,"mu":0.1)") == "/friction /mu");
+    CHECK(at(R"("mu":-0.1)") == "/mu");
+    CHECK(at(R"("restitution":{"R":[0.5]})") == "/restitution");
+    CHECK(at(R"("restitution":{"speed":[1,0],"R":[0.5,0.4]})") == "/restitution/speed/1");
+    CHECK(at(R"("restitution":{"speed":[0,1],"R":[0.5,1.4]})") == "/restitution/R/1");
+    CHECK(at(R"("restitution":{"speed":[0,1],"R":[0.5]})") == "/restitution/R");
+    CHECK(at(R"("R":0.4,"restitution":{"speed":[0],"R":[0.5]})") == "/R /restitution");
+    CHECK(at(R"("gravity":1e-4,"perturbation":{"y":1e-9})") == "/perturbation");
+    CHECK(pointers(refused(R"({"mu":0.1})")) == "/mu");
     CHECK(
         pointers(refused(R"({"restitution":{"speed_m_s":[0],"R":[0.5]}})")) ==
-        Pointers{"/restitution/speed_m_s"});
+        "/restitution/speed_m_s");
 }
 
 TEST_CASE("a recorded load replaces F and f and sets the length of the run") {
@@ -97,39 +96,32 @@ TEST_CASE("an invalid load is named at its pointer") {
     const auto at = [](const std::string& load) {
         return pointers(refused(with(R"("forcing":)" + load)));
     };
-    using Pointers = std::set<std::string>;
-    CHECK(at(R"({"time_s":[0,1]})") == Pointers{"/forcing"});
-    CHECK(at(R"({"force_N":[0,1]})") == Pointers{"/forcing/time_s"});
-    CHECK(at(R"({"time_s":[0,1],"force_N":[0,1],"displacement_m":[0,1]})") == Pointers{"/forcing"});
-    CHECK(at(R"({"time_s":[0,1,1],"force_N":[0,1,2]})") == Pointers{"/forcing/time_s/2"});
-    CHECK(at(R"({"time_s":[0,1],"force_N":[0,1,2]})") == Pointers{"/forcing/force_N"});
-    CHECK(at(R"({"time_s":[0],"force_N":[0]})") == Pointers{"/forcing/time_s"});
-    CHECK(at(R"({"time_s":[0,1],"force_N":3})") == Pointers{"/forcing/force_N"});
-    CHECK(at(R"({"time_s":[0,1],"force_N":[0,1],"f_from":3})") == Pointers{"/forcing/f_from"});
-    CHECK(at(R"({"kind":"chirps"})") == Pointers{"/forcing/kind"});
-    CHECK(at(R"({"kind":"half_sine","force_N":1})") == Pointers{"/forcing/duration_s"});
-    CHECK(at(R"({"kind":"half_sine","duration_s":1})") == Pointers{"/forcing"});
-    CHECK(
-        at(R"({"kind":"half_sine","duration_s":1,"force_N":[1,2]})") ==
-        Pointers{"/forcing/force_N"});
-    CHECK(
-        at(R"({"kind":"half_sine","duration_s":1,"force_N":1,"seed":2})") ==
-        Pointers{"/forcing/seed"});
+    CHECK(at(R"({"time_s":[0,1]})") == "/forcing");
+    CHECK(at(R"({"force_N":[0,1]})") == "/forcing/time_s");
+    CHECK(at(R"({"time_s":[0,1],"force_N":[0,1],"displacement_m":[0,1]})") == "/forcing");
+    CHECK(at(R"({"time_s":[0,1,1],"force_N":[0,1,2]})") == "/forcing/time_s/2");
+    CHECK(at(R"({"time_s":[0,1],"force_N":[0,1,2]})") == "/forcing/force_N");
+    CHECK(at(R"({"time_s":[0],"force_N":[0]})") == "/forcing/time_s");
+    CHECK(at(R"({"time_s":[0,1],"force_N":3})") == "/forcing/force_N");
+    CHECK(at(R"({"time_s":[0,1],"force_N":[0,1],"f_from":3})") == "/forcing/f_from");
+    CHECK(at(R"({"kind":"chirps"})") == "/forcing/kind");
+    CHECK(at(R"({"kind":"half_sine","force_N":1})") == "/forcing/duration_s");
+    CHECK(at(R"({"kind":"half_sine","duration_s":1})") == "/forcing");
+    CHECK(at(R"({"kind":"half_sine","duration_s":1,"force_N":[1,2]})") == "/forcing/force_N");
+    CHECK(at(R"({"kind":"half_sine","duration_s":1,"force_N":1,"seed":2})") == "/forcing/seed");
     CHECK(
         at(R"({"kind":"chirp","duration_s":1000,"displacement_m":1,"f_from":1,"f_to":9})") ==
-        Pointers{"/forcing/duration_s"});
+        "/forcing/duration_s");
     CHECK(
         at(R"({"kind":"noise","duration_s":10,"rms_m_s2":1,"f_low":1.01,"f_high":1.09})") ==
-        Pointers{"/forcing/f_high"});
-    CHECK(at(R"({"kind":"harmonics","f":[1,2],"F":[0.1]})") == Pointers{"/forcing/F"});
-    CHECK(at(R"({"kind":"harmonics","f":[1,-2],"F":[0.1,0.1]})") == Pointers{"/forcing/f/1"});
-    CHECK(at(R"({"time_s":[0,"a"],"force_N":[0,1]})") == Pointers{"/forcing/time_s/1"});
+        "/forcing/f_high");
+    CHECK(at(R"({"kind":"harmonics","f":[1,2],"F":[0.1]})") == "/forcing/F");
+    CHECK(at(R"({"kind":"harmonics","f":[1,-2],"F":[0.1,0.1]})") == "/forcing/f/1");
+    CHECK(at(R"({"time_s":[0,"a"],"force_N":[0,1]})") == "/forcing/time_s/1");
     CHECK(
         pointers(refused(forced(R"("forcing":{"time_s":[0,1],"force_N":[0,1]})"))) ==
-        Pointers{"/F", "/f", "/forcing"});
-    CHECK(
-        pointers(refused(R"({"forcing":{"time_s":[0,1],"force_N":[0,1]}})")) ==
-        Pointers{"/forcing"});
+        "/F /f /forcing");
+    CHECK(pointers(refused(R"({"forcing":{"time_s":[0,1],"force_N":[0,1]}})")) == "/forcing");
 }
 
 TEST_CASE("each kind of load moves the base or the oscillator as its fields say") {
@@ -183,9 +175,7 @@ TEST_CASE("one of harmonics is F and f, and acceleration stands for F") {
     const Json p = answer(with(R"("f":14,"acceleration":3)"))["parameters"];
     CHECK(p["origin"]["F"] == "follows from acceleration, f");
     CHECK(is_near(p["si"]["F"], 3 / std::pow(2 * std::numbers::pi * 14, 2), 1e-14));
-    CHECK(
-        pointers(refused(with(R"("f":14,"acceleration":3,"F":1)"))) ==
-        std::set<std::string>{"/F", "/acceleration"});
+    CHECK(pointers(refused(with(R"("f":14,"acceleration":3,"F":1)"))) == "/F /acceleration");
     // A preset's F gives way; an axis of f keeps the acceleration.
     CHECK(is_near(
         answer(R"({"preset":"fig20","acceleration":0.5,"tau_end":5})")["parameters"]["si"]["F"],
@@ -214,15 +204,13 @@ TEST_CASE("a sweep measures each point over its load, and keeps an acceleration 
     }
     std::string without_start = base;
     without_start.erase(without_start.find(R"("y0":0,)"), 7);
-    CHECK(
-        faults_of_sweep(axis + without_start + R"(,"starts":"default set"})") ==
-        std::set<std::string>{"/starts"});
+    CHECK(faults_of_sweep(axis + without_start + R"(,"starts":"default set"})") == "/starts");
     CHECK(
         faults_of_sweep(axis + base + R"(,"carry_state":"up","section":"stroboscopic"})") ==
-        std::set<std::string>{"/carry_state", "/section"});
+        "/carry_state /section");
     CHECK(
         faults_of_sweep(R"({"axes":[{"parameter":"F","values":[0.002,0.004]}],)" + base + "}") ==
-        std::set<std::string>{"/axes/0", "/base/forcing"});
+        "/axes/0 /base/forcing");
     const Swept along_f =
         swept(R"({"base":{"m1":12,"f0":14,"damping_ratio":0.01,"mass_ratio":0.05,"b":1,"y0":0,)"
               R"("acceleration":1},"cycles":1,"transient_cycles":0,)"

@@ -4,7 +4,6 @@
 #include <cmath>
 #include <map>
 #include <numbers>
-#include <set>
 
 #include "support.hpp"
 
@@ -32,26 +31,19 @@ TEST_CASE("f0, damping_ratio and mass_ratio follow the paper's definitions") {
     CHECK(by_c1["origin"]["epsilon"] == "follows from m2, m1");
     CHECK(by_ratio["origin"]["k1"] == "follows from f0, m1");
     CHECK(by_ratio["origin"]["c1"] == "follows from damping_ratio, m1, f0");
-    for (const auto& pair :
-         {std::pair("k1", "f0"), std::pair("c1", "damping_ratio"), std::pair("m2", "mass_ratio")}) {
+    for (const auto& [other, of_both] :
+         {std::pair("f0", "/f0 /k1"), std::pair("damping_ratio", "/c1 /damping_ratio"),
+          std::pair("mass_ratio", "/m2 /mass_ratio")}) {
         Json both = plain;
-        both[pair.second] = 1;
-        CHECK(
-            pointers(refused(both.dump())) ==
-            std::set<std::string>{std::string("/") + pair.first, std::string("/") + pair.second});
+        both[other] = 1;
+        CHECK(pointers(refused(both.dump())) == of_both);
     }
 }
 
 TEST_CASE("an incomplete system in SI is refused with the names of the missing fields") {
-    CHECK(
-        pointers(refused(R"({"m1":12,"k1":92853.2,"c1":12.667,"m2":0.12,"f":14})")) ==
-        std::set<std::string>{"/F"});
-    CHECK(
-        pointers(refused(R"({"F":0.001,"f":9})")) ==
-        std::set<std::string>{"/m1", "/c1", "/k1", "/m2"});
-    CHECK(
-        pointers(refused(R"({"m1":12})")) ==
-        std::set<std::string>{"/c1", "/k1", "/m2", "/F", "/f"});
+    CHECK(pointers(refused(R"({"m1":12,"k1":92853.2,"c1":12.667,"m2":0.12,"f":14})")) == "/F");
+    CHECK(pointers(refused(R"({"F":0.001,"f":9})")) == "/c1 /k1 /m1 /m2");
+    CHECK(pointers(refused(R"({"m1":12})")) == "/F /c1 /f /k1 /m2");
     CHECK_THROWS_AS(read_manifold_request(parse_object(R"({"m1":12})")), Problem);
     // f is not needed without forcing.
     CHECK(
@@ -60,8 +52,7 @@ TEST_CASE("an incomplete system in SI is refused with the names of the missing f
     CHECK(
         faults_of_sweep(
             R"({"base":{"m1":12,"f0":14,"damping_ratio":0.006,"mass_ratio":0.01},
-                "axes":[{"parameter":"f","from":13,"to":15,"count":3}]})") ==
-        std::set<std::string>{"/base/F"});
+                "axes":[{"parameter":"f","from":13,"to":15,"count":3}]})") == "/base/F");
 }
 
 TEST_CASE("omitted fields come from the named preset, with a warning") {
@@ -120,12 +111,9 @@ TEST_CASE("starts in SI are in m/s; velocities in units of tau cause a warning")
     CHECK(a["warnings"].empty());
     CHECK(warns(
         answer(si + R"(,"x_dot0":0.5})"), "x_dot0 = 0.5 is in m per unit of tau, here 43.98"));
-    CHECK(pointers(refused(R"({"x_velocity0":0.5})")) == std::set<std::string>{"/x_velocity0"});
-    CHECK(
-        pointers(refused(si + R"(,"x_velocity0":0.5,"x_dot0":0.1})")) ==
-        std::set<std::string>{"/x_velocity0", "/x_dot0"});
-    CHECK(
-        pointers(refused(si + R"(,"x_velocity0":1e6})")) == std::set<std::string>{"/x_velocity0"});
+    CHECK(pointers(refused(R"({"x_velocity0":0.5})")) == "/x_velocity0");
+    CHECK(pointers(refused(si + R"(,"x_velocity0":0.5,"x_dot0":0.1})")) == "/x_dot0 /x_velocity0");
+    CHECK(pointers(refused(si + R"(,"x_velocity0":1e6})")) == "/x_velocity0");
 }
 
 namespace {

@@ -5,7 +5,6 @@
 #include <cmath>
 #include <map>
 #include <numbers>
-#include <set>
 
 #include "api/cancellation.hpp"
 #include "api/parse.hpp"
@@ -59,32 +58,29 @@ TEST_CASE("an invalid perturbation is named with its pointer, value and range") 
     const auto faults = [](const char* text) {
         return refused(std::string(R"({"b":0.01,"y0":0.009,"perturbation":)") + text + "}");
     };
-    using Names = std::set<std::string>;
-    CHECK(pointers(faults("1")) == Names{"/perturbation"});
-    CHECK(pointers(faults("{}")) == Names{"/perturbation"});
-    CHECK(pointers(faults(R"({"x":0})")) == Names{"/perturbation"});
-    CHECK(pointers(faults(R"({"y":1e-19})")) == Names{"/perturbation"});
-    CHECK(pointers(faults(R"({"x":"a"})")) == Names{"/perturbation/x"});
-    CHECK(pointers(faults(R"({"z":1})")) == Names{"/perturbation/z"});
-    CHECK(pointers(faults(R"({"seed":1})")) == Names{"/perturbation/size"});
-    CHECK(pointers(faults(R"({"size":0})")) == Names{"/perturbation/size"});
-    CHECK(pointers(faults(R"({"seed":-1,"size":1})")) == Names{"/perturbation/seed"});
-    CHECK(
-        pointers(faults(R"({"x":1e-9,"seed":1})")) ==
-        Names{"/perturbation/x", "/perturbation/seed"});
+    CHECK(pointers(faults("1")) == "/perturbation");
+    CHECK(pointers(faults("{}")) == "/perturbation");
+    CHECK(pointers(faults(R"({"x":0})")) == "/perturbation");
+    CHECK(pointers(faults(R"({"y":1e-19})")) == "/perturbation");
+    CHECK(pointers(faults(R"({"x":"a"})")) == "/perturbation/x");
+    CHECK(pointers(faults(R"({"z":1})")) == "/perturbation/z");
+    CHECK(pointers(faults(R"({"seed":1})")) == "/perturbation/size");
+    CHECK(pointers(faults(R"({"size":0})")) == "/perturbation/size");
+    CHECK(pointers(faults(R"({"seed":-1,"size":1})")) == "/perturbation/seed");
+    CHECK(pointers(faults(R"({"x":1e-9,"seed":1})")) == "/perturbation/seed /perturbation/x");
     // The perturbed start must also lie in the cavity: |x - y| <= b.
     const Problem outside = faults(R"({"y":0.002})");
-    CHECK(pointers(outside) == Names{"/perturbation/y"});
+    CHECK(pointers(outside) == "/perturbation/y");
     CHECK(outside.errors[0].value == 0.002);
     CHECK(outside.errors[0].range[1].get<double>() == doctest::Approx(0.001));
     CHECK(outside.errors[0].range[0].get<double>() == doctest::Approx(-0.019));
     const Problem by_x = faults(R"({"x":-0.002})");
-    CHECK(pointers(by_x) == Names{"/perturbation/x"});
+    CHECK(pointers(by_x) == "/perturbation/x");
     CHECK(by_x.errors[0].range[0].get<double>() == doctest::Approx(-0.001));
-    CHECK(pointers(faults(R"({"size":0.5})")) == Names{"/perturbation/size"});
+    CHECK(pointers(faults(R"({"size":0.5})")) == "/perturbation/size");
     CHECK(
         pointers(refused(R"({"x_dot0":600,"perturbation":{"x_dot":600}})")) ==
-        Names{"/perturbation/x_dot"});
+        "/perturbation/x_dot");
 }
 
 TEST_CASE("a perturbed run in SI has SI counterparts") {

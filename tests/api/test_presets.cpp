@@ -233,17 +233,16 @@ TEST_CASE("an error that follows from a preset and a given field is reported at 
     for (const char* preset : {"fig3", "fig20"}) {
         CAPTURE(preset);
         CHECK(
-            pointers(refused(R"({"preset":")" + std::string(preset) + R"(","m1":1e-9})")) ==
-            std::set<std::string>{"/m1"});
+            pointers(refused(R"({"preset":")" + std::string(preset) + R"(","m1":1e-9})")) == "/m1");
         CHECK(
             pointers(refused(R"({"preset":")" + std::string(preset) + R"(","lambda":1e5})")) ==
-            std::set<std::string>{"/lambda"});
+            "/lambda");
         CHECK(
             pointers(refused(R"({"preset":")" + std::string(preset) + R"(","Omega":1,"f":9})")) ==
-            std::set<std::string>{"/Omega", "/f"});
+            "/Omega /f");
         CHECK(
             pointers(
                 refused(R"({"preset":")" + std::string(preset) + R"(","R":0.5,"R_plus":0.6})")) ==
-            std::set<std::string>{"/R", "/R_plus"});
+            "/R /R_plus");
     }
 }

@@ -7,7 +7,6 @@
 #include <cstdio>
 #include <functional>
 #include <numbers>
-#include <set>
 #include <sstream>
 
 #include "api/csv.hpp"
@@ -140,7 +139,7 @@ TEST_CASE("an invalid column or unit field is refused at that field") {
         const Problem problem = refused({{"preset", "fig15"}, {field, value}}, csv);
         CAPTURE(problem.what());
         CHECK(problem.status == 422);
-        CHECK(pointers(problem) == std::set<std::string>{std::string("/") + field});
+        CHECK(pointers(problem) == std::string("/") + field);
     }
 }
 
@@ -198,7 +197,7 @@ TEST_CASE(
         }
         CHECK(a["impacts"]["side"] == known["impacts"]["side"]);
         CHECK(a["verdict"] == known["verdict"]);
-        CHECK(a["warnings"].dump().find("channel") == std::string::npos);
+        CHECK_FALSE(contains(a["warnings"].dump(), "channel"));
         Json as_measured = system;
         as_measured["fixed"] = {"F", "phase"};
         const Json fixed =
@@ -246,11 +245,9 @@ TEST_CASE(
     const std::string inverted =
         with_column(csv, "base_acceleration_g", [&](double t) { return -1.2 * base(t); });
     const std::string said = identified(read_identify_request(system, inverted))["warnings"].dump();
-    CHECK(said.find("is the channel inverted or delayed?") != std::string::npos);
-    CHECK(said.find("is a sensitivity wrong?") != std::string::npos);
+    CHECK(contains(said, "is the channel inverted or delayed?"));
+    CHECK(contains(said, "is a sensitivity wrong?"));
     const std::string noise =
         with_column(csv, "force_N", [&](double t) { return std::sin(1e6 * t * t); });
-    CHECK(
-        std::string(refused(system, noise).what()).find("force_N is not harmonic") !=
-        std::string::npos);
+    CHECK(contains(refused(system, noise).what(), "force_N is not harmonic"));
 }

@@ -48,7 +48,7 @@ TEST_CASE("a sweep detects a dependence on the start by a second start at some p
         R"(},"axes":[{"parameter":"f","from":13,"to":15,"count":33}],"transient_cycles":100,
             "cycles":200)";
     const Swept single = swept(sweep + "}");
-    CHECK(single.warning.find("depends on the start") != std::string::npos);
+    CHECK(contains(single.warning, "depends on the start"));
     long tried = 0;
     for (const auto& [index, line] : single.lines) {
         CHECK(line.contains("second_start") == (index % 3 == 0));
@@ -236,18 +236,18 @@ TEST_CASE("a sweep that sets a field twice is refused") {
     CHECK(
         faults_of_sweep(
             R"({"axes":[{"parameter":"x0","values":[0,0.01]}],"starts":[{"x0":0.005}]})") ==
-        std::set<std::string>{"/starts/0/x0"});
+        "/starts/0/x0");
     CHECK(
         faults_of_sweep(
             R"({"base":{"y0":0},"axes":[{"parameter":"b","values":[0.01]}],
-                "starts":"default set"})") == std::set<std::string>{"/base/y0"});
+                "starts":"default set"})") == "/base/y0");
     CHECK(
         faults_of_sweep(
             R"({"axes":[{"parameter":"y0","values":[0.01]}],"starts":"default set"})") ==
-        std::set<std::string>{"/axes/0/parameter"});
+        "/axes/0/parameter");
     CHECK(
         faults_of_sweep(R"({"axes":[{"parameter":"b","values":[0.01]}],"starts":"default"})") ==
-        std::set<std::string>{"/starts"});
+        "/starts");
 }
 
 TEST_CASE("a simulation from the state in a sweep's line reproduces the motion") {

@@ -5,7 +5,6 @@
 #include <map>
 #include <numbers>
 #include <numeric>
-#include <set>
 
 #include "support.hpp"
 
@@ -265,69 +264,64 @@ TEST_CASE("an axis over a preset changes only its field, reduced, SI or of one w
         point(R"({"preset":"fig3","damping":"closed_form"})", c1)["x_rms"]);
     CHECK(
         faults_of_sweep(R"({"base":{"R":0.85},"axes":[{"parameter":"R_plus","values":[0.8]}]})") ==
-        std::set<std::string>{"/axes/0", "/base/R"});
+        "/axes/0 /base/R");
     CHECK(
         faults_of_sweep(
             R"({"base":{"preset":"fig20"},"axes":[{"parameter":"m1","values":[1e-9]}]})") ==
-        std::set<std::string>{"/axes/0"});
+        "/axes/0");
 }
 
 TEST_CASE("errors of a sweep are reported at their field") {
-    CHECK(faults_of_sweep("{}") == std::set<std::string>{"/axes"});
-    CHECK(faults_of_sweep(R"({"axes":[]})") == std::set<std::string>{"/axes"});
+    CHECK(faults_of_sweep("{}") == "/axes");
+    CHECK(faults_of_sweep(R"({"axes":[]})") == "/axes");
     CHECK(
         faults_of_sweep(R"({"axes":[{"parameter":"bb","from":1,"to":2,"count":5}]})") ==
-        std::set<std::string>{"/axes/0/parameter"});
+        "/axes/0/parameter");
     CHECK(
         faults_of_sweep(R"({"axes":[{"parameter":"b","from":1,"count":0}]})") ==
-        std::set<std::string>{"/axes/0/to", "/axes/0/count"});
+        "/axes/0/count /axes/0/to");
     CHECK(
-        faults_of_sweep(R"({"axes":[{"parameter":"b","values":[1,"x"]}]})") ==
-        std::set<std::string>{"/axes/0/values/1"});
+        faults_of_sweep(R"({"axes":[{"parameter":"b","values":[1,"x"]}]})") == "/axes/0/values/1");
     CHECK(
-        faults_of_sweep(R"({"axes":[{"parameter":"b","values":[1],"from":1}]})") ==
-        std::set<std::string>{"/axes/0/from"});
+        faults_of_sweep(R"({"axes":[{"parameter":"b","values":[1],"from":1}]})") == "/axes/0/from");
     CHECK(
         faults_of_sweep(
             R"({"axes":[{"parameter":"b","from":-1,"to":2,"count":5,"scale":"log"}]})") ==
-        std::set<std::string>{"/axes/0/from"});
+        "/axes/0/from");
     CHECK(
-        faults_of_sweep(R"({"axes":[{"parameter":"b","from":-1,"to":2,"count":5}]})") ==
-        std::set<std::string>{"/axes/0"});
+        faults_of_sweep(R"({"axes":[{"parameter":"b","from":-1,"to":2,"count":5}]})") == "/axes/0");
     CHECK(
         faults_of_sweep(
             R"({"axes":[{"parameter":"b","from":0.01,"to":0.02,"count":5},
-                {"parameter":"b","values":[1]}]})") == std::set<std::string>{"/axes/1/parameter"});
+                {"parameter":"b","values":[1]}]})") == "/axes/1/parameter");
     CHECK(
         faults_of_sweep(
             R"({"axes":[{"parameter":"b","from":0.01,"to":0.02,"count":5}],"base":{"b":0.01}})") ==
-        std::set<std::string>{"/base/b"});
+        "/base/b");
     CHECK(
         faults_of_sweep(
             R"({"axes":[{"parameter":"b","from":0.01,"to":0.02,"count":5}],
-                "base":{"R":3,"tau_end":5}})") ==
-        std::set<std::string>{"/base/R", "/base/tau_end"});
+                "base":{"R":3,"tau_end":5}})") == "/base/R /base/tau_end");
     CHECK(
         faults_of_sweep(
             R"({"axes":[{"parameter":"b","from":0.01,"to":0.02,"count":5}],
-                "starts":[{"x0":0.5,"y0":0},{"z":1}]})") == std::set<std::string>{"/starts/1/z"});
+                "starts":[{"x0":0.5,"y0":0},{"z":1}]})") == "/starts/1/z");
     CHECK(
         faults_of_sweep(
             R"({"axes":[{"parameter":"b","from":0.01,"to":0.02,"count":5}],
-                "starts":[{"x0":0.5,"y0":0}]})") == std::set<std::string>{"/starts/0/y0"});
+                "starts":[{"x0":0.5,"y0":0}]})") == "/starts/0/y0");
     CHECK(
         faults_of_sweep(
             R"({"axes":[{"parameter":"b","from":0.01,"to":0.02,"count":5}],"indices":[0,5]})") ==
-        std::set<std::string>{"/indices"});
+        "/indices");
     CHECK(
         faults_of_sweep(
             R"({"axes":[{"parameter":"b","from":0.01,"to":0.02,"count":1000},
-                {"parameter":"R","from":0,"to":1,"count":1000}]})") ==
-        std::set<std::string>{"/axes"});
+                {"parameter":"R","from":0,"to":1,"count":1000}]})") == "/axes");
     CHECK(
         faults_of_sweep(
             R"({"axes":[{"parameter":"b","from":0.01,"to":0.02,"count":5}],"cycles":0,
-                "carry_state":"sideways"})") == std::set<std::string>{"/cycles", "/carry_state"});
+                "carry_state":"sideways"})") == "/carry_state /cycles");
 }
 
 TEST_CASE("a stopped sweep passes on only complete points") {
@@ -358,25 +352,21 @@ TEST_CASE("an impossible point is an error in its line, at an end of an axis as 
             continue;
         }
         for (const std::size_t index : {0, 2})
-            CHECK(
-                s.lines.at(index)["error"].get<std::string>().find("starts inside its cavity") !=
-                std::string::npos);
+            CHECK(contains(s.lines.at(index)["error"], "starts inside its cavity"));
         for (const std::size_t index : {1, 3}) CHECK(s.lines.at(index)["reason"] == "complete");
     }
     // In SI, mass ratios outside the range of epsilon.
     const auto lines = run(sweep_request(
         R"({"base":{"preset":"fig20"},"axes":[{"parameter":"m1","values":[1e-9,4]}],"cycles":5,
             "transient_cycles":0})"));
-    CHECK(lines.at(0)["error"].get<std::string>().find("epsilon must lie in") != std::string::npos);
+    CHECK(contains(lines.at(0)["error"], "epsilon must lie in"));
     CHECK(lines.at(1)["reason"] == "complete");
     // Values outside the range of their field are refused anywhere, starts that fit nowhere, too.
-    CHECK(
-        faults_of_sweep(R"({"axes":[{"parameter":"b","values":[0.01,-1,0.02]}]})") ==
-        std::set<std::string>{"/axes/0"});
+    CHECK(faults_of_sweep(R"({"axes":[{"parameter":"b","values":[0.01,-1,0.02]}]})") == "/axes/0");
     CHECK(
         faults_of_sweep(
             given + R"("axes":[{"parameter":"R","values":[0.5,0.6]}],"starts":[{},{"x0":0.5}]})") ==
-        std::set<std::string>{"/base/y0"});
+        "/base/y0");
 }
 
 TEST_CASE("a sweep over x0 starts with the ball at x0 + 0.95 b") {

@@ -56,8 +56,9 @@ void bench_forms() {
     const auto times = in_turn(
         turns, {[&] {
                     return 1e3 * seconds_of([&] {
-                               answer = simulate_answer(
-                                   api::read_simulate_request(api::Json::object()), {});
+                               answer = simulate_in_parts(
+                                            api::read_simulate_request(api::Json::object()), {})
+                                            .json;
                            });
                 },
                 [&] { return 1e3 * seconds_of([&] { text = api::json_text(std::move(answer)); }); },

@@ -19,9 +19,10 @@ void fuzz::simulate(std::string_view text) {
     fuzz::or_problem([text] {
         fuzz::CallLimit call_limit(max_simulate_calls);
         const auto is_over = [&] { return call_limit.is_over(); };
-        const api::Json answer = api::simulate_answer(
-            api::read_simulate_request(api::parse_object(text)),
-            {.requested = is_over, .analysis_late = is_over}, max_bytes);
+        const api::Json answer = api::simulate_in_parts(
+                                     api::read_simulate_request(api::parse_object(text)),
+                                     {.requested = is_over, .analysis_late = is_over}, max_bytes)
+                                     .json;
         fuzz::require(api::Json::accept(api::json_text(answer)), "an answer is JSON");
     });
 }

@@ -70,7 +70,7 @@ Statement simulation(const System& system, int cycles) {
                     ",\"max_impacts\":" + std::to_string(max_impacts_of_request) +
                     ",\"include\":[\"exponents\",\"regime\"],\"exponents\":[\"qr\"]");
     const api::Json answer = api::Json::parse(api::json_text(
-        api::simulate_answer(api::read_simulate_request(api::Json::parse(s.request)), {})));
+        api::simulate_in_parts(api::read_simulate_request(api::Json::parse(s.request)), {}).json));
     const api::Json &exponents = answer["exponents"], &regime = answer["regime"];
     s.complete = answer["status"]["reason"] == "tau_end";
     s.verdict = verdict_named(exponents["verdict"]);
