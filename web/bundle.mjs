@@ -16,10 +16,7 @@ const web = dirname(fileURLToPath(import.meta.url));
 const [document, output] = process.argv.slice(2);
 const read = (name) => readFileSync(join(web, name), "utf8");
 
-/**
- * Bundles a script and a style sheet: [name, text] each. Modules that are imported dynamically, and
- * those that they share with the script, become files of their own.
- */
+/** Bundles a script and a style sheet, with the modules imported dynamically: [name, text] each. */
 const bundled = (...entryPoints) =>
   buildSync({
     absWorkingDir: web,

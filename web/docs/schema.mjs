@@ -1,6 +1,5 @@
 // Schemas as text and as tables of fields. The id of a field is its operation or schema followed by
 // field names: schema-Energy.without_absorber.rms.
-
 import {readFileSync} from "node:fs";
 import {count} from "../shared/numbers.js";
 

@@ -1,10 +1,7 @@
-// The measurement tab: a file and the form are sent as one request, and the identified system is
-// shown. The list of impacts can be edited and sent again.
-
+// The measurement tab: identifies a file; the list of its impacts can be edited and sent again.
 import {asCurl, identify, identifyJson, simulate} from "../shared/api.js";
 import * as dom from "../shared/dom.js";
 import {$} from "../shared/dom.js";
-
 import {Form} from "../shared/form.js";
 import {RequestTab} from "../shared/job.js";
 import {ImpactList} from "./impact_list.js";
@@ -31,10 +28,7 @@ const longestQuery = 6000; // characters; servers and proxies accept addresses o
 const sampleCycles = 330; // about 40 s
 const firstSample = "fig20"; // read when the tab is opened without a record
 
-/**
- * Changes to the service's fields: column names are typed or taken from the file's header; the
- * amplitude of the forcing is fitted and has no field.
- */
+/** Changes to the service's fields. The fitted amplitude of the forcing has no field. */
 const changes = {
   threshold: {group: "system", unit: "sd of the noise"},
   R: {default_note: "estimated"},

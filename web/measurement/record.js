@@ -1,5 +1,4 @@
-// A record: read from a file for drawing, by the same rules as the service, which reports the errors;
-// simulated from a run; and kept by the browser.
+// Records: read from a file by the rules of the service, simulated from a run, kept by the browser.
 import {nextTask} from "../shared/dom.js";
 import {Motion} from "../shared/motion.js";
 import {firstFrom, lastUpTo} from "../shared/numbers.js";
@@ -51,10 +50,7 @@ function numberOf(cell, separator) {
 
 const comment = /^\s*(#|%|\/\/)/;
 
-/**
- * The separator that splits the line into two or more numbers; undefined if there is none.
- * declared: the separator of a line sep=, the only one tried.
- */
+/** The separator that splits a line into numbers, if any; declared: by a line sep=. */
 const separatorOfNumbers = (line, declared) =>
   (declared ? [declared] : [";", "\t", ",", " "]).find((separator) => {
     const cells = cellsOf(line, separator);
@@ -62,12 +58,9 @@ const separatorOfNumbers = (line, declared) =>
   });
 
 /**
- * [names, units] from the lines above the first row of `count` numbers; units can be missing.
- * Returns undefined if there are no names. above: the last two lines and the last comment.
- *
- * Candidates in order of preference: names and units in the last two lines; names in the comment
- * and units in the last line, unless the comment holds units; units above the names, in a line or
- * the comment; names alone.
+ * [names, units] from the lines above the first row of `count` numbers; undefined without names,
+ * units can be missing. above: the last two lines and the last comment. `pairs` lists the
+ * candidates in order of preference.
  */
 function headingOf(above, count, separator) {
   const [last, before, commented] = [above.last, above.before, above.comment].map((line) =>
@@ -89,9 +82,8 @@ function headingOf(above, count, separator) {
 }
 
 /**
- * Parses a CSV file into {text, names, units, columns}; columns hold numbers, and names is empty if
- * no heading is found. Lines that the service would reject are skipped. onProgress(fraction)
- * reports progress.
+ * Parses a CSV file into {text, names, units, columns}; names is empty without a heading. Skips
+ * lines that the service would reject. onProgress(fraction) reports progress.
  */
 export async function parse(file, onProgress = () => {}) {
   const text = await textOf(file);
@@ -132,10 +124,7 @@ export async function parse(file, onProgress = () => {}) {
   return {text, names, units, columns: columns.map((column) => Float64Array.from(column))};
 }
 
-/**
- * Usual column names by quantity: the first must match exactly, the others must be followed by a
- * space, an underscore, a bracket or the end.
- */
+/** Usual column names: the first as a whole, the others before a space, underscore or bracket. */
 const quantities = {
   time: ["time_s", "time", "t"],
   displacement: ["displacement_m", "displacement", "x"],
@@ -206,10 +195,7 @@ function unitIn(name) {
   return unitAmong(name, ...(brackets ? [brackets[1]] : suffixes));
 }
 
-/**
- * Column of each quantity found: {name, values, unit}. The unit is that of the column's name, else
- * of the row of units, else of the field, which can be undefined.
- */
+/** Columns found: {name, values, unit: by the column's name, the row of units or the field}. */
 function partsOf({names, units, columns}, fields) {
   const found = Object.entries(columnsOf(names, fields)).filter(([, k]) => k >= 0);
   const part = (quantity, k) => ({
@@ -221,9 +207,8 @@ function partsOf({names, units, columns}, fields) {
 }
 
 /**
- * The record selected by the fields: {t (s), x (mm), a (m/s^2)}, null for a missing quantity.
- * Samples whose time is not later than all before are dropped, since the plots need ascending
- * times.
+ * The record selected by the fields: {t (s), x (mm), a (m/s^2)}, null for a missing quantity. Drops
+ * samples whose time is not later than all before, since plots need ascending times.
  */
 export function recordOf(parsed, fields) {
   const {time, displacement, acceleration} = partsOf(parsed, fields);
@@ -266,10 +251,7 @@ export function asJson(parsed, fields) {
 
 const medianReach = 8; // samples before and after the interval, for the local median
 
-/**
- * Index of the sample within `reach` of a time whose acceleration deviates most from the local
- * median: the visible spike. null without an acceleration.
- */
+/** Index of the visible spike of a within `reach` of a time; null without an acceleration. */
 export function spikeNear({t, a}, time, reach) {
   const from = firstFrom(t, time - reach);
   const to = Math.max(firstFrom(t, time + reach), from + 1);
@@ -320,10 +302,7 @@ function noiseFrom(seed) {
   };
 }
 
-/**
- * The oscillator of a run as fields of /v1/identify, in kg, N/m, N s/m, Hz and m. A dimensionless
- * system gets m1 = 1 kg and k1 = 1 N/m, hence omega0 = 1 rad/s.
- */
+/** The oscillator of a run as fields of /v1/identify; m1 = 1 kg, k1 = 1 N/m if dimensionless. */
 export function oscillatorOf({si, b, epsilon, Omega, derived}) {
   const system = si ?? {m1: 1, k1: 1, m2: epsilon, f: Omega / (2 * Math.PI)};
   const {m1, k1, m2, f} = system;
@@ -331,10 +310,7 @@ export function oscillatorOf({si, b, epsilon, Omega, derived}) {
   return {m1, k1, c1, m2, f, b};
 }
 
-/**
- * The samples of a run as CSV: time_s, displacement_m, acceleration_m_s2. Starts after `settling`
- * cycles if the run is longer than three times that; holds at most maxSamples.
- */
+/** Samples of a run as CSV; a long run is recorded after `settling` cycles. */
 export function recordOfRun(answer) {
   const {parameters, impacts} = answer;
   const omega0 = parameters.derived.omega0 ?? 1; // rad/s

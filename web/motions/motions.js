@@ -1,6 +1,5 @@
-// The motions tab: which motions exist over a parameter. A sweep from several starts finds what the
-// system settles on, and continuations follow each periodic orbit, stable or not. Both are drawn
-// while they are computed.
+// The motions tab: a sweep from several starts finds what the system settles on, and continuations
+// follow each periodic orbit, stable or not.
 import {linesOf} from "../shared/api.js";
 import {$, button, countUp, element, setTexts, tableOf} from "../shared/dom.js";
 import {addExportButton} from "../shared/export.js";

@@ -9,9 +9,8 @@ const styles = [{width: 2}, {}, {dash: [7, 3]}, {dash: [2, 3]}];
 const absent = (status, ended) => (ended && status === "minus_infinity" ? "−∞" : "");
 
 /**
- * Lines of the history of an estimator: four exponents and, if present, the rounding floor. An
- * exponent of minus infinity has no line; its legend shows −∞. along(tau, columns) returns the columns
- * of the plot, its time first; estimator: undefined if it was not requested.
+ * Lines of the history of an estimator, if it was requested: four exponents and the rounding floor.
+ * One of minus infinity has only a legend. along(tau, columns): the plot's columns, time first.
  */
 export function exponentMarks({history, status = []} = {}, along) {
   const series = styles.map((style, k) => ({

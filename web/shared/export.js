@@ -1,5 +1,4 @@
-// Export of a plot: a dialog with its numbers as a table and as CSV, and its picture as PNG and SVG
-// with title and parameters.
+// Export of a plot: a dialog with its numbers as a table and CSV, its picture as PNG and SVG.
 import {$, attributes, button, element, save, setTexts, tableOf} from "./dom.js";
 import {font} from "./frame.js";
 import {drawText, ink} from "./ink.js";
@@ -25,7 +24,7 @@ function drawPicture(c, plot, {title, caption}) {
 }
 
 function asSvg(plot, about) {
-  const pen = new SvgPen(size.width, size.height);
+  const pen = new SvgPen();
   drawPicture(pen, plot, about);
   return pen.text();
 }
@@ -43,25 +42,17 @@ const quoted = (text) => (/[",\n]/.test(text) ? `"${text.replaceAll('"', '""')}"
 
 const written = (value) => (typeof value === "string" ? value : short(value));
 
-const rowsOf = ([first, ...others], most = Infinity) =>
-  first.slice(0, most).map((v, i) => [v, ...others.map((column) => column[i])]);
-
-function csv({names, columns}) {
-  const lines = [names.map(quoted), ...rowsOf(columns)].map((row) => row.join(","));
-  return `${lines.join("\n")}\n`;
-}
-
 function show(plot, about) {
   const {title, caption, summary, name} = about;
-  const data = plot.numbers();
-  const total = data.columns[0].length;
-  const cut = total > rowsShown ? `the first ${rowsShown} of ${total} visible rows` : "";
-  const note = joined([caption, cut], " · ");
+  const {names, rows} = plot.numbers();
+  const cut = `the first ${rowsShown} of ${rows.length} visible rows`;
+  const note = joined([caption, rows.length > rowsShown && cut], " · ");
   setTexts({"data-title": title, "data-summary": summary, "data-note": note});
-  const rows = rowsOf(data.columns, rowsShown).map((values) => values.map(written));
-  $("data-table").replaceChildren(...tableOf(data.names, rows));
+  const shown = rows.slice(0, rowsShown).map((values) => values.map(written));
+  $("data-table").replaceChildren(...tableOf(names, shown));
+  const csv = () => [names.map(quoted), ...rows].map((row) => `${row.join(",")}\n`);
   const files = {
-    csv: () => new Blob([csv(data)], {type: "text/csv"}),
+    csv: () => new Blob(csv(), {type: "text/csv"}),
     svg: () => new Blob([asSvg(plot, about)], {type: "image/svg+xml"}),
     png: () => asPng(plot, about),
   };
@@ -80,14 +71,13 @@ export function captionOf(figure) {
   return {title: own.textContent.trim(), notes: notes.map((node) => node.textContent).join(" ")};
 }
 
-const nameOf = (figure) => figure.ariaLabel ?? captionOf(figure).title;
-
 /** Adds the export button to a plot's caption. about() returns {title, caption, summary, name}. */
 export function addExportButton(figure, plot, about) {
+  const name = figure.ariaLabel ?? captionOf(figure).title;
   const menu = button("⋯", () => show(plot, about()), {
     className: "menu",
     title: "numbers, CSV, SVG, PNG",
-    ariaLabel: `${nameOf(figure)}: data and pictures`,
+    ariaLabel: `${name}: data and pictures`,
   });
   figure.querySelector("figcaption").append(menu);
 }
@@ -117,9 +107,9 @@ class SvgPen {
   path = "";
   saved = [];
 
-  constructor(width, height) {
-    const viewBox = `0 0 ${width} ${height}`;
-    this.root = this.group = svg("svg", {width, height, viewBox});
+  constructor() {
+    const viewBox = `0 0 ${size.width} ${size.height}`;
+    this.root = this.group = svg("svg", {...size, viewBox});
   }
 
   text() {

@@ -1,5 +1,4 @@
-// Pointing at and zooming into a plot with mouse, touch and keyboard. A plot has a viewport for
-// x and can have one for y.
+// Pointing at and zooming into a plot, over x and possibly y, with mouse, touch and keyboard.
 import {attributes, element, on, showAsSlider} from "./dom.js";
 import {clamp, short} from "./numbers.js";
 
@@ -17,10 +16,7 @@ class Direction {
     Object.assign(this, {over, viewport, ...direction});
   }
 
-  /**
-   * Position of an event: `place` in px from the start of the plot, `all`: the length of the plot
-   * in px, `share`: the fraction of the visible range before it, `value` on the axis.
-   */
+  /** `place` of an event in px, of `all` px; its `share` of the visible range; `value`. */
   at(event) {
     const box = this.over.getBoundingClientRect();
     const all = box[this.size] || 1;
@@ -35,10 +31,7 @@ class Direction {
   }
 }
 
-/**
- * Calls click(x, reach, {top, y, touch}) on a click. reach: 6 px in units of the axis; top: px in
- * the plot; y: value on the vertical axis, if there is one.
- */
+/** Calls click(x, reach: 6 px on the axis, {top: px, y, touch}) on a click. */
 export function listen(over, viewport, click, across = null) {
   const x = new Direction(over, viewport, rightwards);
   const y = new Direction(over, across ?? viewport, upwards);
@@ -66,10 +59,7 @@ const ordered = (a, b) => (a < b ? [a, b] : [b, a]);
 const isMouse = (event) => event.pointerType === "mouse";
 const isZoomed = ({directions}) => directions.some((direction) => direction.viewport.zoomed);
 
-/**
- * A drag zooms and does not end in a click. A double click shows the full range and does not count
- * as two clicks.
- */
+/** A drag zooms and does not end in a click; a double click does not count as two clicks. */
 function followMouse(plot, where, click) {
   const {over, directions} = plot;
   const selection = element("div", {className: "selection", hidden: true});
@@ -119,8 +109,8 @@ function followMouse(plot, where, click) {
 }
 
 /**
- * With Ctrl, or while the plot has the focus, the wheel zooms, or scrolls sideways; zooming out of
- * the full range scrolls the page. Otherwise the wheel scrolls the page and a hint names the keys.
+ * With Ctrl, or while the plot has the focus, the wheel zooms, or scrolls sideways. Otherwise it
+ * scrolls the page and a hint names the keys.
  */
 function followWheel(plot) {
   const {over, viewport, directions} = plot;
@@ -184,8 +174,8 @@ function followFingers(plot) {
 }
 
 /**
- * Keys of a plot: arrows move the cursor (with Shift faster), + and − zoom about it, Page Up and
- * Page Down scroll, 0 and Escape reset the zoom, n and p jump to the next and the previous impact.
+ * Keys: arrows move the cursor (with Shift faster), + and − zoom, Page Up and Page Down scroll, 0
+ * and Escape reset the zoom, n and p jump to the next and the previous impact.
  */
 function followKeys(node, viewport, impacts) {
   const now = () => viewport.cursor ?? viewport.range[0];
@@ -215,8 +205,8 @@ function followKeys(node, viewport, impacts) {
 }
 
 /**
- * Names a plot for screen readers. A plot over a shared axis, `viewport`, also gets the keys of
- * followKeys and the slider role; moments() returns the impact times for n and p.
+ * Names a plot for screen readers. With a `viewport` it is a slider with the keys of followKeys;
+ * moments() returns the impact times for n and p.
  */
 export function makeAccessible({node}, name, moments, viewport) {
   attributes(node, {"aria-label": name, role: viewport ? "slider" : "img"});

@@ -1,5 +1,4 @@
-// Quantities of sweep points: one table for menus, axes, colours and tooltips. Lengths are shown in
-// mm.
+// Quantities of sweep points, for menus, axes, colours and tooltips. Lengths are shown in mm.
 import {count, inMm, short, withError} from "./numbers.js";
 
 export const regimes = {
@@ -74,7 +73,7 @@ export const quantities = {
     si: {label: "impacts per second", of: (p) => p.impacts_per_second ?? null},
   },
 };
-// Quantities of the lowest diagram over one axis; their axis starts at 0.
+// Quantities of sweep points, for menus, axes, colours and tooltips. Lengths are shown in mm.
 const oneAxisQuantities = [
   "z",
   "x_rms_ratio",
@@ -119,7 +118,6 @@ export function otherMotion(p) {
   return {...m, lambda, x_rms_ratio: p.x_rms ? (p.x_rms_ratio * m.x_rms) / p.x_rms : null};
 }
 
-/** The best motion of a point, or the point itself. */
 export const bestMotion = (p) => otherMotion(p) ?? p;
 
 export const startNames = {
@@ -237,7 +235,6 @@ function describeStarts(p, where) {
   return second ? [[`from the ${second.start}`, `different: ${motion(second)}`]] : [];
 }
 
-/** The largest exponent with its standard error. */
 const exponentText = ({lambda, status, standard_error: errors}) =>
   status?.[0] === "minus_infinity" ? "−∞" : withError(lambda[0], errors?.[0], 4);
 

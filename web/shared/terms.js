@@ -1,5 +1,4 @@
-// Terms that explain themselves: an element with data-term shows a sentence, the formula and a link
-// into the help, from the element `term-NAME` of the page, on hover, focus and touch.
+// Terms that explain themselves: the element `term-NAME` of the page, on hover, focus and touch.
 import {$, attributes, element, on} from "./dom.js";
 
 const box = element("div", {className: "tip term", id: "term", role: "tooltip", hidden: true});

@@ -36,10 +36,7 @@ export class Viewport {
     return this.range[1] - this.range[0];
   }
 
-  /**
-   * Sets a new full range from..to, with `initial` visible at first. A zoom that overlaps it is
-   * kept unless `fresh`. Listeners are not called.
-   */
+  /** Sets the full range; keeps a zoom that overlaps it unless `fresh`. Calls no listeners. */
   span(from, to, initial = [from, to], fresh = false) {
     const stays = !fresh && this.changed && this.range[0] < to && this.range[1] > from;
     this.full = [from, to];

@@ -1,7 +1,5 @@
-// Drawings of the machine to scale at the cursor, with and without the absorber, shaken by the same
-// base: spring, damper, oscillator, walls, and the ball with a short trail; impacts flash. A band
-// below each shows how far its oscillator moves. Dragging the ball sets its initial position y0,
-// dragging a wall the clearance b.
+// Drawings of the machine to scale at the cursor, with and without the absorber. A band below each
+// shows how far its oscillator moves. Dragging the ball sets its initial position, a wall b.
 import {$, on, setTexts} from "../shared/dom.js";
 import {lawsInSi} from "../shared/form.js";
 import {blank, font, Size} from "../shared/frame.js";
@@ -23,8 +21,8 @@ let drawn = null; // the Drawing of the machine with the absorber
 const [leastTilt, mostTilt] = [4, 12].map((degrees) => (degrees * Math.PI) / 180);
 
 /**
- * {text, angle drawn} of an inclined track: small angles are exaggerated, large ones are drawn smaller, so
- * that the machine fits. Without an angle only the sign of gravity is known. null without gravity.
+ * {text, angle drawn} of an inclined track, null without gravity. Small angles are exaggerated,
+ * large ones reduced. Without an angle only the sign of gravity is known.
  */
 function tiltOf(parameters) {
   const {gravity, si} = parameters;
@@ -72,9 +70,8 @@ function flash(c, x, y, inwards, share) {
 }
 
 /**
- * The parts that both machines share, in a canvas of a size. x: displacement of the oscillator;
- * peak: its largest; title; colour: of the oscillator's edge and of the band. The scale depends on
- * the run alone, so that both machines have the same.
+ * The parts that both machines share, to the same scale. x: displacement of the oscillator; peak:
+ * its largest; colour: of the oscillator's edge and of the band.
  */
 class Drawing {
   constructor(canvas, size, {x, peak, title, colour}) {
@@ -206,7 +203,6 @@ const machines = [
   [$("machine-without"), drawWithout],
 ].map(([canvas, draw]) => ({canvas, draw, size: new Size(canvas, redraw)}));
 
-/** Draws the state at the cursor. */
 export function redraw() {
   const {cursor} = viewport;
   if (!run || cursor === null) return;
@@ -235,10 +231,7 @@ function partAt(event) {
   return [1, -1].some((side) => Math.abs(wall(side) - x) < reach) ? "wall" : undefined;
 }
 
-/**
- * set(fields, dragging) is called with y0 (m) or b (m). The scale is held during a drag, so that the
- * part stays under the pointer.
- */
+/** set(fields, dragging) is called with y0 or b, m. A drag holds the scale. */
 export function start(set) {
   const [{canvas}] = machines;
   let part;

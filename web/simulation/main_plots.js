@@ -1,6 +1,4 @@
-// Plots of the first screen: motion over time (reconstructed from the impacts), largest modulus of
-// T, exponents, section and manifold. They share a cursor, and the impact nearest to it is ringed
-// in each.
+// Plots of the first screen. They share a cursor, and ring the impact nearest to it.
 import {$, attributes, reveal, setTexts} from "../shared/dom.js";
 import {exponentRange} from "../shared/exponents.js";
 import {beads, curve, dots, levels, line, symbols} from "../shared/marks.js";
@@ -29,10 +27,7 @@ export const redraw = () => plots.refresh();
 const optionsOf = {load, x: displacement, relative, lambda: exponents, section, largest, manifold};
 const deferredPlots = ["largest", "manifold"];
 
-/**
- * Returns functions that draw the plots. Plots that need the deferred answer are marked until it
- * arrives.
- */
+/** Functions that draw the plots; those that need the deferred answer are marked until then. */
 function stepsOf(...names) {
   for (const name of deferredPlots) $(`figure-${name}`).classList.toggle("pending", !run.deferred);
   return [...names.map((name) => () => plots.draw(name, optionsOf[name]())), tell];
@@ -184,7 +179,6 @@ function exponents() {
   return options;
 }
 
-/** States after each impact, by wall. */
 function section() {
   const {impacts} = run.motion;
   const {velocity} = run.units;
@@ -235,10 +229,7 @@ function tell(by) {
   }
 }
 
-/**
- * The branches extend far beyond most runs, so the plot shows the range of the run's points, the
- * fold and the free amplitude.
- */
+/** The branches extend far beyond the run's points, the fold and the free amplitude shown. */
 export function manifold() {
   const {points, fold, free_amplitude: free} = run.deferred.manifold;
   const dash = [5, 4];

@@ -1,10 +1,7 @@
-// The simulation tab: every change is sent as one request and its answer shown immediately. The
-// address holds the request and the visible range.
-
+// The simulation tab: each change is sent at once. The address holds request and visible range.
 import {simulate} from "../shared/api.js";
 import * as dom from "../shared/dom.js";
 import {$} from "../shared/dom.js";
-
 import {Form, unknownText} from "../shared/form.js";
 import {Job, RequestTab} from "../shared/job.js";
 import {isSampled, motionOf} from "../shared/motion.js";
@@ -34,10 +31,7 @@ const mostSamples = 60000; // of a run that is drawn from samples
 const large = 20000; // impacts above which a run is drawn in several tasks
 const idle = 100; // ms without an edit before the deferred parts are requested
 
-/**
- * The range first in view: the last six cycles of a periodic motion, or else the window, if it ends
- * well before the run.
- */
+/** The range first in view: the last cycles of a periodic motion, or else the window. */
 function homeOf({parameters, status, regime}) {
   const end = status.tau;
   if (regime.periodic && regime.contacts) {
@@ -55,11 +49,8 @@ function remark({exponents: {verdict, verdict_reason: why}, regime, warnings}, m
   dom.showRemarks("remarks", [...new Set([...(open ? [`not decided: ${why}`] : []), ...all])]);
 }
 
-/** A request for the same run with a ball too light to matter: without the absorber. */
-function withLightBall({m2, ...fields}) {
-  const include = ["impacts", "series"];
-  return {max_points: mostSamples, ...fields, mass_ratio: 1e-9, include};
-}
+// Parts of the same run with a ball too light to matter: without the absorber.
+const lightParts = {m2: undefined, mass_ratio: 1e-9, include: ["impacts", "series"]};
 
 export class SimulationTab extends RequestTab {
   asked = null; // query of the request in the address
@@ -71,7 +62,8 @@ export class SimulationTab extends RequestTab {
     ask: (fields, signal) =>
       Promise.all([
         simulate({...fields, ...deferredParts}, signal),
-        run.motion.exact === false && simulate(withLightBall(fields), signal),
+        run.motion.exact === false &&
+          simulate({max_points: mostSamples, ...fields, ...lightParts}, signal),
       ]),
     show: ([answer, without], fields) => {
       if (fields !== run.fields) return;
@@ -238,9 +230,8 @@ export class SimulationTab extends RequestTab {
   }
 
   /**
-   * Sends the form. dragging: while a slider is dragged; fresh: not changed by a slider; unknown:
-   * names in the address; linked: the form has the fields of the address; note: to be shown with
-   * the run.
+   * Sends the form. dragging: a slider is dragged; fresh: not changed by a slider; unknown: names
+   * in the address; linked: the form has the fields of the address; note: shown with the run.
    */
   send({dragging = false, fresh = false, unknown = [], linked = false, note = ""} = {}) {
     const fields = this.request.fields();
@@ -270,10 +261,7 @@ export class SimulationTab extends RequestTab {
     this.say(`${label}: “${number.value}” is not a number`, true);
   }
 
-  /**
-   * Called when a slider or the strip's marker moves. fields: to set, null to clear one; dragging:
-   * the slider is being dragged.
-   */
+  /** Called when a slider or the strip's marker moves. fields: to set, null to clear one. */
   sliderMoved(fields, slider, dragging) {
     this.lastMoved = slider.name;
     this.set(fields, dragging);

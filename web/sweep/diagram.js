@@ -1,5 +1,4 @@
-// A sweep over one axis: the bifurcation diagram of its section, lambda1, and another quantity with
-// the regimes, stacked. They share the axis and the tooltip.
+// A sweep over one axis: its section, lambda1, and another quantity with the regimes, stacked.
 import {rangeOf} from "../shared/frame.js";
 import {levels} from "../shared/marks.js";
 import {clamp, short} from "../shared/numbers.js";
@@ -17,7 +16,6 @@ const startStyles = [
   {colour: "c4", shape: "diamond", mark: "◆"},
   {colour: "c3", shape: "pointed", mark: "▼"},
 ];
-/** Colour, symbol and key of a start. */
 export const startStyle = (s) => startStyles[s % startStyles.length];
 
 /** Applies `of` to the best or second motion of a point. */
@@ -70,10 +68,7 @@ class Diagram extends SweepPlot {
     return dotsOf(this.view.byStart[start], of, {shape, size, ...more});
   }
 
-  /**
-   * The best motion of each point, or one from another start that differs, as rings on a thin line.
-   * Not drawn for several starts.
-   */
+  /** The best motion of each point, or one from another start that differs, as rings on a line. */
   rings(frame, of) {
     if (this.view.several) return [];
     const other = ofOtherMotion(of);
@@ -81,12 +76,10 @@ class Diagram extends SweepPlot {
     return [this.line(0, other, "best", {alpha: 0.6}), this.dots(frame, 0, other, ring)];
   }
 
-  /** Stretches of the same regime of a start. */
   regimes(start, more) {
     return regimesOf(this.view.byStart[start], this.view.data.axes[0], more);
   }
 
-  /** The points of the first start. */
   get points() {
     return this.view.byStart[0].map(({p}) => p);
   }
@@ -240,7 +233,6 @@ class QuantityDiagram extends Diagram {
   }
 }
 
-/** Steps of the keys along the axis. */
 const steps = {
   ArrowLeft: -1,
   ArrowRight: 1,
@@ -283,10 +275,7 @@ export class DiagramView extends SweepView {
     return this.byStart.map((list) => list.find((place) => place.at[0] === at));
   }
 
-  /**
-   * The nearest point of the first start or, given a height in px, of the start drawn nearest to
-   * it.
-   */
+  /** The nearest point of the first start or, given a height, of the start drawn nearest to it. */
   nearest({plot, at, top}) {
     const place = closest(this.byStart[0], (other) => Math.abs(other.at[0] - at[0]));
     if (!place || top === undefined) return place;

@@ -1,5 +1,4 @@
-// A map: a sweep over two axes, or one slice of a sweep over three. A quantity is shown as colours
-// with a scale. Missing points take the colour of a coarser neighbour.
+// A map: a quantity over two axes, as colours. Missing points look like a coarser neighbour.
 import {font, ticks} from "../shared/frame.js";
 import {colour, drawText, drawTextUpwards, hex, ink, rgb} from "../shared/ink.js";
 import {kind, pixel, raster} from "../shared/marks.js";
@@ -10,7 +9,6 @@ import * as labels from "./axis_labels.js";
 import {startStyle} from "./diagram.js";
 import {missingPoint, SweepPlot, SweepView} from "./sweep_view.js";
 
-/** Steps of the keys over the cells. */
 const moves = {ArrowLeft: [-1, 0], ArrowRight: [1, 0], ArrowUp: [0, 1], ArrowDown: [0, -1]};
 
 const firstPass = 1 / 40; // fraction of the points after which the colour scale is fixed
@@ -30,7 +28,6 @@ export class MapView extends SweepView {
     return {...place, p: data.points[index], data, index, best};
   }
 
-  /** Cells of a layer with a point. */
   *cells(data) {
     const [first, second] = data.axes;
     for (let l = 0; l < second.at.length; ++l)
@@ -120,10 +117,7 @@ class MapPlot extends SweepPlot {
     return coloured.get(name);
   }
 
-  /**
-   * The colour scale; null for categories. It is fixed for each quantity once a coarse picture of
-   * the whole map exists, and holds for all slices and starts.
-   */
+  /** The colour scale; null for categories. It stays once a coarse picture of the map exists. */
   scale() {
     const quantity = this.quantity();
     if (quantity.categories) return null;
@@ -226,9 +220,8 @@ function positions(axis, [from, to], pixels) {
 const coarsest = (n) => 2 ** Math.floor(Math.log2(Math.max(Math.floor(n / 8), 1)));
 
 /**
- * Gives missing cells the colour of the preceding point on a coarser grid, in the order in which
- * the service computes. columns, rows: index of each position in the requested axis, ascending or
- * descending, which makes them their own inverses.
+ * Gives missing cells the colour of the preceding point on a coarser grid, in the service's order.
+ * columns, rows: index of each position in the requested axis, their own inverses.
  */
 function fillGaps(cells, columns, rows) {
   const n = columns.length;
@@ -262,10 +255,7 @@ function rounded(v) {
 
 const spare = 0.02; // fraction of the values at either end that can lie beyond the scale
 
-/**
- * Round ends of the colour scale of some values. A few outliers can lie beyond the ends, so that
- * they do not flatten the colours of the others.
- */
+/** Round ends of the colour scale, beyond which a few outliers can lie. */
 function endsOf({diverging, from0}, values) {
   const sorted = Float64Array.from(values).sort();
   const n = sorted.length;
@@ -282,8 +272,8 @@ function endsOf({diverging, from0}, values) {
 }
 
 /**
- * {at(value): colour as bytes, ends, beyond: [whether at() got values below the scale, above it]}.
- * The colours of a diverging scale are symmetric about 0, whatever its ends.
+ * {at(value): colour as bytes, ends, beyond: [whether at() got values below the scale, above it]};
+ * a diverging scale is symmetric about 0, whatever its ends.
  */
 function scaleOf({diverging}, ends) {
   const [low, high] = ends;

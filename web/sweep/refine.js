@@ -6,9 +6,8 @@ const pause = 350; // ms without zooming before it starts
 const maxPoints = 20000;
 
 /**
- * An axis of the request whose `count` values are the centres of equal cells of the visible range
- * [low, high], clipped to the full range. low, high and at are places on the axis (data.js), which
- * valueAt() converts to values.
+ * An axis of the request with the centres of `count` equal cells of the visible places [low, high],
+ * clipped to the full range. valueAt() converts places (data.js) to values.
  */
 function axisOf(given, {from: valueAt, at}, [low, high], count) {
   const half = (high - low) / count / 2;
@@ -19,10 +18,7 @@ function axisOf(given, {from: valueAt, at}, [low, high], count) {
 }
 
 export class Refiner {
-  /**
-   * drawn(): called when points were received; settled(): when all were received; say(text): shows
-   * the status, "" for none.
-   */
+  /** drawn(), settled(): called for some or all received points; say(text): shows the status. */
   constructor({drawn, settled, say}) {
     Object.assign(this, {drawn, say, view: null, waiting: 0});
     this.job = new Job({
@@ -97,10 +93,7 @@ export class Refiner {
   }
 }
 
-/**
- * Points along each visible axis, unchanged or scaled down equally so that all points times starts
- * stay within maxPoints, but at least 2.
- */
+/** Points along each axis, scaled down so that all stay within maxPoints, but at least 2. */
 function countsOf({axes, starts}, n) {
   const counts = axes.slice(0, n).map(({at}) => at.length);
   const product = counts.reduce((a, b) => a * b, starts);

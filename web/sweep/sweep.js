@@ -1,9 +1,7 @@
-// The sweep tab: the form starts a stream of points, drawn while they arrive. The query holds the
-// request and the menus.
+// The sweep tab: a stream of points, drawn while they arrive. The query holds request and menus.
 import {asCurl} from "../shared/api.js";
 import * as dom from "../shared/dom.js";
 import {$} from "../shared/dom.js";
-
 import {RequestTab} from "../shared/job.js";
 import {percent} from "../shared/numbers.js";
 import * as q from "../shared/quantities.js";
@@ -82,7 +80,6 @@ function showParts({axes, section, defaultSet, starts, parameters, reduced, poin
     node.hidden = !holds[node.dataset.if];
 }
 
-/** Shows the number of points of each regime. */
 function showRegimes({points}) {
   for (const [regime, n] of countRegimes(points)) {
     const number = $(`sweep-regime-${regime}`);
@@ -93,7 +90,7 @@ function showRegimes({points}) {
 }
 
 /** Legend entry with a mark, both in a colour; `more` follows it. */
-function legendEntry(text, mark, colour, ...more) {
+function legendEntry(text, {mark, colour}, ...more) {
   const key = dom.keyOf(mark, colour, text);
   key.dataset.colour = colour;
   return dom.element("li", {}, key, ...more);
@@ -107,15 +104,10 @@ function showAttractors({choice, plots: [map]}) {
     .sort(([, n], [, m]) => m - n)
     .map(([name, n]) => {
       const share = dom.element("small", {}, percent(n / all));
-      return legendEntry(name.replace("_", " "), "■", map.colourOf(name), share);
+      const style = {mark: "■", colour: map.colourOf(name)};
+      return legendEntry(name.replace("_", " "), style, share);
     });
   $("sweep-attractors").replaceChildren(...items);
-}
-
-/** Legend entry of a start: its symbol and state. */
-function startKey(state, s) {
-  const {mark, colour} = startStyle(s);
-  return legendEntry(`${s + 1}: ${labels.fields(state)}`, mark, colour);
 }
 
 // The table of peaks.
@@ -140,10 +132,7 @@ function ofStarts(data) {
   return [...own, ...motionsOf(points[0])];
 }
 
-/**
- * Shows the table of the largest |x| from each start over a whole axis: for a reduction that leaves no
- * axis, and for the default set of starts over one axis.
- */
+/** Shows the largest |x| from each start over a whole axis: reduced, or of the default set. */
 function showPeaks(data) {
   const {reduced, axes, defaultSet, request} = data;
   const bare = reduced && !axes.length;
@@ -220,9 +209,8 @@ export class SweepTab extends RequestTab {
       dom.copy(asCurl({path: "v1/sweep", body: this.form.request()}, "-sN"), this.say);
   }
 
-  /** The request of the sweep shown, as a query; null before the first. */
-  shown() {
-    return this.data && SweepForm.toQuery(this.data.request);
+  formQuery() {
+    return SweepForm.toQuery(this.form.request());
   }
 
   query() {
@@ -231,13 +219,13 @@ export class SweepTab extends RequestTab {
       .filter(([, {selectedIndex}]) => selectedIndex > 0)
       .map(([name, {value}]) => `${name}=${value}`);
     const ends = this.view?.ends().join(",");
-    return [this.shown(), ...menu, ...(ends ? [`view=${ends}`] : [])].join("&");
+    return [this.asked, ...menu, ...(ends ? [`view=${ends}`] : [])].join("&");
   }
 
   open(given) {
     const numbers = given.get("view")?.split(",").map(Number) ?? [];
     const ends = numbers.every(Number.isFinite) ? numbers : [];
-    if (this.data && requestOf(given) === requestOf(this.shown())) {
+    if (this.data && requestOf(given) === requestOf(this.asked)) {
       // The same sweep with other menus: Back or Forward.
       for (const [name, menu] of Object.entries(ofQuery)) dom.choose(menu, given.get(name));
       this.view?.zoomTo(ends);
@@ -305,23 +293,21 @@ export class SweepTab extends RequestTab {
 
   /** Marks the results if the form differs, and selects the example that the form shows. */
   markStale() {
-    exampleOf(SweepForm.toQuery(this.form.request())).selected = true;
+    exampleOf(this.formQuery()).selected = true;
     super.markStale();
-  }
-
-  isStale() {
-    return this.data !== null && SweepForm.toQuery(this.form.request()) !== this.shown();
   }
 
   /** Shows the empty diagrams of a new sweep. */
   present(data) {
     const edit = this.data && !data.ends;
     this.data = data;
+    this.asked = SweepForm.toQuery(data.request);
     data.folded = data.reduced && labels.of(data.reduced);
     this.view = this.views[data.axes.length];
     this.form.showOrigins(data.parameters);
     this.fillMenus();
-    $("sweep-starts").replaceChildren(...data.states.map(startKey));
+    const keyOf = (state, s) => legendEntry(`${s + 1}: ${labels.fields(state)}`, startStyle(s));
+    $("sweep-starts").replaceChildren(...data.states.map(keyOf));
     this.view?.show(new Layers(data));
     this.refiner.follow(this.view);
     this.redraw();

@@ -1,7 +1,7 @@
-// The form of a sweep: axes, run of each point, shared fields; and its conversion to and from a
-// query. The fields of an axis have its name in front: axis1_from.
+// The form of a sweep; its fields of an axis have the axis' name in front: axis1_from.
 import {$, element, fillMenu, setTexts} from "../shared/dom.js";
 import {BaseForm, defaultSet, queryOf, shown, smallScreen, unknownText} from "../shared/form.js";
+import {joined} from "../shared/numbers.js";
 import {unitShown} from "../shared/units.js";
 
 const none = "none";
@@ -37,11 +37,6 @@ function runFields(fields, base) {
   ];
 }
 
-function noteOf({description, unit: own}) {
-  const {unit} = unitShown(own);
-  return unit ? `${description}, in ${unit}` : description;
-}
-
 /** A count with its digits in groups of three. */
 export const grouped = (n) => String(n).replace(/\B(?=(\d{3})+$)/g, " ");
 
@@ -73,17 +68,13 @@ export class SweepForm extends BaseForm {
     });
   }
 
-  /**
-   * Another parameter of an axis clears the ends, which belong to the previous one. A map does not
-   * show a section, which would be most of the answer, so it is turned off.
-   */
+  /** Another parameter clears the ends of its axis. A second axis turns off the section. */
   edited(name, value) {
     const axis = axisNames.find((each) => name === parameterOf(each));
     if (axis) for (const end of endsOf(axis)) this.replace(end, "");
     if (axis && axis !== axisNames[0] && value !== none) this.input("section").value = none;
   }
 
-  /** The default of a field. */
   standard(name) {
     return this.fields.find((f) => f.name === name).default;
   }
@@ -93,17 +84,15 @@ export class SweepForm extends BaseForm {
     return axisNames.map((axis) => this.input(parameterOf(axis)).value);
   }
 
-  /**
-   * Adapts ranges, units, disabled fields and the size to the fields. reduce: the reduction to
-   * select, if it changes.
-   */
+  /** Adapts ranges, units, disabled fields and size. reduce: the reduction to select, if new. */
   adapt(reduce) {
     const swept = this.swept();
     for (const [i, axis] of axisNames.entries()) {
       const field = this.parameters.get(swept[i]);
       for (const part of axisParts)
         this.named.get(`${axis}_${part}`).row.hidden = !field && part !== "parameter";
-      this.notes[i].textContent = field ? noteOf(field) : "";
+      const {unit} = unitShown(field?.unit);
+      this.notes[i].textContent = joined([field?.description, unit && `in ${unit}`]);
       const [from, to] = endsOf(axis);
       this.scale([from, to], swept[i]);
       this.input(from).placeholder = `from ${shown(this.named.get(from), field?.minimum)}`;
@@ -114,8 +103,8 @@ export class SweepForm extends BaseForm {
   }
 
   /**
-   * Adapts the reductions, and disables fields that are swept, or that cannot be combined with the
-   * default set of starts or with a reduction, both of which report several motions.
+   * Adapts the reductions, and disables fields that are swept, or that cannot be combined with
+   * several motions of a point, by a reduction or the default set of starts.
    */
   adaptRun(swept, reduce) {
     const axes = swept.filter((name) => name !== none);
@@ -150,7 +139,6 @@ export class SweepForm extends BaseForm {
     return queryOf({...Object.fromEntries(texts), ...run, ...base});
   }
 
-  /** Fills the form from a query. */
   setQuery(query) {
     const fields = Object.fromEntries(query);
     const unknown = this.unknown(fields).filter((name) => !axisNames.includes(name));
