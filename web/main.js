@@ -4,7 +4,7 @@ import {get} from "./shared/api.js";
 import {$, attributes, on, sayIn, setTexts} from "./shared/dom.js";
 import {onColours} from "./shared/ink.js";
 import {joined} from "./shared/numbers.js";
-import {startTerms} from "./shared/terms.js";
+import "./shared/terms.js";
 import {toQuery} from "./simulation/request.js";
 import {SimulationTab} from "./simulation/simulation.js";
 
@@ -84,10 +84,7 @@ function writePending() {
 const editWindow = 800; // ms
 let lastEdit = -Infinity;
 
-/**
- * Writes the query of a tab to the address. edit: adds a history entry if the previous edit is more
- * than `editWindow` ago. soon: more changes follow; the replacement is delayed by 200 ms.
- */
+/** Writes a query to the address. edit: can add a history entry; soon: more changes follow. */
 function addressChanged(name, {edit = false, soon = false} = {}) {
   if (current !== name) return;
   cancelPending();
@@ -163,7 +160,6 @@ async function start() {
   const [fields, {presets}] = await Promise.all([get("v1/parameters"), get("v1/presets")]);
   tables = {...fields, presets};
   listenToButtons();
-  startTerms();
   $("story").onchange = ({target}) => {
     tell(target.value);
     target.value = "";

@@ -77,14 +77,14 @@ function ownerOf(row) {
 
 /** [name, rows] for names that contain a text: exact matches, then prefixes, then others. */
 function find(rows, wanted) {
-  const found = new Map();
-  for (const row of rows) {
-    const name = row.querySelector("code").textContent;
-    if (name.toLowerCase().includes(wanted)) found.set(name, [...(found.get(name) ?? []), row]);
-  }
-  const order = [(name) => name === wanted, (name) => name.startsWith(wanted), () => true];
+  const named = Map.groupBy(rows, (row) => row.querySelector("code").textContent);
+  const order = [
+    (name) => name === wanted,
+    (name) => name.startsWith(wanted),
+    (name) => name.includes(wanted),
+  ];
   const rank = ([name]) => order.findIndex((is) => is(name.toLowerCase()));
-  return [...found].sort((a, b) => rank(a) - rank(b));
+  return [...named].filter((one) => rank(one) >= 0).sort((a, b) => rank(a) - rank(b));
 }
 
 /** A path with optional line breaks after its points. */

@@ -1,5 +1,4 @@
-// Schemas as text and as tables of fields. The id of a field is its operation or schema followed by
-// field names: schema-Energy.without_absorber.rms.
+// Schemas as text and as tables of fields, whose ids are like schema-Energy.without_absorber.rms.
 import {readFileSync} from "node:fs";
 import {count} from "../shared/numbers.js";
 
@@ -71,10 +70,7 @@ function parts(schema) {
     .flatMap(parts);
 }
 
-/**
- * Folds of the parts of a schema. place: id of the schema, null if its fields are not search
- * targets; n: number of parts whose fields have this id. Components have ids of their own.
- */
+/** Folds of a schema's parts; place: its id, null if not searched; n: parts with this id. */
 function partFolds(schema, place, n = 0) {
   let placed = n;
   const next = () => place && (placed++ ? `${place}/${placed}` : place);

@@ -56,7 +56,6 @@ export class MeasurementTab extends RequestTab {
   record = null; // parsed columns as selected by the form
   answer = null;
   sent = null; // fields that the answer belongs to
-  shown = null; // the form as a query
   opened = false;
 
   constructor({identify_fields: fields, presets}, changed) {
@@ -103,13 +102,9 @@ export class MeasurementTab extends RequestTab {
     };
   }
 
-  query() {
-    return this.shown;
-  }
-
   open(given) {
     const fields = Object.fromEntries(given);
-    if (asQuery(fields) === this.shown) return;
+    if (asQuery(fields) === this.asked) return;
     const {preset = given.size ? "" : firstSample, ...rest} = fields;
     this.choosePreset(preset, rest);
     if (!this.opened) this.readFirst(given.size === 0);
@@ -140,8 +135,7 @@ export class MeasurementTab extends RequestTab {
 
   /** Column fields of the form, which are kept when the oscillator changes. */
   ofColumns() {
-    const names = this.form.fields.filter((f) => f.group === "record").map((f) => f.name);
-    return pick(this.form.values(), ([name]) => names.includes(name));
+    return pick(this.form.values(), ([name]) => this.form.named.get(name).group === "record");
   }
 
   /** Updates the address with the form. The file itself is not part of a link. */
@@ -149,7 +143,7 @@ export class MeasurementTab extends RequestTab {
     const given = this.base();
     const differing = pick(this.form.values(), ([name, value]) => value !== given[name]);
     const {value: preset} = presetMenu;
-    this.shown = asQuery({...(preset && {preset}), ...differing});
+    this.asked = asQuery({...(preset && {preset}), ...differing});
     this.changed();
     this.markStale();
   }
@@ -166,9 +160,8 @@ export class MeasurementTab extends RequestTab {
 
   run(more = {}) {
     if (!this.file) {
-      this.say("choose a file first", true);
       $("measure-file").focus();
-      return;
+      return this.say("choose a file first", true);
     }
     if (!this.parsed) return; // identified after reading
     this.form.showErrors([]);
@@ -206,13 +199,12 @@ export class MeasurementTab extends RequestTab {
     super.busy(is, cancelled);
     clearInterval(this.ticking);
     let seconds = 0;
-    if (is) this.ticking = setInterval(() => this.tick(++seconds), 1000);
-  }
-
-  tick(seconds) {
-    if ($("measure-message").matches(".fault")) return;
-    const count = this.record ? ` ${this.record.t.length} samples` : "";
-    this.say(`identifying${count} … ${seconds} s`);
+    const tick = () => {
+      ++seconds;
+      const count = this.record ? ` ${this.record.t.length} samples` : "";
+      if (!$("measure-message").matches(".fault")) this.say(`identifying${count} … ${seconds} s`);
+    };
+    if (is) this.ticking = setInterval(tick, 1000);
   }
 
   /** Sets the answer of the record; null: not identified yet. */

@@ -83,11 +83,8 @@ export function mark(record, rows, answer) {
     const intervals = bands({intervals: stuck, colour: "shade"});
     plots.draw(name, {...plots.all[name].last, under: [intervals, ...marks], ...more});
   };
-  if (a)
-    under(
-      "a",
-      marksOf(rows, (row) => a[spikeNear(record, row.t, reach)], "cross", 4),
-    );
+  const spikeOf = (row) => a[spikeNear(record, row.t, reach)];
+  if (a) under("a", marksOf(rows, spikeOf, "cross", 4));
   if (!x) return;
   const rings = marksOf(rows, (row) => valueAt(record, x, row.t), "ring", 3.5);
   under("x", [...forwardMarks(answer, seconds), ...rings], {points});

@@ -58,9 +58,8 @@ const separatorOfNumbers = (line, declared) =>
   });
 
 /**
- * [names, units] from the lines above the first row of `count` numbers; undefined without names,
- * units can be missing. above: the last two lines and the last comment. `pairs` lists the
- * candidates in order of preference.
+ * [names, units] from the lines above the first row of `count` numbers, by the first of `pairs`
+ * that has names. above: the last two lines and the last comment.
  */
 function headingOf(above, count, separator) {
   const [last, before, commented] = [above.last, above.before, above.comment].map((line) =>
@@ -206,10 +205,7 @@ function partsOf({names, units, columns}, fields) {
   return Object.fromEntries(found.map(([quantity, k]) => [quantity, part(quantity, k)]));
 }
 
-/**
- * The record selected by the fields: {t (s), x (mm), a (m/s^2)}, null for a missing quantity. Drops
- * samples whose time is not later than all before, since plots need ascending times.
- */
+/** The record of the fields: {t (s), x (mm), a (m/s^2)}, at ascending times; null if missing. */
 export function recordOf(parsed, fields) {
   const {time, displacement, acceleration} = partsOf(parsed, fields);
   if (!time?.values.length || !(displacement ?? acceleration)) return null;

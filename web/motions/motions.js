@@ -1,5 +1,4 @@
-// The motions tab: a sweep from several starts finds what the system settles on, and continuations
-// follow each periodic orbit, stable or not.
+// The motions tab: motions that the system settles on, and continuations of periodic orbits.
 import {linesOf} from "../shared/api.js";
 import {$, button, countUp, element, setTexts, tableOf} from "../shared/dom.js";
 import {addExportButton} from "../shared/export.js";

@@ -8,10 +8,7 @@ const styles = [{width: 2}, {}, {dash: [7, 3]}, {dash: [2, 3]}];
 
 const absent = (status, ended) => (ended && status === "minus_infinity" ? "−∞" : "");
 
-/**
- * Lines of the history of an estimator, if it was requested: four exponents and the rounding floor.
- * One of minus infinity has only a legend. along(tau, columns): the plot's columns, time first.
- */
+/** Exponents and rounding floor of an estimator as lines; along(tau, columns): time first. */
 export function exponentMarks({history, status = []} = {}, along) {
   const series = styles.map((style, k) => ({
     colour: `c${k + 1}`,

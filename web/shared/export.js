@@ -112,18 +112,6 @@ class SvgPen {
     this.root = this.group = svg("svg", {...size, viewBox});
   }
 
-  text() {
-    return new XMLSerializer().serializeToString(this.root);
-  }
-
-  save() {
-    this.saved.push({...this});
-  }
-
-  restore() {
-    Object.assign(this, this.saved.pop());
-  }
-
   /** Puts what follows into a group, until restore(). */
   within(all) {
     const group = svg("g", all);
@@ -131,43 +119,31 @@ class SvgPen {
     this.group = group;
   }
 
-  translate(x, y) {
-    this.within({transform: `translate(${x} ${y})`});
+  to(command, ...numbers) {
+    this.path += command + numbers.map(fixed).join(" ");
   }
 
-  rotate(angle) {
-    this.within({transform: `rotate(${(angle * 180) / Math.PI})`});
+  /** Adds an element with the current opacity. */
+  add(tag, all, ...children) {
+    const opacity = this.globalAlpha < 1 ? this.globalAlpha : null;
+    this.group.append(svg(tag, {...all, opacity}, ...children));
   }
+
+  text = () => new XMLSerializer().serializeToString(this.root);
+  save = () => this.saved.push({...this});
+  restore = () => Object.assign(this, this.saved.pop());
+  translate = (x, y) => this.within({transform: `translate(${x} ${y})`});
+  rotate = (angle) => this.within({transform: `rotate(${(angle * 180) / Math.PI})`});
+  setLineDash = (dash) => Object.assign(this, {dash});
+  beginPath = () => Object.assign(this, {path: ""});
+  moveTo = (x, y) => this.to("M", x, y);
+  lineTo = (x, y) => this.to(this.path ? "L" : "M", x, y); // the first call starts the path
+  closePath = () => this.to("z");
 
   clip() {
     const id = `clip${this.root.querySelectorAll("clipPath").length}`;
     this.group.append(svg("clipPath", {id}, svg("path", {d: this.path})));
     this.within({"clip-path": `url(#${id})`});
-  }
-
-  setLineDash(dash) {
-    this.dash = dash;
-  }
-
-  beginPath() {
-    this.path = "";
-  }
-
-  to(command, ...numbers) {
-    this.path += command + numbers.map(fixed).join(" ");
-  }
-
-  moveTo(x, y) {
-    this.to("M", x, y);
-  }
-
-  /** Draws a line from the current point; the first call starts the path. */
-  lineTo(x, y) {
-    this.to(this.path ? "L" : "M", x, y);
-  }
-
-  closePath() {
-    this.to("z");
   }
 
   /** A full circle. */
@@ -180,12 +156,6 @@ class SvgPen {
     const [right, bottom] = [x + width, y + height];
     this.to("M", x, y, right, y, right, bottom, x, bottom);
     this.closePath();
-  }
-
-  /** Adds an element with the current opacity. */
-  add(tag, all, ...children) {
-    const opacity = this.globalAlpha < 1 ? this.globalAlpha : null;
-    this.group.append(svg(tag, {...all, opacity}, ...children));
   }
 
   stroke() {

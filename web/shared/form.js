@@ -25,8 +25,7 @@ const ofSystem = {system, reduced, SI, laws, start};
 export const isOfMotion = (field) =>
   field?.group in {...ofSystem, load} || ["tau_end", "cycles"].includes(field?.name);
 
-// The page chooses `include` and never shows a perturbed run. A preset without choices has a menu
-// outside the form.
+// The page chooses `include`, and has a menu outside the form for a preset without choices.
 const hidden = new Set(["include", "perturbation"]);
 const isShown = ({name, choices}) => !hidden.has(name) && (name !== "preset" || choices);
 

@@ -33,10 +33,7 @@ export class Job {
 
   later() {}
 
-  /**
-   * Starts a request; one that equals the running request gets its answer instead. dragging: the
-   * running request of a slider is completed, so that intermediate results are shown.
-   */
+  /** Starts a request unless it is the running one; a slider that is `dragging` completes that. */
   start(request, {dragging = false} = {}) {
     const running = this.#running;
     const same = JSON.stringify(request) === running?.text;
@@ -101,7 +98,7 @@ export class Job {
  * draw(): draws the results so far, if it uses drawSoon(); redraw(): draws in other colours.
  */
 export class RequestTab extends Job {
-  asked = null; // query of the request whose results are shown or computed; null before the first
+  asked = null; // query in the address, of the results shown or computed; null before the first
   #drawing = 0; // timer
   #cost = 0; // of drawing, ms
 

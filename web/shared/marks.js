@@ -291,10 +291,7 @@ function drawPixels(c, {box, width, height}, paint) {
   c.drawImage(canvas, box.left, box.top, width, height);
 }
 
-/**
- * Draws the number of rectangles at each pixel in one colour, more opaque by its logarithm.
- * count(add, round, height): add(left, top, right, bottom) counts one, in device px as round(px).
- */
+/** Draws the number of rectangles that count(add, round) adds at each pixel, by its logarithm. */
 function drawDensity(c, frame, colour, count) {
   const ratio = devicePixelRatio; // read once: reading it is slower than counting
   drawPixels(c, frame, (pixels, width, height) => {

@@ -1,5 +1,4 @@
-// All plots: a canvas that is redrawn when its size changes, and a ring around one point. A plot of
-// width zero (in a closed <details>) is drawn when it gets a width.
+// All plots: a canvas that is redrawn when its size changes, and a ring around one point.
 import {element, keyOf, on} from "./dom.js";
 import {addExportButton, captionOf} from "./export.js";
 import {blank, Frame, font, rangeOf, Size} from "./frame.js";
@@ -92,10 +91,7 @@ export class Plot {
 
 /** A plot over a viewport. Plots that share a viewport zoom together and show one cursor. */
 export class ZoomablePlot extends Plot {
-  /**
-   * viewport: of x; across: of y, if that zooms, too. Subclasses also implement cursorText(cursor)
-   * and click(at, reach, {top, y, touch}).
-   */
+  /** across: of y. Subclasses have cursorText(cursor) and click(at, reach, {top, y, touch}). */
   constructor(container, viewport = new Viewport(), across = null) {
     const canvas = element("canvas");
     const over = element("div", {className: "over"});

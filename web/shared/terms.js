@@ -17,13 +17,11 @@ function show({target}) {
   box.style.top = `${fits ? bottom : top - height}px`;
 }
 
-export function startTerms() {
-  document.body.append(box);
-  on(document, {
-    pointerover: show,
-    focusin: show,
-    keydown({key}) {
-      if (key === "Escape") box.hidden = true;
-    },
-  });
-}
+document.body.append(box);
+on(document, {
+  pointerover: show,
+  focusin: show,
+  keydown({key}) {
+    if (key === "Escape") box.hidden = true;
+  },
+});

@@ -1,5 +1,4 @@
-// The request of the form: a preset (`name`, "" if none) and the given fields, which the service
-// merges and answers with the values and origins of all; and its conversion to and from a query.
+// The request: a preset (`name`, "" if none) and the given fields, which the service merges.
 import {absoluteUrl, asCurl} from "../shared/api.js";
 import {$, element, press, setTexts} from "../shared/dom.js";
 import {isObject, isOfMotion, queryOf, resolved, textOf} from "../shared/form.js";

@@ -45,8 +45,8 @@ function homeOf({parameters, status, regime}) {
 /** Shows the remarks: the reason for an undecided verdict, and warnings. */
 function remark({exponents: {verdict, verdict_reason: why}, regime, warnings}, more = {}) {
   const open = verdict === "not_decided" && !regime.periodic;
-  const all = [...warnings, ...(more.warnings ?? [])];
-  dom.showRemarks("remarks", [...new Set([...(open ? [`not decided: ${why}`] : []), ...all])]);
+  const all = [open && `not decided: ${why}`, ...warnings, ...(more.warnings ?? [])];
+  dom.showRemarks("remarks", [...new Set(all.filter(Boolean))]);
 }
 
 // Parts of the same run with a ball too light to matter: without the absorber.
@@ -157,13 +157,15 @@ export class SimulationTab extends RequestTab {
 
   /** Errors are shown at sliders, or else at fields, without moving the focus. */
   fail({message, errors = []}, fields) {
-    if (fields.linked && errors.length) return this.fallBack([...fields.unknown], errors);
+    if (fields.linked && errors.length) {
+      const faults = [...fields.unknown, ...errors.map(({detail}) => detail)].join("; ");
+      return this.open(new URLSearchParams(), `the address has faults, Fig. 3 is shown: ${faults}`);
+    }
     if (!run) dom.setTexts({sentence: "No results yet."});
     const left = this.form.showErrors(errors, false);
     const ofSliders = sliders.showErrors(errors);
     if (left.length + ofSliders.length < errors.length) $("more").open = true;
-    if (ofSliders.length) this.sayFault(ofSliders);
-    else this.sayFault([message, ...left.map(({detail}) => detail)]);
+    this.sayFault(ofSliders.length ? ofSliders : [message, ...left.map(({detail}) => detail)]);
   }
 
   showOrigins() {
@@ -229,10 +231,7 @@ export class SimulationTab extends RequestTab {
     if (!$("form").querySelector(".slider [aria-invalid=true]")) this.send();
   }
 
-  /**
-   * Sends the form. dragging: a slider is dragged; fresh: not changed by a slider; unknown: names
-   * in the address; linked: the form has the fields of the address; note: shown with the run.
-   */
+  /** Sends the form. fresh: not by a slider; linked: as in the address; note: to be shown. */
   send({dragging = false, fresh = false, unknown = [], linked = false, note = ""} = {}) {
     const fields = this.request.fields();
     const about = {fresh, unknown, dragged: dragging, linked, note};
@@ -240,19 +239,12 @@ export class SimulationTab extends RequestTab {
     const {name, edited} = this.request;
     presetMenu.markChip(name, edited, !name && "m1" in fields);
     if (dragging) player.hold();
-    this.remember(toQuery(fields), dragging);
-    this.start(fields, {dragging});
-  }
-
-  /** Updates the address; Back undoes an edit. */
-  remember(query, soon) {
-    if (query === this.asked) {
-      if (!soon) this.changed(); // the edit is complete
-      return;
-    }
-    const edit = this.asked !== null;
+    const query = toQuery(fields);
+    const isNew = query !== this.asked;
+    const edit = isNew && this.asked !== null; // Back undoes it
     this.asked = query;
-    this.changed({edit, soon});
+    if (isNew || !dragging) this.changed({edit, soon: dragging});
+    this.start(fields, {dragging});
   }
 
   /** Called when the text in a slider's number is not a number. */
@@ -314,12 +306,6 @@ export class SimulationTab extends RequestTab {
     return joined([this.asked, ...more], "&");
   }
 
-  /** Shows Fig. 3 in place of a run whose address has faults, and names them. */
-  fallBack(unknown, errors) {
-    const faults = [...unknown, ...errors.map(({detail}) => detail)].join("; ");
-    this.open(new URLSearchParams(), `the address has faults, Fig. 3 is shown: ${faults}`);
-  }
-
   /** Shows the run of a query, with a note; by default the paper's Fig. 3. */
   open(given, note = "") {
     const rest = new URLSearchParams(given);
@@ -354,13 +340,12 @@ function startPlots() {
     for (const {id, classList} of figures) classList.toggle("chosen", id === `figure-${name}`);
   };
   for (const one of buttons) one.onclick = () => enlarge(one.dataset.plot);
-  for (const figure of figures) {
-    const act = () => enlarge(figure.id.replace("figure-", ""));
-    dom.on(figure, {
-      click: ({target}) => target.closest("button") || act(),
-      keydown: ({key, target}) => key === "Enter" && !target.closest("button") && act(),
-    });
-  }
+  const act = ({target, key = "Enter"}) => {
+    const figure = target.closest("figure");
+    if (figure && key === "Enter" && !target.closest("button"))
+      enlarge(figure.id.replace("figure-", ""));
+  };
+  dom.on($("plots"), {click: act, keydown: act});
 }
 
 /** On small screens the parameters are in a sheet. */

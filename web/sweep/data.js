@@ -15,8 +15,8 @@ function borders(at, log) {
 }
 
 /**
- * An axis in ascending order; position k shows entry order[k]. at: places, logarithms on a
- * logarithmic axis; borders: of their cells; to(value): a place; from(place): a value.
+ * An axis in ascending order of the requested entries `order`; at: places, on a logarithmic axis
+ * logarithms; borders: of their cells; to(value): a place; from(place): a value.
  */
 function arrange({parameter, values}, scale) {
   const order = [...values.keys()].sort((a, b) => values[a] - values[b]);

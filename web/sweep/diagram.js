@@ -31,18 +31,18 @@ export const countRegimes = (points) =>
     points.filter((p) => p?.regime === regime).length,
   ]);
 
-/** A plot of `view`, the DiagramView. Subclasses implement y() (as in Frame) and marks(frame). */
+/** A plot of a DiagramView. kind: its methods y() (as in Frame), marks(frame), and of a SweepPlot. */
 class Diagram extends SweepPlot {
+  constructor(view, name, kind) {
+    super(view, name);
+    Object.assign(this, kind);
+  }
+
   prepare(width, height) {
     if (!this.view.byStart) return null;
     const frame = this.frameOf(width, height);
     const strips = this.view.starts().map((s) => this.regimes(s, {down: 6 * s, height: 5}));
     return {frame, marks: [...this.marks(frame), ...strips]};
-  }
-
-  /** The value of a point drawn as a single dot; null if it has several. */
-  drawn() {
-    return null;
   }
 
   /** Values of all points, a list of each, for the range. */
@@ -92,7 +92,8 @@ const phaseLabels = (min, max) =>
     .map((text, i) => ({at: (i * Math.PI) / 2, text}))
     .filter(({at}) => at >= min - 1e-9 && at <= max + 1e-9);
 
-class SectionDiagram extends Diagram {
+const sectionDiagram = {
+  drawn: () => null, // several values
   /** The coordinate drawn and its column; velocities can be in mm/s. */
   shown() {
     const {data, choice} = this.view;
@@ -100,46 +101,38 @@ class SectionDiagram extends Diagram {
     const own = q.coordinates[data.section]?.[name] ?? {label: "", title: ""};
     const seconds = data.parameters.si && inSeconds() && own.seconds;
     return {...own, ...(seconds ? {label: seconds.label, column: `${name}_SI`} : {column: name})};
-  }
-
+  },
   y() {
     const {column, range, log, least = -Infinity, turns: phase, label} = this.shown();
     const large = (p) => p.section?.[column]?.filter((v) => !(v <= least)) ?? [];
     const held = range ?? rangeOf(this.values(large), log) ?? (log ? [0.1, 10] : [-1, 1]);
     return {range: held, log, label, labels: phase && phaseLabels};
-  }
-
+  },
   marks() {
     const {column, levels: y = []} = this.shown();
     const [axis] = this.view.data.axes;
     const ofStart = (s) => sectionOf(this.view.byStart[s], axis, column, this.tint(s, "c1"));
     return [levels({y}), ...this.view.starts().map(ofStart)];
-  }
-
+  },
   columns() {
     return {[this.shown().label]: null};
-  }
-
+  },
   rows(p) {
     return Array.from(p.section?.[this.shown().column] ?? [], (v) => [v]);
-  }
-
+  },
   about() {
     const {title, label} = this.shown();
     const summary = `${label} of the section at ${this.points.length} points`;
     return {title: `Section: ${title}`, summary};
-  }
-}
+  },
+};
 
 const lambda = (i) => (p) => p.lambda?.[i] ?? null;
 const errorOf = (p) => p.standard_error?.[0] ?? null;
 const drawnLambda = (p) => (q.untouched(p) ? 0 : lambda(0)(p));
 
-class LambdaDiagram extends Diagram {
-  drawn({p}) {
-    return drawnLambda(p);
-  }
-
+const lambdaDiagram = {
+  drawn: ({p}) => drawnLambda(p),
   y() {
     const held = (p) => {
       const [first, error] = [lambda(0)(p), errorOf(p)];
@@ -147,8 +140,7 @@ class LambdaDiagram extends Diagram {
       return [first - error, first + error, lambda(1)(p), ofOtherMotion(lambda(0))(p)];
     };
     return {range: rangeOf([[0], ...this.values(held)]), label: "λ"};
-  }
-
+  },
   marks(frame) {
     const alpha = this.view.several ? 0.5 : 1;
     const ofStart = (s) => {
@@ -160,17 +152,13 @@ class LambdaDiagram extends Diagram {
     };
     const zero = levels({y: 0, colour: "soft"});
     return [zero, ...this.view.starts().flatMap(ofStart), ...this.rings(frame, lambda(0))];
-  }
-
-  columns() {
-    return {
-      "λ₁": lambda(0),
-      "standard error": errorOf,
-      "λ₂": lambda(1),
-      verdict: (p) => q.verdicts[p.verdict] ?? "–",
-    };
-  }
-
+  },
+  columns: () => ({
+    "λ₁": lambda(0),
+    "standard error": errorOf,
+    "λ₂": lambda(1),
+    verdict: (p) => q.verdicts[p.verdict] ?? "–",
+  }),
   about() {
     const points = this.points.filter((p) => p.lambda);
     const chaotic = points.filter((p) => p.verdict === "chaotic").length;
@@ -179,18 +167,16 @@ class LambdaDiagram extends Diagram {
     const ends = values.length ? `λ₁ from ${least} to ${most}; ` : "";
     const summary = `${ends}chaotic over the measured cycles at ${chaotic} of ${points.length} points`;
     return {title: "Largest exponent λ₁", summary};
-  }
-}
+  },
+};
 
-class QuantityDiagram extends Diagram {
+const quantityDiagram = {
   quantity() {
     return q.quantityOf(this.view.choice.beside, this.view.data);
-  }
-
+  },
   drawn({p}) {
     return this.quantity().of(p);
-  }
-
+  },
   y() {
     const {of, levels = [], free = () => null, from0, label} = this.quantity();
     const held = (p) => [of(p), free(p), ofOtherMotion(of)(p)];
@@ -198,8 +184,7 @@ class QuantityDiagram extends Diagram {
     if (!from0) return {range: [min, max], label};
     const most = Math.max(max, Math.min(levels[0] ?? 0, max * 1.5)) * 1.02;
     return {range: [0, most], label};
-  }
-
+  },
   marks(frame) {
     const {of, levels: y = [], free} = this.quantity();
     const ofStart = (s) => {
@@ -213,25 +198,20 @@ class QuantityDiagram extends Diagram {
     const bands = this.view.several ? [] : [this.regimes(0, named)];
     const ofStarts = this.view.starts().flatMap(ofStart);
     return [...bands, levels({y}), ...ofStarts, ...this.rings(frame, of)];
-  }
-
+  },
   columns() {
     const {label, of, free} = this.quantity();
-    return {
-      [label]: of,
-      ...(free && {"without the absorber": free}),
-      regime: (p) => p.regime ?? "–",
-    };
-  }
-
+    const without = free && {"without the absorber": free};
+    return {[label]: of, ...without, regime: (p) => p.regime ?? "–"};
+  },
   about() {
     const texts = countRegimes(this.points)
       .filter(([, n]) => n)
       .map(([regime, n]) => `${regime === "none" ? q.regimes.none : regime}: ${n}`);
     const summary = `points of each regime: ${texts.join(", ")}`;
     return {title: `Regimes and ${this.quantity().title}`, summary};
-  }
-}
+  },
+};
 
 const steps = {
   ArrowLeft: -1,
@@ -249,8 +229,8 @@ const closest = (places, away) =>
 export class DiagramView extends SweepView {
   constructor(root, ...rest) {
     super(root, [new Viewport()], ...rest);
-    const kinds = {section: SectionDiagram, lambda: LambdaDiagram, other: QuantityDiagram};
-    this.plots = Object.entries(kinds).map(([name, Kind]) => new Kind(this, name));
+    const kinds = {section: sectionDiagram, lambda: lambdaDiagram, other: quantityDiagram};
+    this.plots = Object.entries(kinds).map(([name, kind]) => new Diagram(this, name, kind));
   }
 
   refresh(choice) {

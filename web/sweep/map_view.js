@@ -97,14 +97,10 @@ class MapPlot extends SweepPlot {
     return p.error ? null : (this.quantity().of(this.motion(p)) ?? null);
   }
 
-  /** The attractors of the visible slice: a map from the name to the number of points. */
-  attractors() {
-    const counts = new Map();
-    for (const {p} of this.view.cells(this.view.data)) {
-      const name = this.valueOf(p);
-      if (name !== null) counts.set(name, (counts.get(name) ?? 0) + 1);
-    }
-    return counts;
+  /** The values of the visible slice. */
+  values() {
+    const values = [...this.view.cells(this.view.data)].map(({p}) => this.valueOf(p));
+    return values.filter((v) => v !== null);
   }
 
   /** Colour name of a category; that of an attractor does not change while points arrive. */
@@ -124,8 +120,7 @@ class MapPlot extends SweepPlot {
     const {layers, data, choice} = this.view;
     const chosen = layers.ends[choice.map];
     if (chosen) return scaleOf(quantity, chosen);
-    const drawn = [...this.view.cells(data)].map(({p}) => this.valueOf(p));
-    const values = drawn.filter((v) => v !== null);
+    const values = this.values();
     const ends = endsOf(quantity, values);
     const seen = data.complete || data.received > Math.max(firstPass * data.total, 50);
     if (seen && values.length) layers.ends[choice.map] = ends;
@@ -219,10 +214,7 @@ function positions(axis, [from, to], pixels) {
 /** Step of the coarsest grid along an axis of n values; the service starts with that grid. */
 const coarsest = (n) => 2 ** Math.floor(Math.log2(Math.max(Math.floor(n / 8), 1)));
 
-/**
- * Gives missing cells the colour of the preceding point on a coarser grid, in the service's order.
- * columns, rows: index of each position in the requested axis, their own inverses.
- */
+/** Gives missing cells the colour of the preceding point on a coarser grid of the service. */
 function fillGaps(cells, columns, rows) {
   const n = columns.length;
   const [widest, highest] = [coarsest(n), coarsest(rows.length)];
@@ -271,10 +263,7 @@ function endsOf({diverging, from0}, values) {
   return ends[0] < ends[1] ? ends : [ends[0], ends[0] + step];
 }
 
-/**
- * {at(value): colour as bytes, ends, beyond: [whether at() got values below the scale, above it]};
- * a diverging scale is symmetric about 0, whatever its ends.
- */
+/** {at(value): colour as bytes, ends, beyond: whether at() got values below and above the ends}. */
 function scaleOf({diverging}, ends) {
   const [low, high] = ends;
   const stops = colour(diverging ? "diverging" : "sequential")

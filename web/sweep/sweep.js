@@ -46,13 +46,12 @@ function time(seconds) {
 
 /** Failed and truncated points of a complete sweep, as text. */
 function remarksOn({points}) {
-  const found = new Map();
-  for (const {error, reason} of points) {
-    const early = reason && reason !== "complete" && "stopped at max_impacts";
-    const what = error ? `failed: ${error}` : early;
-    if (what) found.set(what, (found.get(what) ?? 0) + 1);
-  }
-  return [...found].map(([what, n]) => `${grouped(n)} points ${what}`).join("; ");
+  const found = Map.groupBy(points, ({error, reason}) => {
+    if (error) return `failed: ${error}`;
+    return reason && reason !== "complete" ? "stopped at max_impacts" : "";
+  });
+  found.delete("");
+  return [...found].map(([what, {length}]) => `${grouped(length)} points ${what}`).join("; ");
 }
 
 /** Shows the elements whose data-if names something that holds for the sweep. */
@@ -98,12 +97,11 @@ function legendEntry(text, {mark, colour}, ...more) {
 
 /** Shows the legend of a map of attractors, the most frequent first; empty for other plots. */
 function showAttractors({choice, plots: [map]}) {
-  const counts = choice.map === "attractor" ? [...map.attractors()] : [];
-  const all = counts.reduce((sum, [, n]) => sum + n, 0);
-  const items = counts
-    .sort(([, n], [, m]) => m - n)
-    .map(([name, n]) => {
-      const share = dom.element("small", {}, percent(n / all));
+  const names = choice.map === "attractor" ? map.values() : [];
+  const items = [...Map.groupBy(names, (name) => name)]
+    .sort(([, one], [, other]) => other.length - one.length)
+    .map(([name, {length}]) => {
+      const share = dom.element("small", {}, percent(length / names.length));
       const style = {mark: "■", colour: map.colourOf(name)};
       return legendEntry(name.replace("_", " "), style, share);
     });
@@ -143,12 +141,11 @@ function showPeaks(data) {
   const which = request.reduce?.startsWith("min") ? "Smallest" : "Largest";
   const title = `${which} |x| over ${q.symbolOf(parameter)}, from each start`;
   dom.setTexts({"sweep-peaks-title": title});
-  const peaks = new Map(); // the highest of each start, in descending order
   const motions = bare ? ofStarts(data) : alongAxis(data);
-  for (const m of motions.sort((a, b) => (b.x_max ?? -1) - (a.x_max ?? -1)))
-    if (!peaks.has(m.start)) peaks.set(m.start, m);
+  motions.sort((a, b) => (b.x_max ?? -1) - (a.x_max ?? -1));
+  const peaks = Map.groupBy(motions, ({start}) => start); // of each start the highest first
   const head = ["start", "largest |x| (mm)", `at ${labels.label(parameter)}`, "regime", "verdict"];
-  const rows = [...peaks.values()].map((m) => [
+  const rows = [...peaks.values()].map(([m]) => [
     startsAndFree[m.start] ?? m.start,
     m.x_max == null ? "–" : (m.x_max * 1000).toFixed(1),
     m.where == null ? "–" : labels.text(parameter, m.where),
@@ -321,11 +318,9 @@ export class SweepTab extends RequestTab {
     const {section, defaultSet, axes, states} = this.data;
     const {parameter = "", values = []} = axes[2] ?? {};
     dom.setTexts({"sweep-slice-word": `where ${q.symbolOf(parameter)} =`});
+    const titled = ([name, {title}]) => [name, title];
     const entries = {
-      coordinate: Object.entries(q.coordinates[section] ?? {}).map(([name, {title}]) => [
-        name,
-        title,
-      ]),
+      coordinate: Object.entries(q.coordinates[section] ?? {}).map(titled),
       [axes.length > 1 ? "map" : "beside"]: q.menuOf(this.data),
       start: defaultSet ? [[0, "worst"], ["best"]] : states.map((_, s) => [s, s + 1]),
       slice: values.map((v, m) => [m, labels.valueText(parameter, v)]),

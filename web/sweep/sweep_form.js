@@ -102,10 +102,7 @@ export class SweepForm extends BaseForm {
     this.showSize();
   }
 
-  /**
-   * Adapts the reductions, and disables fields that are swept, or that cannot be combined with
-   * several motions of a point, by a reduction or the default set of starts.
-   */
+  /** Adapts the reductions; disables what is swept or excluded by several motions of a point. */
   adaptRun(swept, reduce) {
     const axes = swept.filter((name) => name !== none);
     const reductions = axes.flatMap((name) => [[`max over ${name}`], [`min over ${name}`]]);

@@ -120,11 +120,7 @@ export class SweepView {
     }
   }
 
-  /**
-   * Draws the received points. choice: texts of the menus: coordinate of the section; beside, map:
-   * quantities; start: index, or "best" for the best motion in place of the worst; slice: position
-   * on the third axis.
-   */
+  /** Draws the received points by the texts of the menus; start: an index, or "best". */
   refresh({start, slice, ...choice}) {
     const best = start === "best";
     this.choice = {...choice, best, start: best ? 0 : Number(start), slice: Number(slice)};
