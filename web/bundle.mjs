@@ -48,7 +48,7 @@ const page = (html) =>
       files.reduce((t, [name]) => t.replaceAll(`"${up}${name}"`, `"${up}${hash}/${name}"`), text),
     html,
   );
-const documentOf = (name) => readFileSync(join(web, "../docs", `${name}.md`), "utf8");
+const documentOf = (name) => read(`../docs/${name}.md`);
 const servedFiles = [
   ["/", page(read("index.html"))],
   ["/docs", page(docsPage(read("docs.html"), document))],

@@ -82,8 +82,9 @@ function partFolds(schema, place, n = 0) {
   });
 }
 
-/** A fold of a component's fields. Components can be recursive. */
-export const fieldsFold = (summary, $ref) => copyFold(summary, schemaPlace(nameOf($ref)));
+/** A fold of a component's fields, which docs.js fills when it is opened: they can be recursive. */
+export const fieldsFold = (summary, $ref) =>
+  html`<details data-copy="${schemaPlace(nameOf($ref))}"><summary>${summary}</summary></details>`;
 
 /** A table of fields. place: id of their parent; null if they are not search targets. */
 export const fieldTable = (fields, place, title) => [
@@ -122,10 +123,6 @@ export const html = (raw, ...values) => new Markup(String.raw({raw}, ...values.m
 
 export const fold = (summary, content) =>
   html`<details><summary>${summary}</summary>${content}</details>`;
-
-/** A fold that docs.js fills, when it is opened, with a copy of the content of the element `id`. */
-const copyFold = (summary, id) =>
-  html`<details data-copy="${id}"><summary>${summary}</summary></details>`;
 
 // The OpenAPI document, and the ids of its components on the page.
 export let root;

@@ -87,14 +87,6 @@ export class Motion {
     return lastUpTo(this.impacts.tau, tau);
   }
 
-  /** Index of the impact nearest to a time; -1 without impacts. */
-  impactNear(tau) {
-    const {tau: moments} = this.impacts;
-    const i = this.impactBefore(tau);
-    const later = i + 1 < moments.length && !(tau - moments[i] <= moments[i + 1] - tau);
-    return later ? i + 1 : i;
-  }
-
   /** x and y - x in m, two points per column: samples or, if `dense`, minimum and maximum. */
   trace(from, to, columns) {
     const width = (to - from) / columns;

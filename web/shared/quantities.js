@@ -15,9 +15,8 @@ export const verdicts = {chaotic: "chaotic", regular: "regular", not_decided: "n
 /** True for a motion without contact; a free decay also has no verdict, but has impacts. */
 export const untouched = ({verdict, z}) => verdict === null && !z;
 /** Colour name of a point's verdict. */
-export const verdictColour = (p) => {
-  const {verdict} = p;
-  if (untouched(p)) return "untouched";
+export const verdictColour = ({verdict, z}) => {
+  if (untouched({verdict, z})) return "untouched";
   return verdict === "chaotic" || verdict === "regular" ? verdict : "undecided";
 };
 
@@ -73,7 +72,7 @@ export const quantities = {
     si: {label: "impacts per second", of: (p) => p.impacts_per_second ?? null},
   },
 };
-// Quantities of sweep points, for menus, axes, colours and tooltips. Lengths are shown in mm.
+// Quantities of the lowest diagram over one axis; their axis starts at 0.
 const oneAxisQuantities = [
   "z",
   "x_rms_ratio",

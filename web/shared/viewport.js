@@ -61,11 +61,6 @@ export class Viewport {
     this.zoom(...this.range.map((end) => t + (end - t) / factor));
   }
 
-  /** Zooms about the cursor or, without one, the middle of the visible range. */
-  zoomAbout(factor) {
-    this.zoomAt(this.cursor ?? this.range[0] + this.width / 2, factor);
-  }
-
   /** True when a value is visible. */
   holds(at) {
     return at >= this.range[0] && at <= this.range[1];

@@ -2,7 +2,7 @@
 import {$, attributes, reveal, setTexts} from "../shared/dom.js";
 import {exponentRange} from "../shared/exponents.js";
 import {beads, curve, dots, levels, line, symbols} from "../shared/marks.js";
-import {firstFrom, inMm, lastUpTo, mm, short} from "../shared/numbers.js";
+import {firstFrom, inMm, lastUpTo, mm, nearest, short} from "../shared/numbers.js";
 import {unitsOf} from "../shared/units.js";
 import {commonOptions, exponentLines, halves, picked} from "./plot_options.js";
 import {alongRun, inUnits, largestMagnitude, logRange, positive, run, viewport} from "./run.js";
@@ -201,19 +201,16 @@ function section() {
   };
 }
 
-/** The largest modulus of T at an impact; null if unknown. */
-function modulusAt(tau) {
-  const {tau: moments, T} = run.deferred?.eigenvalues ?? {tau: []};
-  const k = firstFrom(moments, tau);
-  return moments[k] === tau ? (T?.[k]?.[0] ?? null) : null;
-}
-
 /** Shows the values at the cursor next to the titles; by: the cause of the cursor's move. */
 function tell(by) {
   const {cursor} = viewport;
   if (!run || cursor === null) return;
   const {motion} = run;
-  const modulus = modulusAt(motion.impacts.tau[motion.impactNear(cursor)]);
+  const {tau: moments} = motion.impacts;
+  const impact = moments[nearest(moments, cursor)];
+  const {tau: known, T} = run.deferred?.eigenvalues ?? {tau: []};
+  const k = firstFrom(known, impact);
+  const modulus = known[k] === impact ? T?.[k]?.[0] : null;
   const {x, y} = motion.at(cursor);
   const at = run.units.at(cursor);
   const texts = {

@@ -27,14 +27,13 @@ function axisFields(axis, fields, parameters, optional) {
 function runFields(fields, base) {
   const own = fields.filter((f) => ["integer", "choice"].includes(f.type) && f.name !== "format");
   const reduce = {choices: [none], default: none};
-  const of = (part) => (f) => ({...f, part, group: "sweep"});
-  return [
-    ...own
-      .map((f) => ({...f, ...(f.name === "reduce" ? reduce : {}), narrow: true}))
-      .map(of("run")),
-    ...base.filter((f) => f.name === "max_impacts").map(of("base")),
-    ...fields.filter((f) => f.name === "starts").map((f) => ({...of("run")(f), type: "states"})),
+  const named = (list, name) => list.find((f) => f.name === name);
+  const all = [
+    ...own.map((f) => ({...f, ...(f.name === "reduce" && reduce), narrow: true})),
+    {...named(base, "max_impacts"), part: "base"},
+    {...named(fields, "starts"), type: "states"},
   ];
+  return all.map((f) => ({part: "run", ...f, group: "sweep"}));
 }
 
 /** A count with its digits in groups of three. */
@@ -75,18 +74,9 @@ export class SweepForm extends BaseForm {
     if (axis && axis !== axisNames[0] && value !== none) this.input("section").value = none;
   }
 
-  standard(name) {
-    return this.fields.find((f) => f.name === name).default;
-  }
-
-  /** Parameters of the axes; "none" for a missing axis. */
-  swept() {
-    return axisNames.map((axis) => this.input(parameterOf(axis)).value);
-  }
-
   /** Adapts ranges, units, disabled fields and size. reduce: the reduction to select, if new. */
   adapt(reduce) {
-    const swept = this.swept();
+    const swept = axisNames.map((axis) => this.input(parameterOf(axis)).value);
     for (const [i, axis] of axisNames.entries()) {
       const field = this.parameters.get(swept[i]);
       for (const part of axisParts)
@@ -169,7 +159,7 @@ export class SweepForm extends BaseForm {
     const starts = several ? 1 : given?.length || 1;
     const counts = axes.map(({count}) => count ?? NaN);
     const points = counts.reduce((a, n) => a * n, starts);
-    const cyclesOf = (name) => run[name] ?? this.standard(name);
+    const cyclesOf = (name) => run[name] ?? this.named.get(name).default;
     // The default set: five motions per point.
     const each = (several ? 5 : 1) * (cyclesOf("transient_cycles") + cyclesOf("cycles"));
     const factors = [...counts, ...(starts > 1 ? [`${starts} starts`] : [])];

@@ -162,7 +162,9 @@ export class SweepView {
   }
 
   key(key) {
-    if (key in zooms) for (const viewport of this.viewports) viewport.zoomAbout(zooms[key]);
+    const middle = ({range, width}) => range[0] + width / 2;
+    if (key in zooms)
+      for (const each of this.viewports) each.zoomAt(each.cursor ?? middle(each), zooms[key]);
     else if (key === "0") for (const viewport of this.viewports) viewport.reset();
     else if (key === "Enter") this.choose(this.current);
     else if (key === "Escape") this.hideTip();
