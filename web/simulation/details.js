@@ -152,7 +152,7 @@ function summarise(answer, units) {
     regimeCard(regime, units),
     ["impacts per cycle, z", digits(regime.z, 3), rhythm(regime)],
     verdictCard(exponents, regime),
-    ["λ₁ (qr)", qr ? digits(qr.final[0]) : "–", (qr ? withErrorOf(qr) : "") + perTime],
+    ["λ₁ (qr)", digits(qr?.final[0]), (qr ? withErrorOf(qr) : "") + perTime],
     positivesCard(exponents),
     ["sum rule residual", residual == null ? "–" : minus(residual.toExponential(1)), noResidual],
     ["dissipated by impacts", percent(energy.share_impacts), "of all dissipation"],

@@ -48,14 +48,11 @@ export class MapView extends SweepView {
 
   /** The finest cell at a place, preferably one with a point. */
   nearest({at}) {
-    let found = null;
-    for (const data of this.over()) {
+    const cells = this.over().flatMap((data) => {
       const [k, l] = at.map((place, i) => positionAt(data.axes[i], place));
-      if (k < 0 || l < 0) continue;
-      const cell = this.cell(data, k, l);
-      if (cell.p || !found) found = cell;
-    }
-    return found;
+      return k < 0 || l < 0 ? [] : [this.cell(data, k, l)];
+    });
+    return cells.findLast(({p}) => p) ?? cells[0];
   }
 
   rowsOf({p, data, value, height}) {
