@@ -62,9 +62,8 @@ const separatorOfNumbers = (line, declared) =>
  * that has names. above: the last two lines and the last comment.
  */
 function headingOf(above, count, separator) {
-  const [last, before, commented] = [above.last, above.before, above.comment].map((line) =>
-    cellsOf(line, separator).map((cell) => cell.trim()),
-  );
+  const cellsIn = (line) => cellsOf(line, separator).map((cell) => cell.trim());
+  const [last, before, commented] = [above.last, above.before, above.comment].map(cellsIn);
   const areNames = (row) =>
     row.length === count && row.every((cell) => Number.isNaN(numberOf(cell, separator)));
   const areUnits = (row) => row.length && row.length <= count && row.every(isUnit);
@@ -137,9 +136,8 @@ const quantities = {
 function find(names, wanted, [exact, ...prefixes]) {
   if (wanted) return names.findIndex((name) => name.toLowerCase() === wanted.toLowerCase());
   const patterns = [`${exact}$`, ...prefixes.map((text) => `${text}([_ ([]|$)`)];
-  const places = patterns.map((text) =>
-    names.findIndex((name) => RegExp(`^${text}`, "i").test(name)),
-  );
+  const indexOf = (text) => names.findIndex((name) => RegExp(`^${text}`, "i").test(name));
+  const places = patterns.map(indexOf);
   return places.find((at) => at >= 0) ?? -1;
 }
 
@@ -175,11 +173,9 @@ const spelling = (text) =>
     .replace(/[ ^*()[\]\u00b7]/g, "")
     .replace(/^(m?s)ec$/, "$1")
     .replace(/^(mm?)(_s2|s-2|\/s\/s)$/, "$1/s2");
-const otherUnits = new Set(
-  "- 1 a deg degc \u00b0c k pa bar % rad nm cm dm km mil in inch ft us ns min h hz v mv mg gal cm/s2 ft/s2 m/s mm/s".split(
-    " ",
-  ),
-);
+const others =
+  "- 1 a deg degc \u00b0c k pa bar % rad nm cm dm km mil in inch ft us ns min h hz v mv mg gal cm/s2 ft/s2 m/s mm/s";
+const otherUnits = new Set(others.split(" "));
 const isUnit = (cell) => {
   const written = spelling(cell);
   return !written || scales.has(written) || otherUnits.has(written);

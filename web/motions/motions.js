@@ -84,10 +84,8 @@ export class MotionsTab extends RequestTab {
 
   /** Shows the motions of a query, or of the first example. */
   open(given) {
-    const [, first] = $("motions-example").options;
-    const fields = Object.fromEntries(
-      given.size ? given : new URLSearchParams(first.dataset.query),
-    );
+    const [, {dataset}] = $("motions-example").options;
+    const fields = Object.fromEntries(given.size ? given : new URLSearchParams(dataset.query));
     this.form.scale(ends, fields.parameter ?? "b");
     this.form.set(fields);
     setTexts({"motions-note": unknownText(this.form.unknown(fields))});
@@ -96,10 +94,9 @@ export class MotionsTab extends RequestTab {
 
   send() {
     super.send();
-    const shown = [...$("motions-example").options].find(
-      ({dataset: {query}}) => query && String(new URLSearchParams(query)) === this.asked,
-    );
-    $("motions-example").value = shown?.value ?? "";
+    const isShown = ({dataset: {query}}) =>
+      query && String(new URLSearchParams(query)) === this.asked;
+    $("motions-example").value = [...$("motions-example").options].find(isShown)?.value ?? "";
   }
 
   /** Sweep and continuation from the base; then continuations of what no branch explains. */

@@ -393,9 +393,8 @@ export class Form {
   /** The group that no field can be given of: a system is given either in SI or reduced. */
   get excludedGroup() {
     const given = (f) => this.filled(f.name) || this.replaced.includes(f.name);
-    const [si, reduced] = ["SI", "reduced"].map((group) =>
-      this.fields.some((f) => f.group === group && given(f)),
-    );
+    const isGiven = (group) => this.fields.some((f) => f.group === group && given(f));
+    const [si, reduced] = ["SI", "reduced"].map(isGiven);
     if (si === reduced) return null;
     return si ? "reduced" : "SI";
   }

@@ -161,10 +161,8 @@ const terms = 22; // of the series; 1/22! is below 1e-21
 
 /** The linear map of advance(state), as a function that advances a state in place, but faster. */
 function mapOf(advance) {
-  const unit = (k) => [0, 1, 2, 3].map((i) => Number(i === k));
-  const [[xx, vx], [xv, vv], [xs, vs, cos, minusSin], [xc, vc]] = [0, 1, 2, 3].map((k) =>
-    advance(unit(k)),
-  );
+  const columns = [0, 1, 2, 3].map((k) => advance([0, 1, 2, 3].map((i) => Number(i === k))));
+  const [[xx, vx], [xv, vv], [xs, vs, cos, minusSin], [xc, vc]] = columns;
   return (state) => {
     const x = state[0]; // indexing is much faster than destructuring here
     const v = state[1];

@@ -143,10 +143,9 @@ export function differenceText(names, parameters) {
 export function parameterLine(parameters) {
   const values = slidersOf(parameters).map((one) => valueText(one, parameters));
   const isOwn = (name) => parameters.origin[name] !== "default";
-  const start = ["x0", "x_dot0", "y0", "y_dot0"].filter(isOwn);
-  return [...values, ...start.map((name) => `${symbolOf(name)} = ${inMm(parameters[name])}`)].join(
-    ", ",
-  );
+  const text = (name) => `${symbolOf(name)} = ${inMm(parameters[name])}`;
+  const start = ["x0", "x_dot0", "y0", "y_dot0"].filter(isOwn).map(text);
+  return [...values, ...start].join(", ");
 }
 
 let shown = null; // parameters
@@ -158,7 +157,12 @@ export function start(its) {
   for (const one of all) {
     const {number, range} = one;
     Object.assign(number, {
-      onchange: () => typed(one),
+      onchange() {
+        const value = toNumber(number.value);
+        attributes(number, {"aria-invalid": value === null});
+        if (value === null) tab.sliderRefused(one);
+        else apply(one, value, false);
+      },
       oninput: () => tab.mark(number.value !== number.defaultValue),
       onblur: () => tab.mark(number.matches("[aria-invalid=true]")),
     });
@@ -213,13 +217,6 @@ export function showErrors(errors) {
 export function moveSlider(one, value, dragging) {
   one.number.value = written(value, one.span);
   apply(one, Number(one.number.value), dragging);
-}
-
-function typed(one) {
-  const value = toNumber(one.number.value);
-  attributes(one.number, {"aria-invalid": value === null});
-  if (value === null) tab.sliderRefused(one);
-  else apply(one, value, false);
 }
 
 function apply(one, value, dragging) {

@@ -25,11 +25,10 @@ const ofOtherMotion = (of) => (p) => {
 };
 
 /** Number of points of each regime: [regime, number]. */
-export const countRegimes = (points) =>
-  Object.keys(q.regimes).map((regime) => [
-    regime,
-    points.filter((p) => p?.regime === regime).length,
-  ]);
+export function countRegimes(points) {
+  const count = (regime) => points.filter((p) => p?.regime === regime).length;
+  return Object.keys(q.regimes).map((regime) => [regime, count(regime)]);
+}
 
 /** A plot of a DiagramView. kind: its methods y() (as in Frame), marks(frame), and of a SweepPlot. */
 class Diagram extends SweepPlot {

@@ -54,9 +54,8 @@ export class SweepForm extends BaseForm {
       ...runFields(tables.sweep_fields, tables.fields),
     ]);
     $("sweep-more").open = !smallScreen; // the results lie below the form
-    this.notes = axisNames.map((axis) =>
-      this.parts.get(axis).appendChild(element("p", {className: "note"})),
-    );
+    const addNote = (axis) => this.parts.get(axis).appendChild(element("p", {className: "note"}));
+    this.notes = axisNames.map(addNote);
     this.named.get("starts").error.before($("sweep-default"));
     container.addEventListener("input", ({target}) => {
       const field = this.fields.find(({input}) => input === target);

@@ -21,11 +21,10 @@ export class SweepPlot extends ZoomablePlot {
   constructor(view, name) {
     super($(`plot-sweep-${name}`), ...view.viewports);
     this.view = view;
-    addExportButton($(`figure-sweep-${name}`), this, () => ({
-      ...this.about(),
-      caption: view.caption(),
-      name: `sweep-${name}`,
-    }));
+    addExportButton($(`figure-sweep-${name}`), this, () => {
+      const {base, axes, ...run} = view.data.request; // the caption shows the shared fields
+      return {...this.about(), caption: labels.fields({...base, ...run}), name: `sweep-${name}`};
+    });
     this.over.addEventListener("pointermove", ({pointerType, buttons}) => {
       if (pointerType !== "mouse" || this.viewport.cursor === null) return;
       if (buttons) view.hideTip();
@@ -138,12 +137,6 @@ export class SweepView {
       const {title, summary} = plot.about();
       makeAccessible(plot, `${title}: ${summary}`);
     }
-  }
-
-  /** Subtitle of an exported picture: the shared fields. */
-  caption() {
-    const {base, axes, ...run} = this.data.request;
-    return labels.fields({...base, ...run});
   }
 
   /** Ends of the visible ranges as rounded values; empty for the full range. */
