@@ -140,7 +140,7 @@ export class DesignTab extends RequestTab {
     const label = `${title} (${unit})`;
     this.response.draw({
       x: {label: "f (Hz)", factor: 1},
-      y: {label, from0: true},
+      y: {label},
       span: [f[0], f.at(-1)],
       unit,
       marks: [

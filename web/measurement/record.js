@@ -243,7 +243,7 @@ export function asJson(parsed, fields) {
 
 const medianReach = 8; // samples before and after the interval, for the local median
 
-/** Index of the visible spike of a within `reach` of a time; null without an acceleration. */
+/** Index of the sample of the visible spike within `reach` of a time; null without acceleration. */
 export function spikeNear({t, a}, time, reach) {
   const from = firstFrom(t, time - reach);
   const to = Math.max(firstFrom(t, time + reach), from + 1);

@@ -33,7 +33,7 @@ export class Job {
 
   later() {}
 
-  /** Starts a request unless it is the running one; a slider that is `dragging` completes that. */
+  /** Starts a request, which aborts an older one unless `dragging`; an equal one runs on. */
   start(request, {dragging = false} = {}) {
     const running = this.#running;
     const same = JSON.stringify(request) === running?.text;

@@ -209,7 +209,7 @@ export const dots = kind((c, frame, options) => {
   if (colour) finish(c, shape);
 });
 
-/** Symbols at ascending x, smaller where there are many; beyond the edge at it, or `clipped`. */
+/** Symbols at ascending x, smaller if many; those out of range lie at the edge or are `clipped`. */
 export const symbols = kind(
   (c, frame, {x, y, colour, shape, size = 4, width = 1.3, clipped}) => {
     const {top, bottom} = frame.box;
@@ -291,7 +291,7 @@ function drawPixels(c, {box, width, height}, paint) {
   c.drawImage(canvas, box.left, box.top, width, height);
 }
 
-/** Draws the number of rectangles that count(add, round) adds at each pixel, by its logarithm. */
+/** Draws how often count(add, round) adds each device pixel, as add(left, top, right, bottom). */
 function drawDensity(c, frame, colour, count) {
   const ratio = devicePixelRatio; // read once: reading it is slower than counting
   drawPixels(c, frame, (pixels, width, height) => {

@@ -48,7 +48,7 @@ const reduced = [
   slider("zeta", {
     usualRange: () => [0, 0.04],
     of: ({derived}) => derived.zeta,
-    // By eq. (3) or the paper's closed form, which is given, too: a changed lambda would leave it.
+    // The law, eq. (3) or closed form, is given too: a changed lambda would leave the preset's.
     fields: (zeta, {epsilon, damping}) => ({
       lambda: zeta / (damping === "closed_form" ? epsilon : epsilon / 2),
       damping,
