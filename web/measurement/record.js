@@ -57,10 +57,7 @@ const separatorOfNumbers = (line, declared) =>
     return cells.length > 1 && cells.every((cell) => !Number.isNaN(numberOf(cell, separator)));
   });
 
-/**
- * [names, units] from the lines above the first row of `count` numbers, by the first of `pairs`
- * that has names. above: the last two lines and the last comment.
- */
+/** [names, units] above the first row of `count` numbers: the first of `pairs` that has names. */
 function headingOf(above, count, separator) {
   const cellsIn = (line) => cellsOf(line, separator).map((cell) => cell.trim());
   const [last, before, commented] = [above.last, above.before, above.comment].map(cellsIn);

@@ -28,10 +28,7 @@ export class Plot {
   frame = null;
   lit = [];
 
-  /**
-   * node: named for screen readers; viewport: whose cursor the ring follows. Subclasses implement
-   * prepare(width, height, alone): {frame, marks}, {empty: a text} or null.
-   */
+  /** Subclasses have prepare(width, height, alone): {frame, marks}, {empty: a text} or null. */
   constructor(canvas, viewport, node = canvas) {
     Object.assign(this, {canvas, viewport, node});
     this.ring = element("div", {className: "lit", hidden: true});
@@ -296,10 +293,7 @@ function sameScale(axes, {width, height}) {
 
 /** The plots inside an element by name: canvases are planes, the others lines over time. */
 export class PlotGroup {
-  /**
-   * prefix: of the ids; about(name): summary, caption and file name of an exported plot; moments():
-   * times of the impacts; planeKeys: whether planes have keys, too.
-   */
+  /** about(name): summary, caption and file name of an export; moments(): times of the impacts. */
   constructor(container, viewport, {prefix = "plot-", about, moments, planeKeys = true}) {
     this.all = {};
     for (const node of container.querySelectorAll(`[id^=${prefix}]`)) {

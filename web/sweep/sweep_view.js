@@ -12,10 +12,7 @@ const zooms = {"+": 1.5, "=": 1.5, "-": 1 / 1.5};
 
 export const missingPoint = [["", "not computed yet"]];
 
-/**
- * A plot of a SweepView. Subclasses implement about(): {title, summary}; drawn(place): y at which a
- * place is drawn, null if none; columns(): functions of the numbers of a point, {name: of(p)}.
- */
+/** Subclasses have about(): {title, summary}, drawn(place): y or null, columns(): {name: of(p)}. */
 export class SweepPlot extends ZoomablePlot {
   /** name: in the ids of its figure and container. */
   constructor(view, name) {
