@@ -16,10 +16,7 @@ const web = dirname(fileURLToPath(import.meta.url));
 const [document, output] = process.argv.slice(2);
 const read = (name) => readFileSync(join(web, name), "utf8");
 
-/**
- * Bundles a script and a style sheet: [name, text] each. Modules that are imported dynamically, and
- * those that they share with the script, become files of their own.
- */
+/** Bundles a script and a style sheet, with the modules imported dynamically: [name, text] each. */
 const bundled = (...entryPoints) =>
   buildSync({
     absWorkingDir: web,
@@ -51,7 +48,7 @@ const page = (html) =>
       files.reduce((t, [name]) => t.replaceAll(`"${up}${name}"`, `"${up}${hash}/${name}"`), text),
     html,
   );
-const documentOf = (name) => readFileSync(join(web, "../docs", `${name}.md`), "utf8");
+const documentOf = (name) => read(`../docs/${name}.md`);
 const servedFiles = [
   ["/", page(read("index.html"))],
   ["/docs", page(docsPage(read("docs.html"), document))],

@@ -1,18 +1,15 @@
-// The page: tabs and the address. The address names the tab and holds its request, so links and the
-// Back button restore what was shown.
+// The page: its tabs, and the address, which names the tab and holds its request.
 
 import {get} from "./shared/api.js";
-import {$, attributes, on} from "./shared/dom.js";
+import {$, attributes, on, sayIn, setTexts} from "./shared/dom.js";
 import {onColours} from "./shared/ink.js";
 import {joined} from "./shared/numbers.js";
-import {startTerms} from "./shared/terms.js";
+import "./shared/terms.js";
 import {toQuery} from "./simulation/request.js";
 import {SimulationTab} from "./simulation/simulation.js";
 
-// The class of each tab, a RequestTab; all but the first are loaded on demand. It is made with
-// (tables, changed, others) when it is first shown. tables: the answer of /v1/parameters, and
-// presets; changed(): see addressChanged; others: {simulate(fields), measure(answer)} open another
-// tab.
+// The class of each tab, a RequestTab, made as (tables, changed, others) when it is first shown.
+// tables: the answer of /v1/parameters, and presets; changed(): see addressChanged.
 const loaders = {
   simulation: async () => SimulationTab,
   sweep: async () => (await import("./sweep/sweep.js")).SweepTab,
@@ -32,12 +29,6 @@ document.body.classList.toggle("embedded", embedded);
 
 const buttons = [...document.querySelectorAll("[role=tab]")];
 const nameOf = (button) => button.id.replace("tab-", "");
-
-/** Gives keys and bars the colour that they name. */
-function colourKeys() {
-  for (const {style, dataset} of document.querySelectorAll("[data-colour]"))
-    style.setProperty("--key", `var(--${dataset.colour})`);
-}
 
 /** Shows the panel of a tab, scrolled as it was left. */
 function showPanel(name) {
@@ -73,9 +64,8 @@ function listenToButtons() {
     });
 }
 
-function address(name, query) {
-  return `?${joined([embedded && "embed=1", name !== "simulation" && `tab=${name}`, query], "&")}`;
-}
+const address = (name, query) =>
+  `?${joined([embedded && "embed=1", name !== "simulation" && `tab=${name}`, query], "&")}`;
 
 const writeAddress = (method) => history[method](null, "", address(current, queryOf(current)));
 
@@ -94,11 +84,7 @@ function writePending() {
 const editWindow = 800; // ms
 let lastEdit = -Infinity;
 
-/**
- * Writes the query of a tab to the address. edit: adds a history entry if the previous edit is more
- * than `editWindow` ago, otherwise replaces the current one. soon: more changes follow; the
- * replacement is delayed by 200 ms.
- */
+/** Writes a query to the address. edit: can add a history entry; soon: more changes follow. */
 function addressChanged(name, {edit = false, soon = false} = {}) {
   if (current !== name) return;
   cancelPending();
@@ -123,7 +109,7 @@ async function openAddress() {
   try {
     const Tab = await loaders[name]();
     const changed = (how) => addressChanged(name, how);
-    tabs[name] ??= new Tab(tables, changed, {simulate: simulatePoint, measure: measureRun});
+    tabs[name] ??= new Tab(tables, changed, others);
   } catch (error) {
     return fail(`the tab could not be loaded: ${error.message}`);
   }
@@ -136,7 +122,7 @@ function openQuery(text) {
   return navigate(tab, new URLSearchParams(query));
 }
 
-/** Starts a guided story. */
+/** Starts a guided story. Returns false for an unknown one. */
 async function tell(name) {
   const {start} = await import("./stories.js");
   return start(name, openQuery);
@@ -148,31 +134,32 @@ function navigate(name, query) {
   return openAddress();
 }
 
-/** Opens the simulation of a sweep's point. */
-function simulatePoint(fields) {
-  scrolled.simulation = 0; // the new simulation is shown from the top
-  navigate("simulation", toQuery(fields));
-}
-
-/** Opens the record of a run, an answer of /v1/simulate with impacts, in Measurement. */
-async function measureRun(answer) {
-  await navigate("measurement", queryOf("measurement"));
-  tabs.measurement?.measure(answer); // missing if it could not be loaded
-}
+const others = {
+  /** Opens the simulation of a sweep's point. */
+  simulate(fields) {
+    scrolled.simulation = 0; // the new simulation is shown from the top
+    navigate("simulation", toQuery(fields));
+  },
+  /** Opens the record of a run, an answer of /v1/simulate with impacts. */
+  async measure(answer) {
+    await navigate("measurement", queryOf("measurement"));
+    tabs.measurement?.measure(answer); // missing if it could not be loaded
+  },
+};
 
 /** Shows a fault in the panel that is visible. */
 function fail(text) {
-  const message = $(`panel-${current ?? "simulation"}`).querySelector(".message");
-  message.textContent = text;
-  message.classList.add("fault");
+  const {id} = $(`panel-${current ?? "simulation"}`).querySelector(".message");
+  sayIn(id)(text, true);
 }
 
 async function start() {
-  colourKeys();
+  // Keys and bars have the colour that they name.
+  for (const {style, dataset} of document.querySelectorAll("[data-colour]"))
+    style.setProperty("--key", `var(--${dataset.colour})`);
   const [fields, {presets}] = await Promise.all([get("v1/parameters"), get("v1/presets")]);
   tables = {...fields, presets};
   listenToButtons();
-  startTerms();
   $("story").onchange = ({target}) => {
     tell(target.value);
     target.value = "";
@@ -183,14 +170,9 @@ async function start() {
   });
   const story = new URLSearchParams(location.search).get("story");
   if (!story || !(await tell(story))) await openAddress();
+  // The page is usable without its version.
+  const {version} = await get("version").catch(() => ({}));
+  if (version) setTexts({version: `vines ${version}`});
 }
 
-async function showVersion() {
-  const {version} = await get("version");
-  $("version").textContent = `vines ${version}`;
-}
-
-start().then(
-  () => showVersion().catch(() => {}), // the page is usable without it
-  (error) => fail(`the page could not start: ${error.message}`),
-);
+start().catch((error) => fail(`the page could not start: ${error.message}`));

@@ -1,41 +1,28 @@
-// Guided stories: each step opens a tab with a request and says what to look at. The real controls
-// stay usable, and a story can be left at any moment. The texts are in `stories` of the page.
+// Guided stories, in `stories` of the page: each step opens a request and says what to look at.
 import {$, button, element} from "./shared/dom.js";
 
 const guide = $("guide");
-let story = null; // the <section> shown
-let step = 0;
-
-/** The story of a name; undefined if there is none. */
-const found = (name) =>
-  [...$("stories").content.children].find(({dataset}) => dataset.story === name);
 
 /** open(query) opens the request of a step. Returns false for an unknown story. */
 export function start(name, open) {
-  story = found(name);
-  if (!story) return false;
-  step = 0;
-  show(open);
-  return true;
+  const story = [...$("stories").content.children].find(({dataset}) => dataset.story === name);
+  if (story) show(story, 0, open);
+  return Boolean(story);
 }
 
-function show(open) {
-  const {dataset, innerHTML} = story.children[step];
-  const move = (by) => () => {
-    step += by;
-    show(open);
-  };
+function show(story, step, open) {
+  const {children, dataset} = story;
+  const to = (other) => () => show(story, other, open);
   const leave = () => {
     guide.hidden = true;
   };
-  const last = step === story.children.length - 1;
   guide.hidden = false;
   guide.replaceChildren(
-    element("b", {}, `${story.dataset.title}, ${step + 1} of ${story.children.length}`),
-    element("p", {innerHTML, role: "status"}),
-    button("Back", move(-1), {disabled: step === 0}),
-    last ? "" : button("Next", move(1), {className: "go"}),
+    element("b", {}, `${dataset.title}, ${step + 1} of ${children.length}`),
+    element("p", {innerHTML: children[step].innerHTML, role: "status"}),
+    button("Back", to(step - 1), {disabled: step === 0}),
+    step + 1 < children.length ? button("Next", to(step + 1), {className: "go"}) : "",
     button("Leave", leave),
   );
-  open(dataset.query);
+  open(children[step].dataset.query);
 }

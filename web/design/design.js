@@ -1,5 +1,4 @@
-// The design tab: the best absorber for a machine over a band of frequencies, beside the machine
-// without an absorber and with a tuned mass damper of the same mass.
+// The design tab: the best absorber over a band, beside none and a tuned mass damper of its mass.
 import {linesOf} from "../shared/api.js";
 import {$, cards, countUp, keyOf, setTexts, tableOf} from "../shared/dom.js";
 import {addExportButton} from "../shared/export.js";
@@ -23,6 +22,7 @@ const objectives = {
 };
 const round = (value) => shortTo(3, value);
 const hostFields = ["m1", "k1", "f0", "c1", "damping_ratio", "damping"];
+const groupOf = ({type}) => (type === "integer" ? "search" : "design");
 const [cyclesOfWorst, cyclesOfDecay] = [300, 60]; // for the simulation of the worst case
 const colours = ["c1", "c2", "c3", "c4", "minus"]; // of the restitution coefficients
 
@@ -36,7 +36,7 @@ export class DesignTab extends RequestTab {
     const host = tables.fields.filter(({name}) => hostFields.includes(name));
     const fields = [
       ...host.map((f) => ({...f, group: "host", part: "base"})),
-      ...own.map((f) => ({...f, narrow: true, group: f.type === "integer" ? "search" : "design"})),
+      ...own.map((f) => ({...f, part: "own", narrow: true, group: groupOf(f)})),
     ];
     const grouped = {
       host: ["Machine", true],
@@ -52,23 +52,17 @@ export class DesignTab extends RequestTab {
     $("design-simulate").onclick = () => simulate(this.worstCase());
   }
 
-  /** The key of the objective. */
-  get name() {
+  /** {name: its key, title, unit, factor}. */
+  get objective() {
     const {objective, forcing, initial_velocity: velocity} = this.asking ?? {};
     const standard = forcing ? "x_relative_max" : "x_max";
-    return objective ?? (velocity ? "decay_time" : standard);
+    const name = objective ?? (velocity ? "decay_time" : standard);
+    return {name, ...objectives[name]};
   }
 
-  get objective() {
-    return objectives[this.name];
-  }
-
-  /** {base, f, ...} of the form. */
   request() {
-    const request = {base: {}};
-    for (const [name, value] of Object.entries(this.form.values()))
-      (hostFields.includes(name) ? request.base : request)[name] = value;
-    return request;
+    const {base, own} = this.form.parted();
+    return {base, ...own};
   }
 
   /** The query of the form's request, the machine first. */
@@ -125,12 +119,11 @@ export class DesignTab extends RequestTab {
     this.showTolerances();
   }
 
-  /** The objective of each alternative. */
   showCards() {
     const {best, without, tuned_mass_damper: damper} = this.done;
-    const {unit, factor, title} = this.objective;
-    const text = (found) => `${round(found?.[this.name] * factor)} ${unit}`;
-    const change = (found) => `${percent(found?.[this.name] / without[this.name])} of that`;
+    const {name, unit, factor, title} = this.objective;
+    const text = (found) => `${round(found?.[name] * factor)} ${unit}`;
+    const change = (found) => `${percent(found?.[name] / without[name])} of that`;
     cards($("design-cards"), [
       ["without absorber", text(without), title],
       ["vibro-impact absorber", text(best), change(best)],
@@ -141,19 +134,19 @@ export class DesignTab extends RequestTab {
   /** The objective over f for each alternative. */
   drawResponse() {
     const {f, without, tuned_mass_damper: damper, ...response} = this.done.response;
-    const {factor, unit, title} = this.objective;
+    const {name, factor, unit, title} = this.objective;
     const of = (y, colour, label, dash) =>
       line({x: f, y: y.map((v) => v && v * factor), colour, label, dash, width: 1.6});
     const label = `${title} (${unit})`;
     this.response.draw({
       x: {label: "f (Hz)", factor: 1},
-      y: {label, from0: true},
+      y: {label},
       span: [f[0], f.at(-1)],
       unit,
       marks: [
         of(without, "soft", "without", [5, 4]),
-        of(response[`${this.name}_best_start`], "best", "absorber, best start"),
-        of(response[`${this.name}_worst_start`], "c1", "worst start"),
+        of(response[`${name}_best_start`], "best", "absorber, best start"),
+        of(response[`${name}_worst_start`], "c1", "worst start"),
         of(damper, "c4", "tuned mass damper"),
       ],
     });
@@ -162,11 +155,11 @@ export class DesignTab extends RequestTab {
 
   /** The worst case over b, with a colour for each R; the best is ringed. */
   drawMap() {
-    const {factor, unit, title} = this.objective;
+    const {name, factor, unit, title} = this.objective;
     const all = [...new Set(this.points.map(({R}) => R))].sort();
     const marks = all.map((R, i) => {
-      const own = this.points.filter((p) => p.R === R && p[this.name] != null);
-      const [x, y] = [own.map(({b}) => 1000 * b), own.map((p) => p[this.name] * factor)];
+      const own = this.points.filter((p) => p.R === R && p[name] != null);
+      const [x, y] = [own.map(({b}) => 1000 * b), own.map((p) => p[name] * factor)];
       const colour = colours[i % colours.length];
       return dots({x, y, colour, shape: "dot", size: 3, label: `R = ${R}`});
     });
@@ -179,7 +172,7 @@ export class DesignTab extends RequestTab {
       empty: "no absorber tried yet",
     });
     const {best} = this.done ?? {};
-    if (best) this.map.light(1000 * best.b, best[this.name] * factor);
+    if (best) this.map.light(1000 * best.b, best[name] * factor);
   }
 
   /** The best absorber and how far each of its values can be off. */

@@ -1,5 +1,4 @@
-// The documentation page of the HTTP interface. The build makes its HTML (page.mjs); this script
-// adds what depends on the service or on the visitor.
+// The page /docs, made by the build (page.mjs): what depends on the service or on the visitor.
 import {absoluteUrl, get} from "../shared/api.js";
 import {$, element, sayIn, setTexts} from "../shared/dom.js";
 import {count} from "../shared/numbers.js";
@@ -62,8 +61,7 @@ async function start() {
 const say = sayIn("docs-message");
 start().catch(({message}) => say(`The version of the server cannot be loaded: ${message}.`, true));
 
-// Search for fields by name. Each field is a table row with an id, such as
-// schema-Energy.without_absorber.rms or simulate_by_query.b.
+// Search for fields by name: table rows with an id such as schema-Energy.without_absorber.rms.
 const most = 40; // names listed
 
 /** The operation or object of a field: GET /v1/simulate, or Energy.without_absorber. */
@@ -77,21 +75,16 @@ function ownerOf(row) {
   return names.replace(/\/\d+/g, ""); // a digit tells several parts of one field apart
 }
 
-/** Sort order: exact matches, then prefixes, then others. */
-function rank(name, wanted) {
-  if (name === wanted) return 0;
-  return name.startsWith(wanted) ? 1 : 2;
-}
-
-/** [name, rows] for names that contain a text. */
+/** [name, rows] for names that contain a text: exact matches, then prefixes, then others. */
 function find(rows, wanted) {
-  const found = new Map();
-  for (const row of rows) {
-    const name = row.querySelector("code").textContent;
-    if (name.toLowerCase().includes(wanted)) found.set(name, [...(found.get(name) ?? []), row]);
-  }
-  const ranked = ([name]) => rank(name.toLowerCase(), wanted);
-  return [...found].sort((a, b) => ranked(a) - ranked(b));
+  const named = Map.groupBy(rows, (row) => row.querySelector("code").textContent);
+  const order = [
+    (name) => name === wanted,
+    (name) => name.startsWith(wanted),
+    (name) => name.includes(wanted),
+  ];
+  const rank = ([name]) => order.findIndex((is) => is(name.toLowerCase()));
+  return [...named].filter((one) => rank(one) >= 0).sort((a, b) => rank(a) - rank(b));
 }
 
 /** A path with optional line breaks after its points. */

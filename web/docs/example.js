@@ -1,8 +1,6 @@
-// Examples of an operation: a curl command that can be copied, and a button that sends the request
-// and shows the beginning of the response.
+// Examples of an operation: a curl command, and a button that sends the request.
 import {asCurl, hasKey, post, sendRequest} from "../shared/api.js";
 import {button, copy, element} from "../shared/dom.js";
-
 import {count} from "../shared/numbers.js";
 
 const maxBytes = 1 << 20; // of a response that is shown completely
@@ -93,7 +91,6 @@ function writeCommands() {
   }
 }
 
-/** Adds the buttons of an example. */
 function addActions(view) {
   const request = requestOf(view);
   const said = element("span", {className: "note", role: "status"});

@@ -32,10 +32,7 @@ function addressOf(href, to) {
 
 const titleOf = (markdown) => markdown.match(/^# (.*)$/m)[1];
 
-/**
- * A document as HTML. to: what leads to the folder of the documents; up: to that of the page. Links
- * that are named by a file are named by its title.
- */
+/** A document as HTML, links named by titles. to, up: lead to the documents and to the page. */
 function bodyOf(markdown, titles, to, up) {
   const renderer = {
     heading({tokens, depth}) {

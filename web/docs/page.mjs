@@ -95,21 +95,17 @@ const contentView = (content = {}, open = false) =>
     return nodes;
   });
 
-function answerView(answer) {
-  const {content, headers = {}} = doc.resolved(answer);
-  const fields = Object.entries(headers).map(([name, header]) => ({name, ...doc.resolved(header)}));
-  return [contentView(content), fields.length ? fold("Headers", fieldTable(fields, null)) : []];
-}
-
 /** Responses; those that are no success in a fold. */
 function answersView({responses}) {
   const all = Object.entries(responses);
   const isSuccess = ([status]) => status.startsWith("2");
   const others = all.filter((one) => !isSuccess(one));
-  const view = ([status, answer]) => [
-    html`<p><code>${status}</code> ${doc.resolved(answer).description}</p>`,
-    answerView(answer),
-  ];
+  const view = ([status, answer]) => {
+    const {description, content, headers = {}} = doc.resolved(answer);
+    const fields = Object.entries(headers).map(([name, one]) => ({name, ...doc.resolved(one)}));
+    const folded = fields.length ? fold("Headers", fieldTable(fields, null)) : [];
+    return [html`<p><code>${status}</code> ${description}</p>`, contentView(content), folded];
+  };
   const title = html`Other statuses <small>${others.map(([status]) => status).join(" ")}</small>`;
   return [all.filter(isSuccess).map(view), others.length ? fold(title, others.map(view)) : []];
 }

@@ -1,6 +1,4 @@
-// Schemas as text and as tables of fields. The id of a field is its operation or schema followed by
-// field names: schema-Energy.without_absorber.rms.
-
+// Schemas as text and as tables of fields, whose ids are like schema-Energy.without_absorber.rms.
 import {readFileSync} from "node:fs";
 import {count} from "../shared/numbers.js";
 
@@ -72,10 +70,7 @@ function parts(schema) {
     .flatMap(parts);
 }
 
-/**
- * Folds of the parts of a schema. place: id of the schema, null if its fields are not search
- * targets; n: number of parts whose fields have this id. Components have ids of their own.
- */
+/** Folds of a schema's parts; place: its id, null if not searched; n: parts with this id. */
 function partFolds(schema, place, n = 0) {
   let placed = n;
   const next = () => place && (placed++ ? `${place}/${placed}` : place);
@@ -87,8 +82,9 @@ function partFolds(schema, place, n = 0) {
   });
 }
 
-/** A fold of a component's fields. Components can be recursive. */
-export const fieldsFold = (summary, $ref) => copyFold(summary, schemaPlace(nameOf($ref)));
+/** A fold of a component's fields, which docs.js fills when it is opened: they can be recursive. */
+export const fieldsFold = (summary, $ref) =>
+  html`<details data-copy="${schemaPlace(nameOf($ref))}"><summary>${summary}</summary></details>`;
 
 /** A table of fields. place: id of their parent; null if they are not search targets. */
 export const fieldTable = (fields, place, title) => [
@@ -127,10 +123,6 @@ export const html = (raw, ...values) => new Markup(String.raw({raw}, ...values.m
 
 export const fold = (summary, content) =>
   html`<details><summary>${summary}</summary>${content}</details>`;
-
-/** A fold that docs.js fills, when it is opened, with a copy of the content of the element `id`. */
-const copyFold = (summary, id) =>
-  html`<details data-copy="${id}"><summary>${summary}</summary></details>`;
 
 // The OpenAPI document, and the ids of its components on the page.
 export let root;

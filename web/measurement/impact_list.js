@@ -16,8 +16,6 @@ export function kindOf(row) {
   return row.side > 0 ? "plus" : "minus";
 }
 
-const isEdited = (row) => ["removed", "edited"].includes(kindOf(row));
-
 function statusOf(row) {
   if (row.removed) return "removed";
   const stays = row.t === row.found || row.status === "added";
@@ -58,7 +56,7 @@ export class ImpactList {
   }
 
   get edited() {
-    return this.rows.some(isEdited);
+    return this.rows.some((row) => ["removed", "edited"].includes(kindOf(row)));
   }
 
   /** The impact times to identify with, s. */

@@ -1,10 +1,7 @@
-// The measurement tab: a file and the form are sent as one request, and the identified system is
-// shown. The list of impacts can be edited and sent again.
-
+// The measurement tab: identifies a file; the list of its impacts can be edited and sent again.
 import {asCurl, identify, identifyJson, simulate} from "../shared/api.js";
 import * as dom from "../shared/dom.js";
 import {$} from "../shared/dom.js";
-
 import {Form} from "../shared/form.js";
 import {RequestTab} from "../shared/job.js";
 import {ImpactList} from "./impact_list.js";
@@ -31,10 +28,7 @@ const longestQuery = 6000; // characters; servers and proxies accept addresses o
 const sampleCycles = 330; // about 40 s
 const firstSample = "fig20"; // read when the tab is opened without a record
 
-/**
- * Changes to the service's fields: column names are typed or taken from the file's header; the
- * amplitude of the forcing is fitted and has no field.
- */
+/** Changes to the service's fields. The fitted amplitude of the forcing has no field. */
 const changes = {
   threshold: {group: "system", unit: "sd of the noise"},
   R: {default_note: "estimated"},
@@ -62,7 +56,6 @@ export class MeasurementTab extends RequestTab {
   record = null; // parsed columns as selected by the form
   answer = null;
   sent = null; // fields that the answer belongs to
-  shown = null; // the form as a query
   opened = false;
 
   constructor({identify_fields: fields, presets}, changed) {
@@ -109,13 +102,9 @@ export class MeasurementTab extends RequestTab {
     };
   }
 
-  query() {
-    return this.shown;
-  }
-
   open(given) {
     const fields = Object.fromEntries(given);
-    if (asQuery(fields) === this.shown) return;
+    if (asQuery(fields) === this.asked) return;
     const {preset = given.size ? "" : firstSample, ...rest} = fields;
     this.choosePreset(preset, rest);
     if (!this.opened) this.readFirst(given.size === 0);
@@ -146,8 +135,7 @@ export class MeasurementTab extends RequestTab {
 
   /** Column fields of the form, which are kept when the oscillator changes. */
   ofColumns() {
-    const names = this.form.fields.filter((f) => f.group === "record").map((f) => f.name);
-    return pick(this.form.values(), ([name]) => names.includes(name));
+    return pick(this.form.values(), ([name]) => this.form.named.get(name).group === "record");
   }
 
   /** Updates the address with the form. The file itself is not part of a link. */
@@ -155,7 +143,7 @@ export class MeasurementTab extends RequestTab {
     const given = this.base();
     const differing = pick(this.form.values(), ([name, value]) => value !== given[name]);
     const {value: preset} = presetMenu;
-    this.shown = asQuery({...(preset && {preset}), ...differing});
+    this.asked = asQuery({...(preset && {preset}), ...differing});
     this.changed();
     this.markStale();
   }
@@ -172,9 +160,8 @@ export class MeasurementTab extends RequestTab {
 
   run(more = {}) {
     if (!this.file) {
-      this.say("choose a file first", true);
       $("measure-file").focus();
-      return;
+      return this.say("choose a file first", true);
     }
     if (!this.parsed) return; // identified after reading
     this.form.showErrors([]);
@@ -212,13 +199,12 @@ export class MeasurementTab extends RequestTab {
     super.busy(is, cancelled);
     clearInterval(this.ticking);
     let seconds = 0;
-    if (is) this.ticking = setInterval(() => this.tick(++seconds), 1000);
-  }
-
-  tick(seconds) {
-    if ($("measure-message").matches(".fault")) return;
-    const count = this.record ? ` ${this.record.t.length} samples` : "";
-    this.say(`identifying${count} … ${seconds} s`);
+    const tick = () => {
+      ++seconds;
+      const count = this.record ? ` ${this.record.t.length} samples` : "";
+      if (!$("measure-message").matches(".fault")) this.say(`identifying${count} … ${seconds} s`);
+    };
+    if (is) this.ticking = setInterval(tick, 1000);
   }
 
   /** Sets the answer of the record; null: not identified yet. */

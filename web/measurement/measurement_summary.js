@@ -1,5 +1,4 @@
 // The results of a measurement as cards, and the table of fitted parameters.
-
 import {$, cards, listWarnings} from "../shared/dom.js";
 import {count, digits, joined, minus, withError} from "../shared/numbers.js";
 import {verdicts} from "../shared/quantities.js";

@@ -1,5 +1,4 @@
 // Plots of a measurement: the record with its impacts, and the results identified from it.
-
 import {$, element} from "../shared/dom.js";
 import {exponentMarks, exponentRange} from "../shared/exponents.js";
 import {rangeOf} from "../shared/frame.js";
@@ -17,7 +16,6 @@ let plots;
 /** Figures of the paper: the first of each preset, and the number of each plot after it. */
 const firstFigures = {fig15: 15, fig20: 20};
 const figures = {a: 0, x: 1, portrait: 2, section: 3, qr: 4, raw: 4};
-const figureOf = (name) => $(`plot-measured-${name}`).closest("figure");
 
 /** shown() returns {name, answer} of the record shown. */
 export function start(shown) {
@@ -48,7 +46,7 @@ export function nameFigures(preset) {
   for (const [name, number] of preset in firstFigures ? Object.entries(figures) : []) {
     const textContent = `as Fig. ${firstFigures[preset] + number}`;
     const tag = element("span", {className: "tag", textContent, title});
-    figureOf(name).querySelector("figcaption").append(tag);
+    $(`plot-measured-${name}`).closest("figure").querySelector("figcaption").append(tag);
   }
 }
 
@@ -72,10 +70,7 @@ function valueAt({t}, column, moment) {
   return column[i - 1] + (column[i] - column[i - 1]) * share;
 }
 
-/**
- * Marks the impacts of the list, with edits, and the sticking phases on the plots of the record.
- * answer: null before identification.
- */
+/** Marks impacts and sticking phases on the record; answer: null before identification. */
 export function mark(record, rows, answer) {
   const {t, a, x} = record;
   const seconds = secondsOf(answer);
@@ -88,11 +83,8 @@ export function mark(record, rows, answer) {
     const intervals = bands({intervals: stuck, colour: "shade"});
     plots.draw(name, {...plots.all[name].last, under: [intervals, ...marks], ...more});
   };
-  if (a)
-    under(
-      "a",
-      marksOf(rows, (row) => a[spikeNear(record, row.t, reach)], "cross", 4),
-    );
+  const spikeOf = (row) => a[spikeNear(record, row.t, reach)];
+  if (a) under("a", marksOf(rows, spikeOf, "cross", 4));
   if (!x) return;
   const rings = marksOf(rows, (row) => valueAt(record, x, row.t), "ring", 3.5);
   under("x", [...forwardMarks(answer, seconds), ...rings], {points});

@@ -1,5 +1,4 @@
-// A record: read from a file for drawing, by the same rules as the service, which reports the errors;
-// simulated from a run; and kept by the browser.
+// Records: read from a file by the rules of the service, simulated from a run, kept by the browser.
 import {nextTask} from "../shared/dom.js";
 import {Motion} from "../shared/motion.js";
 import {firstFrom, lastUpTo} from "../shared/numbers.js";
@@ -51,28 +50,17 @@ function numberOf(cell, separator) {
 
 const comment = /^\s*(#|%|\/\/)/;
 
-/**
- * The separator that splits the line into two or more numbers; undefined if there is none.
- * declared: the separator of a line sep=, the only one tried.
- */
+/** The separator that splits a line into numbers, if any; declared: by a line sep=. */
 const separatorOfNumbers = (line, declared) =>
   (declared ? [declared] : [";", "\t", ",", " "]).find((separator) => {
     const cells = cellsOf(line, separator);
     return cells.length > 1 && cells.every((cell) => !Number.isNaN(numberOf(cell, separator)));
   });
 
-/**
- * [names, units] from the lines above the first row of `count` numbers; units can be missing.
- * Returns undefined if there are no names. above: the last two lines and the last comment.
- *
- * Candidates in order of preference: names and units in the last two lines; names in the comment
- * and units in the last line, unless the comment holds units; units above the names, in a line or
- * the comment; names alone.
- */
+/** [names, units] above the first row of `count` numbers: the first of `pairs` that has names. */
 function headingOf(above, count, separator) {
-  const [last, before, commented] = [above.last, above.before, above.comment].map((line) =>
-    cellsOf(line, separator).map((cell) => cell.trim()),
-  );
+  const cellsIn = (line) => cellsOf(line, separator).map((cell) => cell.trim());
+  const [last, before, commented] = [above.last, above.before, above.comment].map(cellsIn);
   const areNames = (row) =>
     row.length === count && row.every((cell) => Number.isNaN(numberOf(cell, separator)));
   const areUnits = (row) => row.length && row.length <= count && row.every(isUnit);
@@ -89,9 +77,8 @@ function headingOf(above, count, separator) {
 }
 
 /**
- * Parses a CSV file into {text, names, units, columns}; columns hold numbers, and names is empty if
- * no heading is found. Lines that the service would reject are skipped. onProgress(fraction)
- * reports progress.
+ * Parses a CSV file into {text, names, units, columns}; names is empty without a heading. Skips
+ * lines that the service would reject. onProgress(fraction) reports progress.
  */
 export async function parse(file, onProgress = () => {}) {
   const text = await textOf(file);
@@ -132,10 +119,7 @@ export async function parse(file, onProgress = () => {}) {
   return {text, names, units, columns: columns.map((column) => Float64Array.from(column))};
 }
 
-/**
- * Usual column names by quantity: the first must match exactly, the others must be followed by a
- * space, an underscore, a bracket or the end.
- */
+/** Usual column names: the first as a whole, the others before a space, underscore or bracket. */
 const quantities = {
   time: ["time_s", "time", "t"],
   displacement: ["displacement_m", "displacement", "x"],
@@ -149,9 +133,8 @@ const quantities = {
 function find(names, wanted, [exact, ...prefixes]) {
   if (wanted) return names.findIndex((name) => name.toLowerCase() === wanted.toLowerCase());
   const patterns = [`${exact}$`, ...prefixes.map((text) => `${text}([_ ([]|$)`)];
-  const places = patterns.map((text) =>
-    names.findIndex((name) => RegExp(`^${text}`, "i").test(name)),
-  );
+  const indexOf = (text) => names.findIndex((name) => RegExp(`^${text}`, "i").test(name));
+  const places = patterns.map(indexOf);
   return places.find((at) => at >= 0) ?? -1;
 }
 
@@ -187,11 +170,9 @@ const spelling = (text) =>
     .replace(/[ ^*()[\]\u00b7]/g, "")
     .replace(/^(m?s)ec$/, "$1")
     .replace(/^(mm?)(_s2|s-2|\/s\/s)$/, "$1/s2");
-const otherUnits = new Set(
-  "- 1 a deg degc \u00b0c k pa bar % rad nm cm dm km mil in inch ft us ns min h hz v mv mg gal cm/s2 ft/s2 m/s mm/s".split(
-    " ",
-  ),
-);
+const others =
+  "- 1 a deg degc \u00b0c k pa bar % rad nm cm dm km mil in inch ft us ns min h hz v mv mg gal cm/s2 ft/s2 m/s mm/s";
+const otherUnits = new Set(others.split(" "));
 const isUnit = (cell) => {
   const written = spelling(cell);
   return !written || scales.has(written) || otherUnits.has(written);
@@ -206,10 +187,7 @@ function unitIn(name) {
   return unitAmong(name, ...(brackets ? [brackets[1]] : suffixes));
 }
 
-/**
- * Column of each quantity found: {name, values, unit}. The unit is that of the column's name, else
- * of the row of units, else of the field, which can be undefined.
- */
+/** Columns found: {name, values, unit: by the column's name, the row of units or the field}. */
 function partsOf({names, units, columns}, fields) {
   const found = Object.entries(columnsOf(names, fields)).filter(([, k]) => k >= 0);
   const part = (quantity, k) => ({
@@ -220,11 +198,7 @@ function partsOf({names, units, columns}, fields) {
   return Object.fromEntries(found.map(([quantity, k]) => [quantity, part(quantity, k)]));
 }
 
-/**
- * The record selected by the fields: {t (s), x (mm), a (m/s^2)}, null for a missing quantity.
- * Samples whose time is not later than all before are dropped, since the plots need ascending
- * times.
- */
+/** The record of the fields: {t (s), x (mm), a (m/s^2)}, at ascending times; null if missing. */
 export function recordOf(parsed, fields) {
   const {time, displacement, acceleration} = partsOf(parsed, fields);
   if (!time?.values.length || !(displacement ?? acceleration)) return null;
@@ -266,10 +240,7 @@ export function asJson(parsed, fields) {
 
 const medianReach = 8; // samples before and after the interval, for the local median
 
-/**
- * Index of the sample within `reach` of a time whose acceleration deviates most from the local
- * median: the visible spike. null without an acceleration.
- */
+/** Index of the sample of the visible spike within `reach` of a time; null without acceleration. */
 export function spikeNear({t, a}, time, reach) {
   const from = firstFrom(t, time - reach);
   const to = Math.max(firstFrom(t, time + reach), from + 1);
@@ -320,10 +291,7 @@ function noiseFrom(seed) {
   };
 }
 
-/**
- * The oscillator of a run as fields of /v1/identify, in kg, N/m, N s/m, Hz and m. A dimensionless
- * system gets m1 = 1 kg and k1 = 1 N/m, hence omega0 = 1 rad/s.
- */
+/** The oscillator of a run as fields of /v1/identify; m1 = 1 kg, k1 = 1 N/m if dimensionless. */
 export function oscillatorOf({si, b, epsilon, Omega, derived}) {
   const system = si ?? {m1: 1, k1: 1, m2: epsilon, f: Omega / (2 * Math.PI)};
   const {m1, k1, m2, f} = system;
@@ -331,10 +299,7 @@ export function oscillatorOf({si, b, epsilon, Omega, derived}) {
   return {m1, k1, c1, m2, f, b};
 }
 
-/**
- * The samples of a run as CSV: time_s, displacement_m, acceleration_m_s2. Starts after `settling`
- * cycles if the run is longer than three times that; holds at most maxSamples.
- */
+/** Samples of a run as CSV; a long run is recorded after `settling` cycles. */
 export function recordOfRun(answer) {
   const {parameters, impacts} = answer;
   const omega0 = parameters.derived.omega0 ?? 1; // rad/s

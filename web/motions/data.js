@@ -1,5 +1,4 @@
-// The motions found over a parameter: those on which the system settles, and the branches of
-// periodic orbits with their special points.
+// The motions over a parameter: those that the system settles on, and branches of periodic orbits.
 
 const near = 2e-3; // relative difference of |x| within which a motion lies on a branch
 
@@ -29,10 +28,7 @@ export class Motions {
     for (const motion of starts) if (motion.x_max != null) this.attractors.push({...motion, value});
   }
 
-  /**
-   * Takes a line of a continuation; offset: number of the branches of earlier ones. Returns false if
-   * it begins on one of these.
-   */
+  /** Takes a line; offset: number of earlier branches. Returns false if it begins on one. */
   continued({type, branch, ...orbit}, offset) {
     const value = orbit[this.request.parameter];
     const number = branch == null ? null : branch + offset;

@@ -1,13 +1,11 @@
-// The motions tab: which motions exist over a parameter. A sweep from several starts finds what the
-// system settles on, and continuations follow each periodic orbit, stable or not. Both are drawn
-// while they are computed.
+// The motions tab: motions that the system settles on, and continuations of periodic orbits.
 import {linesOf} from "../shared/api.js";
 import {$, button, countUp, element, setTexts, tableOf} from "../shared/dom.js";
 import {addExportButton} from "../shared/export.js";
 import {BaseForm, defaultSet, unknownText} from "../shared/form.js";
 import {makeAccessible} from "../shared/gestures.js";
 import {RequestTab} from "../shared/job.js";
-import {count, short} from "../shared/numbers.js";
+import {count, joined, short} from "../shared/numbers.js";
 import * as labels from "../sweep/axis_labels.js";
 import {Motions} from "./data.js";
 import {MotionsPlot, quantities} from "./motions_plot.js";
@@ -86,10 +84,8 @@ export class MotionsTab extends RequestTab {
 
   /** Shows the motions of a query, or of the first example. */
   open(given) {
-    const query = given.size
-      ? given
-      : new URLSearchParams($("motions-example").options[1].dataset.query);
-    const fields = Object.fromEntries(query);
+    const [, {dataset}] = $("motions-example").options;
+    const fields = Object.fromEntries(given.size ? given : new URLSearchParams(dataset.query));
     this.form.scale(ends, fields.parameter ?? "b");
     this.form.set(fields);
     setTexts({"motions-note": unknownText(this.form.unknown(fields))});
@@ -98,10 +94,9 @@ export class MotionsTab extends RequestTab {
 
   send() {
     super.send();
-    const shown = [...$("motions-example").options].find(
-      ({dataset: {query}}) => query && String(new URLSearchParams(query)) === this.asked,
-    );
-    $("motions-example").value = shown?.value ?? "";
+    const isShown = ({dataset: {query}}) =>
+      query && String(new URLSearchParams(query)) === this.asked;
+    $("motions-example").value = [...$("motions-example").options].find(isShown)?.value ?? "";
   }
 
   /** Sweep and continuation from the base; then continuations of what no branch explains. */
@@ -157,12 +152,9 @@ export class MotionsTab extends RequestTab {
   draw() {
     const {branches, attractors, specials} = this.motions;
     this.plot.draw({quantity: this.quantity.value});
-    const parts = [
-      `${count(attractors.length, "run")} from several starts`,
-      `${branches.length} ${branches.length === 1 ? "branch" : "branches"}`,
-      count(specials.length, "special point"),
-    ];
-    const text = parts.join(", ");
+    const runs = `${count(attractors.length, "run")} from several starts`;
+    const found = `${branches.length} ${branches.length === 1 ? "branch" : "branches"}`;
+    const text = joined([runs, found, count(specials.length, "special point")]);
     setTexts({"motions-count": text});
     const {title} = quantities[this.quantity.value];
     makeAccessible({node: this.plot.canvas}, `${title} of all motions: ${text}`);
@@ -170,7 +162,6 @@ export class MotionsTab extends RequestTab {
     this.place(this.plot.marked);
   }
 
-  /** Lists the special points; each opens its orbit. */
   listSpecials() {
     const {parameter} = this.motions.request;
     const head = ["special point", labels.label(parameter), "branch", "largest |x| (mm)", "reason"];
@@ -190,15 +181,13 @@ export class MotionsTab extends RequestTab {
     if (value == null) return;
     const {title, unit, of} = quantities[this.quantity.value];
     const found = this.motions.distinctAt(value).map((orbit) => {
-      const text =
-        `${orbit.stable ? "stable" : "unstable"}, ${title} ${short(of(orbit))} ${unit}`.trim();
+      const stability = orbit.stable ? "stable" : "unstable";
+      const text = `${stability}, ${title} ${short(of(orbit))} ${unit}`.trim();
       return Object.assign(button(text, null, {className: "small"}), {orbit});
     });
     const where = `At ${labels.fields({[parameter]: value})}:`;
-    $("motions-at").replaceChildren(
-      element("b", {}, where),
-      ...(found.length ? found : [" no orbit"]),
-    );
+    const orbits = found.length ? found : [" no orbit"];
+    $("motions-at").replaceChildren(element("b", {}, where), ...orbits);
   }
 
   about() {

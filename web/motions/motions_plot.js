@@ -1,5 +1,4 @@
-// The diagram of all motions: dots for what the system settles on, lines for branches of periodic
-// orbits, named special points, and a marker of the parameter.
+// The diagram of all motions, with named special points and a marker of the parameter.
 import {element, on, showAsSlider} from "../shared/dom.js";
 import {Frame, rangeOf} from "../shared/frame.js";
 import {curve, dots, texts} from "../shared/marks.js";
@@ -145,26 +144,24 @@ export class MotionsPlot extends ZoomablePlot {
     });
   }
 
-  /** {names, columns} of all motions in view. */
+  /** {names, rows} of all motions in view. */
   numbers() {
     const {attractors, branches, request} = this.motions;
-    const rows = [
-      ...branches.flatMap((list, k) =>
-        list.map((orbit) => [orbit, `branch ${k + 1}, ${orbit.stable ? "" : "un"}stable`]),
-      ),
+    const stability = ({stable}) => `${stable ? "" : "un"}stable`;
+    const all = [
+      ...branches.flatMap((list, k) => list.map((m) => [m, `branch ${k + 1}, ${stability(m)}`])),
       ...attractors.map((motion) => [motion, motion.verdict ?? "–"]),
-    ].filter(([{value}]) => this.viewport.holds(value));
+    ];
+    const {parameter} = request;
+    const shown = Object.values(quantities);
+    const row = ([motion, kind]) => [
+      labels.number(parameter, motion.value),
+      ...shown.map(({of}) => of(motion)),
+      kind,
+    ];
     return {
-      names: [
-        labels.label(request.parameter),
-        ...Object.values(quantities).map(({label}) => label),
-        "kind",
-      ],
-      columns: [
-        rows.map(([{value}]) => labels.number(request.parameter, value)),
-        ...Object.values(quantities).map(({of}) => rows.map(([orbit]) => of(orbit))),
-        rows.map(([, kind]) => kind),
-      ],
+      names: [labels.label(parameter), ...shown.map(({label}) => label), "kind"],
+      rows: all.filter(([{value}]) => this.viewport.holds(value)).map(row),
     };
   }
 }

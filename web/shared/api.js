@@ -41,9 +41,7 @@ async function enteredKey() {
   $("key-rejected").hidden = !hasKey();
   dialog.returnValue = "";
   dialog.showModal();
-  await new Promise((resolve) => {
-    dialog.onclose = resolve;
-  });
+  await new Promise((resolve) => dialog.addEventListener("close", resolve, {once: true}));
   const entered = dialog.returnValue !== ""; // the form was valid
   if (entered) sessionStorage.setItem(keyName, $("key-text").value.trim());
   return entered;
@@ -51,8 +49,7 @@ async function enteredKey() {
 
 /** Sends a request and returns its response. Asks for an API key while the service answers 401. */
 export async function sendRequest(path, options = {}) {
-  // The first response can be one that the browser preloaded, without a key: a stored key is
-  // therefore tried once more.
+  // The first response can be preloaded, without a key: a stored key is tried once more.
   let sent = null;
   let response = await fetchWithKey(path, options);
   // A key typed for another request in the meantime is tried before asking again.
@@ -87,13 +84,9 @@ export const simulate = postingJson("v1/simulate");
 export const identify = async (query, record, signal) =>
   read(await post(`v1/identify?${query}`, record, signal, "text/csv"));
 
-/** Identifies parameters from a record that is part of the JSON fields. */
 export const identifyJson = postingJson("v1/identify");
 
-/**
- * Posts a request and yields the lines of its response, as jsonLines. Throws what a line of type
- * "error" reports.
- */
+/** Posts a request and yields its jsonLines. Throws what a line of type "error" reports. */
 export async function* linesOf(path, request, signal) {
   const response = await post(path, JSON.stringify(request), signal);
   if (!response.ok) await read(response);
@@ -106,10 +99,7 @@ export async function* linesOf(path, request, signal) {
 const quoted = (text) => `'${text.replaceAll("'", "'\\''")}'`;
 export const absoluteUrl = (path) => new URL(path, location.href.split("?")[0]).href;
 
-/**
- * A curl command that posts `body` as JSON, for which the service needs no Content-Type, or the
- * file of the name `file`; a GET without both.
- */
+/** A curl command that posts `body` as JSON, or the file of a name; a GET without both. */
 export function asCurl({path, body, file, type}, flags = "-s") {
   const url = absoluteUrl(path);
   if (body) return `curl ${flags} ${url} -d ${quoted(JSON.stringify(body))}`;
@@ -118,10 +108,7 @@ export function asCurl({path, body, file, type}, flags = "-s") {
   return `curl ${flags} ${address} -H 'Content-Type: ${type}' --data-binary ${quoted(`@${file}`)}`;
 }
 
-/**
- * Yields {text, value} for each line of a stream. Lines and UTF-8 characters can be split across
- * chunks; an incomplete last line is dropped. Throws TemporaryError if the stream breaks.
- */
+/** Yields {text, value} of each complete line. Throws TemporaryError if the stream breaks. */
 async function* jsonLines(stream) {
   const reader = stream.pipeThrough(new TextDecoderStream()).getReader();
   let partial = "";

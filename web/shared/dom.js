@@ -9,10 +9,7 @@ export const countUp = (node, what = "done") => {
 };
 
 /** Lets the browser handle pending events before the work continues. */
-export const nextTask = () =>
-  new Promise((resolve) => {
-    setTimeout(resolve);
-  });
+export const nextTask = () => new Promise((resolve) => setTimeout(resolve));
 
 export const element = (tag, properties = {}, ...children) => {
   const node = Object.assign(document.createElement(tag), properties);
@@ -67,10 +64,7 @@ export const sayIn =
     $(id).classList.toggle("fault", fault);
   };
 
-/**
- * read(file) gets a file that is dropped on a panel or chosen in the input of `zone`, which shows the
- * dragging.
- */
+/** read(file) gets a file that is dropped on a panel or chosen in the input of `zone`. */
 export function onFile(panel, zone, read) {
   zone.querySelector("input").onchange = ({target}) => read(target.files[0]);
   const drag = (event) => {
@@ -87,10 +81,7 @@ export function choose(menu, value) {
   if (menu.selectedIndex < 0) menu.selectedIndex = 0;
 }
 
-/**
- * Replaces the entries, [value, text] or [value] each. The selected value is kept where possible,
- * unless `wish` names another.
- */
+/** Sets entries, [value, text] or [value] each; keeps the selected one unless `wish` differs. */
 export function fillMenu(menu, entries, wish = menu.value) {
   menu.replaceChildren(...entries.map(([value, text = value]) => new Option(text, value)));
   choose(menu, wish);
@@ -104,17 +95,12 @@ export const keyOf = (mark, colour, ...what) => {
   return key;
 };
 
-// Lists of labelled values, remarks and warnings; tables of texts.
 /** Shows entries [term, value, remark] as cards in a <dl>. */
 export function cards(list, entries) {
   const card = ([term, value, remark]) => {
     const small = element("small", {}, remark ? ` ${remark}` : "");
-    return element(
-      "div",
-      {className: "box"},
-      element("dt", {}, term),
-      element("dd", {}, value, small),
-    );
+    const parts = [element("dt", {}, term), element("dd", {}, value, small)];
+    return element("div", {className: "box"}, ...parts);
   };
   list.replaceChildren(...entries.map(card));
 }
@@ -130,16 +116,13 @@ export function showRemarks(id, remarks) {
 export const listWarnings = (list, warnings) =>
   list.replaceChildren(...warnings.map((w) => element("li", {}, w)));
 
-const row = (tag, cells) =>
-  element("tr", {}, ...cells.map((textContent) => element(tag, {textContent})));
+const row = (tag, cells) => element("tr", {}, ...cells.map((cell) => element(tag, {}, cell)));
 
-/** Head and body of a table. */
 export const tableOf = (names, rows) => [
   element("thead", {}, row("th", names)),
   element("tbody", {}, ...rows.map((cells) => row("td", cells))),
 ];
 
-/** Saves a blob under a file name. */
 export function save(blob, name) {
   const url = URL.createObjectURL(blob);
   element("a", {href: url, download: name}).click();

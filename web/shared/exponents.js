@@ -8,11 +8,7 @@ const styles = [{width: 2}, {}, {dash: [7, 3]}, {dash: [2, 3]}];
 
 const absent = (status, ended) => (ended && status === "minus_infinity" ? "−∞" : "");
 
-/**
- * Lines of the history of an estimator: four exponents and, if present, the rounding floor. An
- * exponent of minus infinity has no line; its legend shows −∞. along(tau, columns) returns the columns
- * of the plot, its time first; estimator: undefined if it was not requested.
- */
+/** Exponents and rounding floor of an estimator as lines; along(tau, columns): time first. */
 export function exponentMarks({history, status = []} = {}, along) {
   const series = styles.map((style, k) => ({
     colour: `c${k + 1}`,

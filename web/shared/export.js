@@ -1,5 +1,4 @@
-// Export of a plot: a dialog with its numbers as a table and as CSV, and its picture as PNG and SVG
-// with title and parameters.
+// Export of a plot: a dialog with its numbers as a table and CSV, its picture as PNG and SVG.
 import {$, attributes, button, element, save, setTexts, tableOf} from "./dom.js";
 import {font} from "./frame.js";
 import {drawText, ink} from "./ink.js";
@@ -25,7 +24,7 @@ function drawPicture(c, plot, {title, caption}) {
 }
 
 function asSvg(plot, about) {
-  const pen = new SvgPen(size.width, size.height);
+  const pen = new SvgPen();
   drawPicture(pen, plot, about);
   return pen.text();
 }
@@ -43,25 +42,17 @@ const quoted = (text) => (/[",\n]/.test(text) ? `"${text.replaceAll('"', '""')}"
 
 const written = (value) => (typeof value === "string" ? value : short(value));
 
-const rowsOf = ([first, ...others], most = Infinity) =>
-  first.slice(0, most).map((v, i) => [v, ...others.map((column) => column[i])]);
-
-function csv({names, columns}) {
-  const lines = [names.map(quoted), ...rowsOf(columns)].map((row) => row.join(","));
-  return `${lines.join("\n")}\n`;
-}
-
 function show(plot, about) {
   const {title, caption, summary, name} = about;
-  const data = plot.numbers();
-  const total = data.columns[0].length;
-  const cut = total > rowsShown ? `the first ${rowsShown} of ${total} visible rows` : "";
-  const note = joined([caption, cut], " · ");
+  const {names, rows} = plot.numbers();
+  const cut = `the first ${rowsShown} of ${rows.length} visible rows`;
+  const note = joined([caption, rows.length > rowsShown && cut], " · ");
   setTexts({"data-title": title, "data-summary": summary, "data-note": note});
-  const rows = rowsOf(data.columns, rowsShown).map((values) => values.map(written));
-  $("data-table").replaceChildren(...tableOf(data.names, rows));
+  const shown = rows.slice(0, rowsShown).map((values) => values.map(written));
+  $("data-table").replaceChildren(...tableOf(names, shown));
+  const csv = () => [names.map(quoted), ...rows].map((row) => `${row.join(",")}\n`);
   const files = {
-    csv: () => new Blob([csv(data)], {type: "text/csv"}),
+    csv: () => new Blob(csv(), {type: "text/csv"}),
     svg: () => new Blob([asSvg(plot, about)], {type: "image/svg+xml"}),
     png: () => asPng(plot, about),
   };
@@ -80,14 +71,13 @@ export function captionOf(figure) {
   return {title: own.textContent.trim(), notes: notes.map((node) => node.textContent).join(" ")};
 }
 
-const nameOf = (figure) => figure.ariaLabel ?? captionOf(figure).title;
-
 /** Adds the export button to a plot's caption. about() returns {title, caption, summary, name}. */
 export function addExportButton(figure, plot, about) {
+  const name = figure.ariaLabel ?? captionOf(figure).title;
   const menu = button("⋯", () => show(plot, about()), {
     className: "menu",
     title: "numbers, CSV, SVG, PNG",
-    ariaLabel: `${nameOf(figure)}: data and pictures`,
+    ariaLabel: `${name}: data and pictures`,
   });
   figure.querySelector("figcaption").append(menu);
 }
@@ -117,21 +107,9 @@ class SvgPen {
   path = "";
   saved = [];
 
-  constructor(width, height) {
-    const viewBox = `0 0 ${width} ${height}`;
-    this.root = this.group = svg("svg", {width, height, viewBox});
-  }
-
-  text() {
-    return new XMLSerializer().serializeToString(this.root);
-  }
-
-  save() {
-    this.saved.push({...this});
-  }
-
-  restore() {
-    Object.assign(this, this.saved.pop());
+  constructor() {
+    const viewBox = `0 0 ${size.width} ${size.height}`;
+    this.root = this.group = svg("svg", {...size, viewBox});
   }
 
   /** Puts what follows into a group, until restore(). */
@@ -141,43 +119,31 @@ class SvgPen {
     this.group = group;
   }
 
-  translate(x, y) {
-    this.within({transform: `translate(${x} ${y})`});
+  to(command, ...numbers) {
+    this.path += command + numbers.map(fixed).join(" ");
   }
 
-  rotate(angle) {
-    this.within({transform: `rotate(${(angle * 180) / Math.PI})`});
+  /** Adds an element with the current opacity. */
+  add(tag, all, ...children) {
+    const opacity = this.globalAlpha < 1 ? this.globalAlpha : null;
+    this.group.append(svg(tag, {...all, opacity}, ...children));
   }
+
+  text = () => new XMLSerializer().serializeToString(this.root);
+  save = () => this.saved.push({...this});
+  restore = () => Object.assign(this, this.saved.pop());
+  translate = (x, y) => this.within({transform: `translate(${x} ${y})`});
+  rotate = (angle) => this.within({transform: `rotate(${(angle * 180) / Math.PI})`});
+  setLineDash = (dash) => Object.assign(this, {dash});
+  beginPath = () => Object.assign(this, {path: ""});
+  moveTo = (x, y) => this.to("M", x, y);
+  lineTo = (x, y) => this.to(this.path ? "L" : "M", x, y); // the first call starts the path
+  closePath = () => this.to("z");
 
   clip() {
     const id = `clip${this.root.querySelectorAll("clipPath").length}`;
     this.group.append(svg("clipPath", {id}, svg("path", {d: this.path})));
     this.within({"clip-path": `url(#${id})`});
-  }
-
-  setLineDash(dash) {
-    this.dash = dash;
-  }
-
-  beginPath() {
-    this.path = "";
-  }
-
-  to(command, ...numbers) {
-    this.path += command + numbers.map(fixed).join(" ");
-  }
-
-  moveTo(x, y) {
-    this.to("M", x, y);
-  }
-
-  /** Draws a line from the current point; the first call starts the path. */
-  lineTo(x, y) {
-    this.to(this.path ? "L" : "M", x, y);
-  }
-
-  closePath() {
-    this.to("z");
   }
 
   /** A full circle. */
@@ -190,12 +156,6 @@ class SvgPen {
     const [right, bottom] = [x + width, y + height];
     this.to("M", x, y, right, y, right, bottom, x, bottom);
     this.closePath();
-  }
-
-  /** Adds an element with the current opacity. */
-  add(tag, all, ...children) {
-    const opacity = this.globalAlpha < 1 ? this.globalAlpha : null;
-    this.group.append(svg(tag, {...all, opacity}, ...children));
   }
 
   stroke() {

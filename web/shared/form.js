@@ -1,5 +1,4 @@
-// A form built from the field table of /v1/parameters. An empty input stands for its default, which
-// the placeholder shows.
+// A form built from a field table of /v1/parameters; the placeholder shows the default of a field.
 import {element} from "./dom.js";
 import {toNumber} from "./numbers.js";
 import {symbolOf} from "./quantities.js";
@@ -20,13 +19,13 @@ export const groups = {
   run: ["Run", true],
   output: ["Output", false],
 };
+const {system, reduced, SI, laws, load, start} = groups;
+const ofSystem = {system, reduced, SI, laws, start};
 /** True for fields of /v1/parameters that affect the motion. */
 export const isOfMotion = (field) =>
-  ["system", "reduced", "SI", "laws", "load", "start"].includes(field?.group) ||
-  ["tau_end", "cycles"].includes(field?.name);
+  field?.group in {...ofSystem, load} || ["tau_end", "cycles"].includes(field?.name);
 
-// The page chooses `include` and never shows a perturbed run. A preset without choices has a menu
-// outside the form.
+// The page chooses `include`, and has a menu outside the form for a preset without choices.
 const hidden = new Set(["include", "perturbation"]);
 const isShown = ({name, choices}) => !hidden.has(name) && (name !== "preset" || choices);
 
@@ -153,10 +152,7 @@ function placeholderOf(field) {
   return note || textOf(shown(field, field.default ?? "")) || typeOf(field).hint || "";
 }
 
-/**
- * A type whose input is a text, which read() converts to a value for JSON. The last digits of a value
- * that was set, or most of a long list, may not show: it is kept in field.exact.
- */
+/** A type whose input is a text; field.exact keeps a value whose text is shorter. */
 const typed = (read, more) => ({
   read,
   make: (field) =>
@@ -184,9 +180,8 @@ const typed = (read, more) => ({
   ...more,
 });
 
-// Types of fields: make(field) creates the input, get(field) returns its value (undefined for the
-// default), set(field, value) sets it, without a value to the default, suggest(field, text) shows what an
-// empty one stands for. `hint` is the placeholder of a text without default.
+// Types of fields: make(field) creates the input, get(field) returns its value, undefined for the
+// default, set(field, value) sets it, suggest(field, text) shows the default. hint: without one.
 const types = {
   choice: {
     wide: true,
@@ -256,6 +251,11 @@ function showOrigin({origin}, title = "") {
   Object.assign(origin, {textContent: originText(title), title});
 }
 
+function setField(field, value) {
+  typeOf(field).set(field, value);
+  showOrigin(field);
+}
+
 /** On a small screen the groups are closed at first, because the results lie below them. */
 export const smallScreen = matchMedia("(max-width: 60rem)").matches;
 
@@ -264,9 +264,8 @@ export class Form {
   replaced = [];
 
   /**
-   * prefix: of ids, since a page can have several forms; grouped: the groups to show. A field's
-   * `label` is shown in place of its name. `fields` holds the shown ones, each with its factor, and its
-   * elements: row, input, origin, error.
+   * prefix: of ids; grouped: the groups to show. `fields` holds the shown ones, whose `label`
+   * replaces their name, each with its factor and its elements: row, input, origin, error.
    */
   constructor(container, fields, {prefix = "", grouped = groups} = {}) {
     this.prefix = prefix;
@@ -301,8 +300,8 @@ export class Form {
     const unit = factor === field.factor ? own : field.unit;
     const shownUnit = element("span", {className: "unit"}, unit && `, ${unit}`);
     const named = element("span", {}, symbolOf(title).replaceAll("_", " "), shownUnit);
-    const ends = [minimum, maximum].map((v) => shown(field, v));
-    const range = minimum === undefined ? "" : ` [${ends.join(" to ")}]`;
+    const [least, most] = [minimum, maximum].map((v) => shown(field, v));
+    const range = minimum === undefined ? "" : ` [${least} to ${most}]`;
     const label = element(
       type === "choices" ? "div" : "label",
       {title: `${title}: ${field.description}${range}`},
@@ -316,18 +315,24 @@ export class Form {
     return row;
   }
 
-  /** The input of a field. */
   input(name) {
     return this.named.get(name).input;
   }
 
   /** Fields that differ from their defaults, for JSON. */
   values() {
-    const values = this.fields.map((field) => [
-      field.name,
-      field.input.disabled ? undefined : typeOf(field).get(field),
-    ]);
+    const given = this.fields.filter(({input}) => !input.disabled);
+    const values = given.map((field) => [field.name, typeOf(field).get(field)]);
     return Object.fromEntries(values.filter(([, value]) => value !== undefined));
+  }
+
+  /** The values by their part of the request. */
+  parted() {
+    const values = this.values();
+    const parts = {base: {}};
+    for (const {name, label = name, part} of this.fields)
+      if (name in values) parts[part] = {...parts[part], [label]: values[name]};
+    return parts;
   }
 
   /** The values of texts by the names of fields, for JSON. */
@@ -341,10 +346,7 @@ export class Form {
   }
 
   set(values) {
-    for (const field of this.fields) {
-      typeOf(field).set(field, fromQuery(values[field.name]));
-      showOrigin(field);
-    }
+    for (const field of this.fields) setField(field, fromQuery(values[field.name]));
     this.unfold(values);
     this.updateDisabled();
     this.showErrors([]);
@@ -375,9 +377,7 @@ export class Form {
 
   /** Sets a value and clears its origin. */
   replace(name, value) {
-    const field = this.named.get(name);
-    typeOf(field).set(field, value);
-    showOrigin(field);
+    setField(this.named.get(name), value);
     this.updateDisabled();
   }
 
@@ -393,9 +393,8 @@ export class Form {
   /** The group that no field can be given of: a system is given either in SI or reduced. */
   get excludedGroup() {
     const given = (f) => this.filled(f.name) || this.replaced.includes(f.name);
-    const [si, reduced] = ["SI", "reduced"].map((group) =>
-      this.fields.some((f) => f.group === group && given(f)),
-    );
+    const isGiven = (group) => this.fields.some((f) => f.group === group && given(f));
+    const [si, reduced] = ["SI", "reduced"].map(isGiven);
     if (si === reduced) return null;
     return si ? "reduced" : "SI";
   }
@@ -403,16 +402,14 @@ export class Form {
   /** Disables fields that are set elsewhere, follow from another field or cannot be combined. */
   updateDisabled() {
     const {excludedGroup} = this;
-    for (const {name, group, input, row} of this.fields) {
+    for (const {name, group, input} of this.fields) {
       const other = others[name];
       const follows = !this.filled(name) && (this.filled(other) || group === excludedGroup);
-      const off = follows || [name, other].some((each) => this.replaced.includes(each));
-      input.disabled = off;
-      row.classList.toggle("off", off);
+      input.disabled = follows || [name, other].some((each) => this.replaced.includes(each));
     }
   }
 
-  /** The field of an error; of one in the base of a request or in its only axis, too. */
+  /** The field of an error, also in the base of a request or in its only axis. */
   nameOf({pointer}) {
     return pointer.replace(/^\/(base|axes\/0)(?=\/)/, "").split("/")[1];
   }
@@ -441,18 +438,11 @@ export class Form {
   }
 }
 
-const {system, reduced, SI, laws, start} = groups;
-const ofSystem = {system, reduced, SI, laws, start};
-
-/**
- * A form with the fields of a system, which are the `base` of its request, and of parameters that
- * vary, whose ends are typed in the unit of the parameter.
- */
+/** A form with the fields of a system, the `base` of its request, and of parameters that vary. */
 export class BaseForm extends Form {
   /**
-   * tables: the answer of /v1/parameters, and presets. grouped: the groups above those of the
-   * system; own(names): their fields, each with its `part` of the request; names: of the parameters
-   * that can vary.
+   * grouped: the groups above those of the system; own(names): their fields, each with its `part`
+   * of the request; names: of the parameters that can vary.
    */
   constructor(container, {fields, presets}, prefix, grouped, own) {
     const choices = presets.map(({name}) => name);
@@ -463,15 +453,6 @@ export class BaseForm extends Form {
     const all = [...own([...parameters.keys()]), ...shared];
     super(container, all, {prefix, grouped: {...grouped, ...ofSystem}});
     this.parameters = parameters;
-  }
-
-  /** The values by their part of the request. */
-  parted() {
-    const values = this.values();
-    const parts = {base: {}};
-    for (const {name, label = name, part} of this.fields)
-      if (name in values) parts[part] = {...parts[part], [label]: values[name]};
-    return parts;
   }
 
   /** Sets the unit in which the ends of a range are typed to that of the parameter. */

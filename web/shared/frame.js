@@ -1,5 +1,4 @@
-// Frame of a plot: the mapping from values to pixels, grid lines and labels. Draws with any object
-// that has the methods of a canvas context.
+// Frame of a plot: the mapping from values to pixels, grid lines and labels.
 import {colour, drawText, drawTextUpwards, ink, stroke} from "./ink.js";
 import {clamp, minus, shortTo} from "./numbers.js";
 
@@ -59,10 +58,9 @@ const sharp = (px) => Math.round(px) + 0.5;
 
 export class Frame {
   /**
-   * width, height: px. x, y: {range, log, label, factor, bare, labels}: visible range, logarithmic
-   * scale, name of the axis, factor of its numbers, and labels(min, max), which returns [{at, text}]
-   * in place of round numbers; x.bare: a small plot has numbers at the left only. beside, above: px
-   * at the right and at the top.
+   * x, y: {range, log, label, factor, bare, labels}: visible range, logarithmic scale, name of the
+   * axis, factor of its numbers, numbers at the left only, and labels(min, max), which returns
+   * [{at, text}] in place of round numbers. beside, above: px at the right and at the top.
    */
   constructor(width, height, x, y, beside = 10, above = 5) {
     const [left, top, right] = [x.bare ? 36 : 58, above, width - beside];

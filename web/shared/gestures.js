@@ -1,5 +1,4 @@
-// Pointing at and zooming into a plot with mouse, touch and keyboard. A plot has a viewport for
-// x and can have one for y.
+// Pointing at and zooming into a plot, over x and possibly y, with mouse, touch and keyboard.
 import {attributes, element, on, showAsSlider} from "./dom.js";
 import {clamp, short} from "./numbers.js";
 
@@ -12,36 +11,23 @@ const rightwards = {client: "clientX", start: "left", size: "width"};
 const upwards = {client: "clientY", start: "top", size: "height", turned: true};
 
 /** A viewport along a direction of the screen. */
-class Direction {
-  constructor(over, viewport, direction) {
-    Object.assign(this, {over, viewport, ...direction});
-  }
-
-  /**
-   * Position of an event: `place` in px from the start of the plot, `all`: the length of the plot
-   * in px, `share`: the fraction of the visible range before it, `value` on the axis.
-   */
-  at(event) {
-    const box = this.over.getBoundingClientRect();
-    const all = box[this.size] || 1;
-    const place = event[this.client] - box[this.start];
-    const share = this.turned ? 1 - place / all : place / all;
-    return {all, place, share, value: this.viewport.range[0] + share * this.viewport.width};
-  }
-
-  /** Distance of two events in px. */
-  between(one, other) {
-    return Math.abs(other[this.client] - one[this.client]);
-  }
+function along(over, viewport, {client, start, size, turned}) {
+  /** `place` of an event in px, of `all` px; its `share` of the visible range; `value`. */
+  const at = (event) => {
+    const box = over.getBoundingClientRect();
+    const all = box[size] || 1;
+    const place = event[client] - box[start];
+    const share = turned ? 1 - place / all : place / all;
+    return {all, place, share, value: viewport.range[0] + share * viewport.width};
+  };
+  const between = (one, other) => Math.abs(other[client] - one[client]); // px
+  return {viewport, start, size, at, between};
 }
 
-/**
- * Calls click(x, reach, {top, y, touch}) on a click. reach: 6 px in units of the axis; top: px in
- * the plot; y: value on the vertical axis, if there is one.
- */
+/** Calls click(x, reach: 6 px on the axis, {top: px, y, touch}) on a click. */
 export function listen(over, viewport, click, across = null) {
-  const x = new Direction(over, viewport, rightwards);
-  const y = new Direction(over, across ?? viewport, upwards);
+  const x = along(over, viewport, rightwards);
+  const y = along(over, across ?? viewport, upwards);
   // The vertical axis moves first: listeners on the horizontal cursor read the vertical one.
   const plot = {over, viewport, across, directions: across ? [y, x] : [x]};
   const where = (event, touch) => {
@@ -53,33 +39,28 @@ export function listen(over, viewport, click, across = null) {
   followWheel(plot);
   followFingers(plot);
   over.addEventListener("dblclick", () => {
-    for (const direction of plot.directions) direction.viewport.reset();
+    for (const {viewport: each} of plot.directions) each.reset();
   });
 }
 
 /** Moves the cursor to the pointer. */
 function pointAt({directions}, event, by) {
-  for (const direction of directions) direction.viewport.point(direction.at(event).value, by);
+  for (const {viewport, at} of directions) viewport.point(at(event).value, by);
 }
 
 const ordered = (a, b) => (a < b ? [a, b] : [b, a]);
 const isMouse = (event) => event.pointerType === "mouse";
-const isZoomed = ({directions}) => directions.some((direction) => direction.viewport.zoomed);
+const isZoomed = ({directions}) => directions.some(({viewport}) => viewport.zoomed);
 
-/**
- * A drag zooms and does not end in a click. A double click shows the full range and does not count
- * as two clicks.
- */
+/** A drag zooms and does not end in a click; a double click does not count as two clicks. */
 function followMouse(plot, where, click) {
   const {over, directions} = plot;
   const selection = element("div", {className: "selection", hidden: true});
   over.append(selection);
   let from = null;
   let waiting = 0;
-  const moved = (event) =>
-    Math.max(...directions.map((direction) => direction.between(from, event)));
-  const isAlong = (direction, event) =>
-    direction.between(from, event) >= Math.min(slim, moved(event));
+  const moved = (event) => Math.max(...directions.map(({between}) => between(from, event)));
+  const isAlong = ({between}, event) => between(from, event) >= Math.min(slim, moved(event));
   const select = (event) => {
     selection.hidden = moved(event) < jitter;
     for (const direction of directions) {
@@ -118,10 +99,7 @@ function followMouse(plot, where, click) {
   });
 }
 
-/**
- * With Ctrl, or while the plot has the focus, the wheel zooms, or scrolls sideways; zooming out of
- * the full range scrolls the page. Otherwise the wheel scrolls the page and a hint names the keys.
- */
+/** With Ctrl or the focus the wheel zooms, or scrolls sideways; otherwise a hint names the keys. */
 function followWheel(plot) {
   const {over, viewport, directions} = plot;
   const hint = element("p", {className: "hint", textContent: "Ctrl + wheel zooms", hidden: true});
@@ -139,8 +117,8 @@ function followWheel(plot) {
     const lines = deltaMode ? 16 : 1;
     if (sideways) viewport.pan(((deltaX || deltaY) * lines) / over.clientWidth);
     else
-      for (const direction of directions)
-        direction.viewport.zoomAt(direction.at(event).value, Math.exp(-0.0022 * lines * deltaY));
+      for (const {viewport: each, at} of directions)
+        each.zoomAt(at(event).value, Math.exp(-0.0022 * lines * deltaY));
   };
   over.addEventListener("wheel", zoom, {passive: false});
 }
@@ -153,7 +131,7 @@ function followFingers(plot) {
   const span = () => {
     const [a, b = a] = fingers.values();
     const middle = (client) => (a[client] + b[client]) / 2;
-    const apart = Math.hypot(...directions.map((direction) => direction.between(a, b)));
+    const apart = Math.hypot(...directions.map(({between}) => between(a, b)));
     return {clientX: middle("clientX"), clientY: middle("clientY"), width: Math.max(apart, 8)};
   };
   const ends = (event) => fingers.delete(event.pointerId);
@@ -173,9 +151,9 @@ function followFingers(plot) {
       fingers.set(event.pointerId, event);
       const now = span();
       if (fingers.size < 2 && !isZoomed(plot)) return pointAt(plot, event, "pointer");
-      for (const direction of directions) {
-        direction.viewport.pan(direction.at(old).share - direction.at(now).share);
-        direction.viewport.zoomAt(direction.at(now).value, now.width / old.width);
+      for (const {viewport, at} of directions) {
+        viewport.pan(at(old).share - at(now).share);
+        viewport.zoomAt(at(now).value, now.width / old.width);
       }
     },
     pointerup: ends,
@@ -183,10 +161,7 @@ function followFingers(plot) {
   });
 }
 
-/**
- * Keys of a plot: arrows move the cursor (with Shift faster), + and − zoom about it, Page Up and
- * Page Down scroll, 0 and Escape reset the zoom, n and p jump to the next and the previous impact.
- */
+/** Keys of a plot; impacts() returns the times for n and p, the next and the previous impact. */
 function followKeys(node, viewport, impacts) {
   const now = () => viewport.cursor ?? viewport.range[0];
   const go = (to) => to !== undefined && viewport.point(to);
@@ -214,10 +189,7 @@ function followKeys(node, viewport, impacts) {
   });
 }
 
-/**
- * Names a plot for screen readers. A plot over a shared axis, `viewport`, also gets the keys of
- * followKeys and the slider role; moments() returns the impact times for n and p.
- */
+/** Names a plot for screen readers; with a `viewport` it is a slider with keys. */
 export function makeAccessible({node}, name, moments, viewport) {
   attributes(node, {"aria-label": name, role: viewport ? "slider" : "img"});
   if (!viewport) return;

@@ -1,5 +1,4 @@
-// Runs one computation at a time, that of the newest request. Older ones are aborted or never
-// start.
+// Runs one computation at a time, that of the newest request; older ones are aborted.
 import {TemporaryError} from "./api.js";
 import {$, attributes, sayIn} from "./dom.js";
 import {queryOf} from "./form.js";
@@ -18,11 +17,9 @@ const sleep = (seconds, signal) =>
 const isTemporary = (error) => error instanceof TemporaryError || error.status === 503;
 
 /**
- * ask(request, signal) returns the answer as a promise; show(answer, request, ms) can be
- * asynchronous; fail(error, request) gets permanent errors. Optional: busy(is, cancelled), called
- * when a computation takes longer than `lateAfter` and when it ends; later(text), called with a
- * message while attempts fail temporarily. They are given to the constructor or are methods of a
- * subclass.
+ * Has, as methods or given: ask(request, signal), which returns the answer; show(answer, request,
+ * ms); fail(error, request) for permanent errors. Optional: busy(is, cancelled), called when a
+ * computation takes longer than `lateAfter` and when it ends; later(text), while attempts fail.
  */
 export class Job {
   #running = null;
@@ -36,11 +33,7 @@ export class Job {
 
   later() {}
 
-  /**
-   * Starts a request; one that equals the running request gets its answer instead. dragging: one of
-   * many requests of a slider; the running one is then completed, so that intermediate results are
-   * shown.
-   */
+  /** Starts a request, which aborts an older one unless `dragging`; an equal one runs on. */
   start(request, {dragging = false} = {}) {
     const running = this.#running;
     const same = JSON.stringify(request) === running?.text;
@@ -97,19 +90,15 @@ export class Job {
   }
 }
 
-// A tab of the page: a form whose request is computed, and the results of the newest answer. This
-// is what the tabs share: message, cancel button, errors at fields, and the look of results that
-// belong to another request.
 /**
- * Subclasses have ask() and show() of a Job, and
+ * A tab of the page. Subclasses have ask() and show() of a Job, and
  * form: its showErrors(errors) shows errors at their fields and returns those without a field;
  * request(): what the form holds, {base, ...}; unless they override formQuery() and send();
  * open(query): shows the request of a query;
- * draw(): draws the results so far, if it uses drawSoon();
- * redraw(): draws in other colours.
+ * draw(): draws the results so far, if it uses drawSoon(); redraw(): draws in other colours.
  */
 export class RequestTab extends Job {
-  asked = null; // query of the request whose results are shown or computed; null before the first
+  asked = null; // query in the address, of the results shown or computed; null before the first
   #drawing = 0; // timer
   #cost = 0; // of drawing, ms
 
@@ -125,12 +114,10 @@ export class RequestTab extends Job {
     this.cancelButton.onclick = () => this.cancel();
   }
 
-  /** The query in the address. */
   query() {
     return this.asked;
   }
 
-  /** The query of the form's request. */
   formQuery() {
     const {base, ...own} = this.request();
     return queryOf({...own, ...base});

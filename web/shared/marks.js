@@ -1,6 +1,5 @@
 // Marks: what a plot draws over its frame. A mark is its options and draw(c, frame), where c is a
-// canvas context or an SvgPen. Marks are clipped to the plot, except those `above`, which are drawn
-// last. Each kind documents its options; all have `alpha`, and a `label` in legend and table.
+// canvas context or an SvgPen. All have `alpha` and a `label` in legend and table.
 import {element} from "./dom.js";
 import {font} from "./frame.js";
 import {drawText, ink, rgb, stroke} from "./ink.js";
@@ -37,7 +36,6 @@ export const line = kind((c, frame, {x, y, colour, width = 1, dash, dense}) => {
 /** Lines over common x; styles: further options of each. */
 export const lines = (x, columns, styles) => columns.map((y, k) => line({x, y, ...styles[k]}));
 
-/** Connects points directly. */
 function path(c) {
   let broken = true;
   const add = (px, py) => {
@@ -129,8 +127,8 @@ function hatch(c, left, top, width, height) {
 }
 
 /**
- * Rectangles over intervals [{from, to, colour, text, hatched}] of x, `height` px high and `down` px
- * below the upper edge. With `texts`, those that fit are written `textDown` px below it.
+ * Rectangles over intervals [{from, to, colour, text, hatched}] of x, `height` px high and `down`
+ * px below the upper edge. With `texts`, those that fit are written `textDown` px below it.
  */
 export const blocks = kind((c, {box, px, ...frame}, options) => {
   const {list, down = 0, height = frame.height, textDown = 0, size = 11, texts} = options;
@@ -211,10 +209,7 @@ export const dots = kind((c, frame, options) => {
   if (colour) finish(c, shape);
 });
 
-/**
- * Symbols at ascending x, smaller where there are many. Values out of range lie on the edge of the
- * plot; `clipped` symbols are cut there.
- */
+/** Symbols at ascending x, smaller if many; those out of range lie at the edge or are `clipped`. */
 export const symbols = kind(
   (c, frame, {x, y, colour, shape, size = 4, width = 1.3, clipped}) => {
     const {top, bottom} = frame.box;
@@ -279,8 +274,7 @@ export const texts = kind(
   {above: true},
 );
 
-// Images of pixels: maps, and densities, which count the points at each pixel. In a density a periodic
-// orbit appears as a few opaque dots, chaos as a cloud.
+// Images of pixels: maps, and densities, in which chaos appears as a cloud.
 
 /** A colour [red, green, blue] as a pixel. */
 export const pixel = ([r, g, b], alpha = 255) =>
@@ -297,11 +291,7 @@ function drawPixels(c, {box, width, height}, paint) {
   c.drawImage(canvas, box.left, box.top, width, height);
 }
 
-/**
- * Draws the number of rectangles at each pixel in one colour, whose opacity grows with the logarithm
- * of the number. count(add, round, height): add(left, top, right, bottom) counts a rectangle,
- * clipped to the plot; round(px): a length or position in device pixels, as all of these are.
- */
+/** Draws how often count(add, round) adds each device pixel, as add(left, top, right, bottom). */
 function drawDensity(c, frame, colour, count) {
   const ratio = devicePixelRatio; // read once: reading it is slower than counting
   drawPixels(c, frame, (pixels, width, height) => {

@@ -1,5 +1,4 @@
-// Exact motion of a run, reconstructed from its impacts. Between events it has a closed form, so
-// any zoom level and any moment can be drawn without another request.
+// Exact motion of a run, in closed form between its impacts: any zoom level without a request.
 import {clamp, lastUpTo} from "./numbers.js";
 
 // Samples per cycle of the faster of forcing and oscillator; fewer would show aliases.
@@ -18,7 +17,6 @@ export class Motion {
     );
     this.pieces = [];
     this.begin(phi, sticking);
-    /** Start times of the pieces. */
     this.starts = Float64Array.from(this.pieces, (piece) => piece.tau);
   }
 
@@ -57,7 +55,6 @@ export class Motion {
     this.add(to, left.state, left.y, left.y_dot);
   }
 
-  /** State of a piece at a later time. */
   stateOf(piece, tau) {
     const s = tau - piece.tau;
     const state = piece.flow.after(piece.state, s);
@@ -90,18 +87,7 @@ export class Motion {
     return lastUpTo(this.impacts.tau, tau);
   }
 
-  /** Index of the impact nearest to a time; -1 without impacts. */
-  impactNear(tau) {
-    const {tau: moments} = this.impacts;
-    const i = this.impactBefore(tau);
-    const later = i + 1 < moments.length && !(tau - moments[i] <= moments[i + 1] - tau);
-    return later ? i + 1 : i;
-  }
-
-  /**
-   * x and y - x in m over [from, to], two points per column. Short columns hold samples of the
-   * motion; otherwise (`dense`) each holds its minimum and maximum.
-   */
+  /** x and y - x in m, two points per column: samples or, if `dense`, minimum and maximum. */
   trace(from, to, columns) {
     const width = (to - from) / columns;
     const samples = Math.max(2, Math.ceil((width / this.shortest) * samplesPerCycle));
@@ -175,10 +161,8 @@ const terms = 22; // of the series; 1/22! is below 1e-21
 
 /** The linear map of advance(state), as a function that advances a state in place, but faster. */
 function mapOf(advance) {
-  const unit = (k) => [0, 1, 2, 3].map((i) => Number(i === k));
-  const [[xx, vx], [xv, vv], [xs, vs, cos, minusSin], [xc, vc]] = [0, 1, 2, 3].map((k) =>
-    advance(unit(k)),
-  );
+  const columns = [0, 1, 2, 3].map((k) => advance([0, 1, 2, 3].map((i) => Number(i === k))));
+  const [[xx, vx], [xv, vv], [xs, vs, cos, minusSin], [xc, vc]] = columns;
   return (state) => {
     const x = state[0]; // indexing is much faster than destructuring here
     const v = state[1];
@@ -248,10 +232,7 @@ class Flow {
   }
 }
 
-/**
- * A motion drawn from the samples of its series, where it has no closed form between impacts: with a
- * recorded load, gravity or friction. In between it is a cubic in each coordinate.
- */
+/** A motion without a closed form between impacts, as cubics between the samples of its series. */
 class SampledMotion extends Motion {
   constructor(given, load) {
     const answer = load ? relativeToBase(given, load) : given;
@@ -290,10 +271,7 @@ class SampledMotion extends Motion {
   }
 }
 
-/**
- * Returns base(tau): [displacement, velocity] of the base under a recorded load, in m and units of
- * tau. The base starts at rest; after the record it moves on.
- */
+/** Returns base(tau): [displacement in m, velocity per unit of tau] under a load, from rest. */
 function baseUnder({time_s: t, acceleration_m_s2: a, displacement_m: d}, omega0) {
   const v = [0];
   const x = [0];
@@ -368,9 +346,6 @@ function cubic(knots, name, i, tau) {
 const sampledLaws = ["gravity", "inclination", "friction", "mu", "forcing"];
 export const isSampled = (fields) => sampledLaws.some((name) => fields[name]);
 
-/**
- * The motion of an answer with impacts; with a series if isSampled(). With a recorded load of the
- * base it is relative to the base.
- */
+/** The motion of an answer with impacts, relative to the base under a recorded load of the base. */
 export const motionOf = (answer, load) =>
   answer.series ? new SampledMotion(answer, load) : new Motion(answer);

@@ -37,9 +37,7 @@ export const inMm = (metres, n = 4) =>
   metres == null ? short(metres) : `${shortTo(n, metres * 1000)} mm`;
 
 /** n decimals, or three significant digits where those would show zeros only. */
-export const digits = orDash((value, n = 4) =>
-  isSmall(value) ? value.toExponential(2) : value.toFixed(n),
-);
+export const digits = orDash((v, n = 4) => (isSmall(v) ? v.toExponential(2) : v.toFixed(n)));
 
 /** A value with its error, to two digits of the error. */
 export const withError = orDash((value, error, n) => {

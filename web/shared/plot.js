@@ -1,13 +1,11 @@
-// All plots. A plot is a canvas that is redrawn when its size changes, and a ring around one point,
-// which moves without redrawing. A plot of width zero (in a closed <details>) is drawn when it gets
-// a width.
+// All plots: a canvas that is redrawn when its size changes, and a ring around one point.
 import {element, keyOf, on} from "./dom.js";
 import {addExportButton, captionOf} from "./export.js";
 import {blank, Frame, font, rangeOf, Size} from "./frame.js";
 import {listen, makeAccessible} from "./gestures.js";
 import {drawText, ink} from "./ink.js";
 import {names} from "./marks.js";
-import {firstFrom, lastUpTo, nearest, short} from "./numbers.js";
+import {lastUpTo, nearest, short} from "./numbers.js";
 import {Viewport} from "./viewport.js";
 
 const small = 130; // px of height below which a plot has few labels
@@ -30,11 +28,7 @@ export class Plot {
   frame = null;
   lit = [];
 
-  /**
-   * canvas: fills its parent; node: named for screen readers; viewport: whose cursor the ring
-   * follows, if any. Subclasses implement prepare(width, height, alone), which returns {frame,
-   * marks}, or {empty} for a text in place of both, or null.
-   */
+  /** Subclasses have prepare(width, height, alone): {frame, marks}, {empty: a text} or null. */
   constructor(canvas, viewport, node = canvas) {
     Object.assign(this, {canvas, viewport, node});
     this.ring = element("div", {className: "lit", hidden: true});
@@ -94,10 +88,7 @@ export class Plot {
 
 /** A plot over a viewport. Plots that share a viewport zoom together and show one cursor. */
 export class ZoomablePlot extends Plot {
-  /**
-   * viewport: of x; across: of y, where the plot zooms in both directions. In addition to the
-   * methods of Plot, subclasses implement cursorText(cursor) and click(at, reach, {top, y, touch}).
-   */
+  /** across: of y. Subclasses have cursorText(cursor) and click(at, reach, {top, y, touch}). */
   constructor(container, viewport = new Viewport(), across = null) {
     const canvas = element("canvas");
     const over = element("div", {className: "over"});
@@ -127,8 +118,6 @@ export class ZoomablePlot extends Plot {
 
 const columnsOf = (width) => Math.max(width - 60, 10);
 
-const shortOrNone = (value) => (value === null ? "" : short(value));
-
 /** The marks with a label; they share x. */
 const seriesOf = (marks) => marks.filter(({label}) => label);
 
@@ -142,9 +131,9 @@ export class LinePlot extends ZoomablePlot {
   }
 
   /**
-   * x: {label, factor, aligned: numbers at the side as in large plots}; y: {range, log, label}, the range by default that of the series; span: [from,
-   * to] of the full axis, if this plot sets it; unit: of the series; click(x, reach): reach is 6 px
-   * in units of x; points: as in Plot.
+   * x: {label, factor, aligned: numbers at the side as in large plots}; y: {range, log, label}, the
+   * range by default that of the series; span: [from, to] of the full axis, if this plot sets it;
+   * unit: of the series; click(x, reach): reach is 6 px in units of x; points: as in Plot.
    *
    * marks: the labelled ones are series, whose text(value, ended) is their value in the legend; or
    * trace(from, to, columns), which returns the marks of the visible range, and samples(from, to),
@@ -189,16 +178,15 @@ export class LinePlot extends ZoomablePlot {
     return {frame, marks: [...under, ...marks, ...named]};
   }
 
-  /** {names, columns} of the visible range. */
+  /** {names, rows} of the visible range. */
   numbers() {
     const {x, marks, samples, unit} = this.last;
-    const [from, to] = this.viewport.range;
-    const series = seriesOf(marks ?? samples(from, to));
-    const time = series[0]?.x ?? [];
-    const part = ([...column]) => column.slice(firstFrom(time, from), lastUpTo(time, to) + 1);
+    const series = seriesOf(marks ?? samples(...this.viewport.range));
+    const time = [...(series[0]?.x ?? [])];
+    const row = (t, i) => [t * x.factor, ...series.map(({y}) => y[i])];
     return {
       names: [x.label, ...series.map(({label}) => (unit ? `${label} (${unit})` : label))],
-      columns: [part(time).map((t) => t * x.factor), ...series.map((one) => part(one.y))],
+      rows: time.map(row).filter((_, i) => this.viewport.holds(time[i])),
     };
   }
 
@@ -206,7 +194,8 @@ export class LinePlot extends ZoomablePlot {
   point() {
     super.point();
     const {cursor: t} = this.viewport;
-    seriesOf(this.last?.marks ?? []).forEach(({x, y, text = shortOrNone}, k) => {
+    const plain = (value) => (value === null ? "" : short(value));
+    seriesOf(this.last?.marks ?? []).forEach(({x, y, text = plain}, k) => {
       const i = t === null ? -1 : lastUpTo(x, t);
       const within = t > x[i] ? i + 1 : i; // a line has no value after its end
       const value = y[within] === null ? null : (y[i] ?? null);
@@ -250,9 +239,8 @@ export class ScatterPlot extends Plot {
   }
 
   /**
-   * Options of draw(): marks; x, y: {label, range}, the range by default that of the points; equal:
-   * same scale on both axes; empty: text shown without points; points: as in Plot; they can be
-   * picked where they have use(i, clicked).
+   * marks; x, y: {label, range}, the range by default that of the points; equal: scale on both
+   * axes; empty: text without points; points: as in Plot, picked where they have use(i, clicked).
    */
   prepare(width, height) {
     if (!this.last) return null;
@@ -267,12 +255,11 @@ export class ScatterPlot extends Plot {
     return {marks, frame: equal ? new Frame(width, height, ...sameScale(axes, frame)) : frame};
   }
 
-  /** {names, columns}: points and curves with their group. */
+  /** {names, rows}: points and curves with their group. */
   numbers() {
+    const rowsOf = ({x, y, colour, label = colour}) => x.map((v, i) => [v, y[i], label]);
     const {x, y} = this.last;
-    const all = (key) => this.groups.flatMap((group) => group[key]);
-    const labels = this.groups.flatMap((group) => group.x.map(() => group.label ?? group.colour));
-    return {names: [x.label, y.label, "group"], columns: [all("x"), all("y"), labels]};
+    return {names: [x.label, y.label, "group"], rows: this.groups.flatMap(rowsOf)};
   }
 
   /** Picks the point nearest to the pointer, preferably one whose time is in view. */
@@ -306,10 +293,7 @@ function sameScale(axes, {width, height}) {
 
 /** The plots inside an element by name: canvases are planes, the others lines over time. */
 export class PlotGroup {
-  /**
-   * prefix: of the ids, before the names; about(name, title): description, caption and file name of
-   * an exported plot; moments(): times of the impacts; planeKeys: whether planes have keys, too.
-   */
+  /** about(name): summary, caption and file name of an export; moments(): times of the impacts. */
   constructor(container, viewport, {prefix = "plot-", about, moments, planeKeys = true}) {
     this.all = {};
     for (const node of container.querySelectorAll(`[id^=${prefix}]`)) {

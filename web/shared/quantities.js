@@ -1,5 +1,4 @@
-// Quantities of sweep points: one table for menus, axes, colours and tooltips. Lengths are shown in
-// mm.
+// Quantities of sweep points, for menus, axes, colours and tooltips. Lengths are shown in mm.
 import {count, inMm, short, withError} from "./numbers.js";
 
 export const regimes = {
@@ -16,9 +15,8 @@ export const verdicts = {chaotic: "chaotic", regular: "regular", not_decided: "n
 /** True for a motion without contact; a free decay also has no verdict, but has impacts. */
 export const untouched = ({verdict, z}) => verdict === null && !z;
 /** Colour name of a point's verdict. */
-export const verdictColour = (p) => {
-  const {verdict} = p;
-  if (untouched(p)) return "untouched";
+export const verdictColour = ({verdict, z}) => {
+  if (untouched({verdict, z})) return "untouched";
   return verdict === "chaotic" || verdict === "regular" ? verdict : "undecided";
 };
 
@@ -119,7 +117,6 @@ export function otherMotion(p) {
   return {...m, lambda, x_rms_ratio: p.x_rms ? (p.x_rms_ratio * m.x_rms) / p.x_rms : null};
 }
 
-/** The best motion of a point, or the point itself. */
 export const bestMotion = (p) => otherMotion(p) ?? p;
 
 export const startNames = {
@@ -237,7 +234,6 @@ function describeStarts(p, where) {
   return second ? [[`from the ${second.start}`, `different: ${motion(second)}`]] : [];
 }
 
-/** The largest exponent with its standard error. */
 const exponentText = ({lambda, status, standard_error: errors}) =>
   status?.[0] === "minus_infinity" ? "−∞" : withError(lambda[0], errors?.[0], 4);
 

@@ -1,5 +1,4 @@
-// Terms that explain themselves: an element with data-term shows a sentence, the formula and a link
-// into the help, from the element `term-NAME` of the page, on hover, focus and touch.
+// Terms that explain themselves: the element `term-NAME` of the page, on hover, focus and touch.
 import {$, attributes, element, on} from "./dom.js";
 
 const box = element("div", {className: "tip term", id: "term", role: "tooltip", hidden: true});
@@ -18,13 +17,11 @@ function show({target}) {
   box.style.top = `${fits ? bottom : top - height}px`;
 }
 
-export function startTerms() {
-  document.body.append(box);
-  on(document, {
-    pointerover: show,
-    focusin: show,
-    keydown({key}) {
-      if (key === "Escape") box.hidden = true;
-    },
-  });
-}
+document.body.append(box);
+on(document, {
+  pointerover: show,
+  focusin: show,
+  keydown({key}) {
+    if (key === "Escape") box.hidden = true;
+  },
+});

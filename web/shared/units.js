@@ -1,5 +1,4 @@
-// Units of the results. A system given in SI is shown in s, mm/s, m/s², N s and J or, by choice, in
-// units of tau = omega0 t. Other systems are shown in units of tau.
+// Units of the results: SI (s, mm/s, m/s², N s, J) or, by choice or without SI, of tau = omega0 t.
 import {button, press} from "./dom.js";
 
 const key = "vines-units";

@@ -36,10 +36,7 @@ export class Viewport {
     return this.range[1] - this.range[0];
   }
 
-  /**
-   * Sets a new full range from..to, with `initial` visible at first. A zoom that overlaps it is
-   * kept unless `fresh`. Listeners are not called.
-   */
+  /** Sets the full range; keeps a zoom that overlaps it unless `fresh`. Calls no listeners. */
   span(from, to, initial = [from, to], fresh = false) {
     const stays = !fresh && this.changed && this.range[0] < to && this.range[1] > from;
     this.full = [from, to];
@@ -62,11 +59,6 @@ export class Viewport {
   /** Zooms by `factor` (above 1: in) and keeps `t` where it is on the screen. */
   zoomAt(t, factor) {
     this.zoom(...this.range.map((end) => t + (end - t) / factor));
-  }
-
-  /** Zooms about the cursor or, without one, the middle of the visible range. */
-  zoomAbout(factor) {
-    this.zoomAt(this.cursor ?? this.range[0] + this.width / 2, factor);
   }
 
   /** True when a value is visible. */

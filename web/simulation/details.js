@@ -1,9 +1,4 @@
-// The details of a run: cards of the window and the whole run, the table of windows, the energy
-// balance, the parameters, and plots. They are requested when the section is first opened and then
-// for each new run.
-//
-// units: {si, time, velocity, ..., at(tau)}. A quantity is {of(value), unit}: of() converts a
-// dimensionless value, unit is the suffix. at(tau) formats a time.
+// The details of a run: cards, tables and plots, requested while the section is open.
 import {simulate} from "../shared/api.js";
 import {$, cards, countUp, reveal, sayIn, setTexts, tableOf} from "../shared/dom.js";
 import {resolved} from "../shared/form.js";
@@ -109,10 +104,7 @@ function verdictCard({verdict, verdict_reason: given}, {periodic, contacts, stab
   return ["verdict", verdicts[verdict] ?? "–", why];
 }
 
-/**
- * Number of positive exponents per estimator; the one of qr is meaningful only if the verdict is
- * decided.
- */
+/** Positive exponents per estimator; those of qr are meaningful once the verdict is decided. */
 function positivesCard({qr, raw_product: product, verdict}) {
   const [byQr, raw] = [qr, product].map((estimator) =>
     estimator?.final[0] == null ? "–" : String(estimator.final.filter((v) => v > 0).length),
@@ -120,11 +112,6 @@ function positivesCard({qr, raw_product: product, verdict}) {
   const decided = {regular: "none in the long run", chaotic: byQr, not_decided: "not decided"};
   const remark = raw === "–" || raw === byQr ? "" : `${raw} by the raw product`;
   return ["positive exponents (qr)", decided[verdict] ?? "–", remark];
-}
-
-function residualCard({qr, sum_rule_residual: residual, impacts}) {
-  if (residual != null) return ["sum rule residual", minus(residual.toExponential(1))];
-  return ["sum rule residual", "–", qr && impacts > 1 ? "undefined after sticking" : ""];
 }
 
 /** Cards in SI; the median of an even count is the upper of the middle two. */
@@ -145,7 +132,6 @@ function engineeringCards({impacts, series, parameters}, {velocity, impulse, acc
   ];
 }
 
-/** Title of the window's cards. */
 function windowTitle({window, impacts}, {at}, requested) {
   if (!window) return requested ? "Window without impacts" : "Run without impacts";
   const whole = requested ? "Window" : "Whole run, first to last impact";
@@ -154,7 +140,9 @@ function windowTitle({window, impacts}, {at}, requested) {
 
 function summarise(answer, units) {
   const {exponents, regime, energy, impacts, sticking, parameters} = answer;
-  const {qr} = exponents;
+  const {qr, sum_rule_residual: residual} = exponents;
+  const undefinedAfter = residual == null && qr && exponents.impacts > 1;
+  const noResidual = undefinedAfter ? "undefined after sticking" : "";
   const {amplitude: free} = energy.without_absorber;
   // Exponents are per unit of tau, even if times are in seconds.
   const perTime = units.time.unit ? " per unit of τ" : "";
@@ -164,9 +152,9 @@ function summarise(answer, units) {
     regimeCard(regime, units),
     ["impacts per cycle, z", digits(regime.z, 3), rhythm(regime)],
     verdictCard(exponents, regime),
-    ["λ₁ (qr)", qr ? digits(qr.final[0]) : "–", (qr ? withErrorOf(qr) : "") + perTime],
+    ["λ₁ (qr)", digits(qr?.final[0]), (qr ? withErrorOf(qr) : "") + perTime],
     positivesCard(exponents),
-    residualCard(exponents),
+    ["sum rule residual", residual == null ? "–" : minus(residual.toExponential(1)), noResidual],
     ["dissipated by impacts", percent(energy.share_impacts), "of all dissipation"],
     ["rms of x", percent(energy.rms_ratio), "of that without absorber"],
     ...(free == null ? [] : [["amplitude without absorber", inMm(free), peak]]),
@@ -195,44 +183,32 @@ function tabulate(windows = [], {time}) {
   $("windows").replaceChildren(...tableOf(names, rows));
 }
 
-/** Times at which half and a tenth of the energy are left, with and without the absorber. */
-function decayTimes(decay, {at}) {
-  const timeOf = (tau, before = "") => (tau == null ? "not in this run" : before + at(tau));
-  return Object.entries({tau_half: "half of the energy", tau_tenth: "a tenth"}).map(
-    ([name, what]) => {
-      const [tau, without] = [decay[name], decay.without_absorber[name]];
-      if ((tau ?? without) == null) return "";
-      return `${what} is left ${timeOf(tau, "at ")} (without absorber: ${timeOf(without)})`;
-    },
-  );
+/** When a fraction of the energy is left, with and without the absorber. */
+function decayTime(what, tau, without, {at}) {
+  if ((tau ?? without) == null) return "";
+  const timeOf = (when, before = "") => (when == null ? "not in this run" : before + at(when));
+  return `${what} is left ${timeOf(tau, "at ")} (without absorber: ${timeOf(without)})`;
 }
 
-/**
- * Shows the energy balance: the energy supplied by the base or present at the start is dissipated, or
- * is left at the end. The fractions are of their sum, which equals the energy supplied. Compares rms
- * and peak of x with those without the absorber.
- */
+/** Shows where the supplied energy went, and rms and peak of x with and without the absorber. */
 function accountEnergy(energy, units) {
-  const {input, damper, impacts, friction = 0, at_start: start, at_end: left, decay} = energy;
-  const total = damper + impacts + friction + left || 1;
-  const parts = {damper, impacts, ...(friction && {friction}), "left at the end": left};
-  const rows = Object.entries(parts).map(([name, value]) => [
-    name,
-    percent(value / total),
-    inUnit(value, units.energy),
-  ]);
-  const compared = Object.entries({rms: "rms", peak: "largest"}).map(([key, name]) => [
-    name,
-    inMm(energy[key]),
-    inMm(energy.without_absorber[key]),
-  ]);
+  const {input, damper, impacts, friction = 0, at_start: start, at_end: rest, decay} = energy;
+  const total = damper + impacts + friction + rest || 1;
+  const parts = {damper, impacts, ...(friction && {friction}), "left at the end": rest};
+  const amount = ([name, v]) => [name, percent(v / total), inUnit(v, units.energy)];
+  const rows = Object.entries(parts).map(amount);
+  const compare = (name, key) => [name, inMm(energy[key]), inMm(energy.without_absorber[key])];
+  const compared = [compare("rms", "rms"), compare("largest", "peak")];
   $("energy-parts").replaceChildren(...tableOf(["energy to", "fraction", "amount"], rows));
   $("energy-compared").replaceChildren(...tableOf(["|x|", "with absorber", "without"], compared));
   const supply = joined([
     input && `${inUnit(input, units.energy)} from the base`,
     start && `${inUnit(start, units.energy)} at the start`,
   ]);
-  setTexts({"energy-note": joined([supply, ...(decay ? decayTimes(decay, units) : [])], "; ")});
+  const left = (name, what) =>
+    decay && decayTime(what, decay[name], decay.without_absorber[name], units);
+  const times = [left("tau_half", "half of the energy"), left("tau_tenth", "a tenth")];
+  setTexts({"energy-note": joined([supply, ...times], "; ")});
   reveal({"energy-scale": !units.si});
 }
 
@@ -256,7 +232,6 @@ function precise(value) {
   return String(value).replaceAll("_", " ");
 }
 
-/** Lists the parameters of a run: name, symbol, value with unit, and origin. */
 function listParameters(parameters, fieldOf) {
   const {values, origins} = resolved(parameters);
   const all = {...values, ...parameters.derived};

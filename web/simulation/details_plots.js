@@ -28,16 +28,12 @@ function impactsPerCycle({tau, z}) {
   };
 }
 
-/** All estimators with the same range. */
 function exponentPlots(exponents) {
   const range = exponentRange(estimators.map((name) => exponents[name]?.history));
   return each(estimators, (name) => exponentLines(exponents[name], range));
 }
 
-/**
- * Four eigenvalue moduli per impact. The moduli of a pair coincide, so later ones are drawn smaller
- * and the earlier ones remain visible.
- */
+/** Four moduli per impact; those of a pair coincide, so later ones are drawn smaller. */
 function matrixPlot(name, eigenvalues) {
   const log = name === "T";
   const columns = [0, 1, 2, 3].map((k) => eigenvalues[name].map((moduli) => moduli[k]));
@@ -50,7 +46,6 @@ function matrixPlot(name, eigenvalues) {
   return {marks: [one, ...padded.map(modulus)], y: {log, range, label: `|μ| of ${name}`}};
 }
 
-/** States at the impacts, before and after. */
 function impactPlanes(impacts) {
   const {velocity} = run.units;
   const speeds = (name, when) => inUnits(impacts[`${name}_dot_${when}`], velocity);

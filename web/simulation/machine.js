@@ -1,7 +1,4 @@
-// Drawings of the machine to scale at the cursor, with and without the absorber, shaken by the same
-// base: spring, damper, oscillator, walls, and the ball with a short trail; impacts flash. A band
-// below each shows how far its oscillator moves. Dragging the ball sets its initial position y0,
-// dragging a wall the clearance b.
+// The machine at the cursor, to scale, with and without the absorber; ball and walls are dragged.
 import {$, on, setTexts} from "../shared/dom.js";
 import {lawsInSi} from "../shared/form.js";
 import {blank, font, Size} from "../shared/frame.js";
@@ -18,14 +15,11 @@ const rim = 14; // px of the oscillator outside its walls
 const bandHeight = 9; // px of the band below the machine
 
 let heldScale = null; // px per m while a part is dragged
-let drawn = null; // the Drawing of the machine with the absorber
+let drawn = null; // geometry of the machine with the absorber
 
 const [leastTilt, mostTilt] = [4, 12].map((degrees) => (degrees * Math.PI) / 180);
 
-/**
- * {text, angle drawn} of an inclined track: small angles are exaggerated, large ones are drawn smaller, so
- * that the machine fits. Without an angle only the sign of gravity is known. null without gravity.
- */
+/** {text, angle drawn} of an inclined track; null without gravity. Its sign alone can be known. */
 function tiltOf(parameters) {
   const {gravity, si} = parameters;
   if (!gravity) return null;
@@ -71,87 +65,68 @@ function flash(c, x, y, inwards, share) {
   c.globalAlpha = 1;
 }
 
-/**
- * The parts that both machines share, in a canvas of a size. x: displacement of the oscillator;
- * peak: its largest; title; colour: of the oscillator's edge and of the band. The scale depends on
- * the run alone, so that both machines have the same.
- */
-class Drawing {
-  constructor(canvas, size, {x, peak, title, colour}) {
-    const {width, height} = size;
-    const c = blank(canvas, size);
-    const {motion} = run;
-    const length = Math.max(width * 0.16, 48); // of the spring
-    const room = (width - length - 24) / 2;
-    const reach = Math.max(motion.reach, run.answer.energy.without_absorber.peak ?? 0);
-    const scale = heldScale ?? Math.max(room - rim - ballRadius, 10) / (motion.b + reach);
-    this.px = (at) => length + 12 + room + at * scale;
-    Object.assign(this, {scale, x});
-    this.wall = (side) => this.px(x - side * motion.b);
-    const [top, floor] = [24, height - bandHeight - 8];
-    Object.assign(this, {c, top, bottom: floor - 12, level: (top + floor - 12) / 2});
-    const [left, right] = [this.wall(1) - ballRadius, this.wall(-1) + ballRadius];
-    Object.assign(this, {left, right});
-    const tilt = tiltOf(run.answer.parameters);
-    const text = `${title}: ± ${inMm(peak, 2)}${tilt?.text ?? ""}`;
-    this.name("text", text, width / 2, 1, "top", `600 ${font}`);
-    if (tilt) this.turn(c, size, tilt.angle);
-    ink(c, "soft");
-    line(c, `M${anchor} ${floor + 0.5}H${width - 8}`);
-    ink(c, "soft", 3);
-    line(c, `M${anchor} 14V${floor}`);
-    spring(c, left - rim, this.level - 8);
-    damper(c, left - rim, this.level + 10);
-    c.beginPath();
-    c.roundRect(left - rim, top - 8, right - left + 2 * rim, floor - top + 6, 5);
-    ink(c, "oscillator");
-    c.fill();
-    ink(c, colour, 1.2);
-    c.stroke();
-    this.band(floor + 5, peak, x, colour);
-  }
+function label(c, colour, text, x, y, baseline, as = font) {
+  c.font = as;
+  ink(c, colour);
+  drawText(c, text, x, y, "center", baseline);
+}
 
-  /** Turns what is drawn afterwards by an angle, made smaller so that it fits below the title. */
-  turn(c, {width, height}, angle) {
-    const [sin, cos] = [Math.sin(angle), Math.cos(angle)];
-    const [x, y, top] = [width / 2, height / 2, 16];
-    const fit = Math.min(1, (height - top) / (width * Math.abs(sin) + (height - top) * cos));
-    c.translate(x, y + top / 2);
-    c.transform(fit * cos, fit * sin, -fit * sin, fit * cos, 0, 0);
-    c.translate(-x, -y - top / 2);
-    this.along = ({offsetX, offsetY}) =>
-      x + ((offsetX - x) * cos + (offsetY - y - top / 2) * sin) / fit;
-  }
+/** Turns what is drawn afterwards, made smaller to fit. Returns along(event), px of the track. */
+function turn(c, {width, height}, angle) {
+  const [sin, cos] = [Math.sin(angle), Math.cos(angle)];
+  const [x, y, top] = [width / 2, height / 2, 16];
+  const fit = Math.min(1, (height - top) / (width * Math.abs(sin) + (height - top) * cos));
+  c.translate(x, y + top / 2);
+  c.transform(fit * cos, fit * sin, -fit * sin, fit * cos, 0, 0);
+  c.translate(-x, -y - top / 2);
+  return ({offsetX, offsetY}) => x + ((offsetX - x) * cos + (offsetY - y - top / 2) * sin) / fit;
+}
 
-  /** The place of a pointer along the track, px. */
-  along({offsetX}) {
-    return offsetX;
-  }
-
-  /** The range of the oscillator, and its place in it. */
-  band(y, peak, x, colour) {
-    const {c, px} = this;
-    ink(c, colour, 2);
-    c.globalAlpha = 0.35;
-    c.fillRect(px(-peak), y, px(peak) - px(-peak), bandHeight);
-    c.globalAlpha = 1;
-    line(c, `M${px(x)} ${y - 2}v${bandHeight + 4}`);
-  }
-
-  name(colour, text, x, y, baseline, as = font) {
-    this.c.font = as;
-    ink(this.c, colour);
-    drawText(this.c, text, x, y, "center", baseline);
-  }
+/** Draws what both machines share, and the range of the oscillator; returns the geometry. */
+function drawShared(canvas, size, {x, peak, title, colour}) {
+  const {width, height} = size;
+  const c = blank(canvas, size);
+  const {motion, answer} = run;
+  const length = Math.max(width * 0.16, 48); // of the spring
+  const room = (width - length - 24) / 2;
+  const reach = Math.max(motion.reach, answer.energy.without_absorber.peak ?? 0);
+  const scale = heldScale ?? Math.max(room - rim - ballRadius, 10) / (motion.b + reach);
+  const px = (at) => length + 12 + room + at * scale;
+  const wall = (side) => px(x - side * motion.b);
+  const [top, floor] = [24, height - bandHeight - 8];
+  const [left, right] = [wall(1) - ballRadius, wall(-1) + ballRadius];
+  const level = (top + floor - 12) / 2;
+  const tilt = tiltOf(answer.parameters);
+  const text = `${title}: ± ${inMm(peak, 2)}${tilt?.text ?? ""}`;
+  label(c, "text", text, width / 2, 1, "top", `600 ${font}`);
+  const along = tilt ? turn(c, size, tilt.angle) : ({offsetX}) => offsetX;
+  ink(c, "soft");
+  line(c, `M${anchor} ${floor + 0.5}H${width - 8}`);
+  ink(c, "soft", 3);
+  line(c, `M${anchor} 14V${floor}`);
+  spring(c, left - rim, level - 8);
+  damper(c, left - rim, level + 10);
+  c.beginPath();
+  c.roundRect(left - rim, top - 8, right - left + 2 * rim, floor - top + 6, 5);
+  ink(c, "oscillator");
+  c.fill();
+  ink(c, colour, 1.2);
+  c.stroke();
+  ink(c, colour, 2);
+  c.globalAlpha = 0.35;
+  c.fillRect(px(-peak), floor + 5, px(peak) - px(-peak), bandHeight);
+  c.globalAlpha = 1;
+  line(c, `M${px(x)} ${floor + 3}v${bandHeight + 4}`);
+  return {c, px, wall, scale, x, top, bottom: floor - 12, level, left, right, along};
 }
 
 function drawWith(canvas, size, cursor) {
   const {motion, answer} = run;
   const {x, y} = motion.at(cursor);
-  const title = "with absorber";
-  const drawing = new Drawing(canvas, size, {x, peak: answer.energy.peak, title, colour: "accent"});
+  const about = {x, peak: answer.energy.peak, title: "with absorber", colour: "accent"};
+  const drawing = drawShared(canvas, size, about);
   const {c, px, wall, level, top, bottom, left, right} = drawing;
-  drawn = Object.assign(drawing, {ball: px(y)});
+  drawn = {...drawing, ball: px(y)};
   const fill = (name, from, width) => {
     ink(c, name);
     c.fillRect(from, top, width, bottom - top);
@@ -166,9 +141,9 @@ function drawWith(canvas, size, cursor) {
   const share = (cursor - impacts.tau[i]) / (flashDuration * cycle);
   if (share < 1) flash(c, wall(side) - side * (ballRadius + 2), level, side, share);
   if (right - left < 150 || size.height < 100) return;
-  drawing.name("plus", "x − y = b", left + 30, bottom - 1, "bottom");
-  drawing.name("minus", "−b", right - 10, bottom - 1, "bottom");
-  drawing.name("mass", "ball", px(y), level - ballRadius - 1, "bottom");
+  label(c, "plus", "x − y = b", left + 30, bottom - 1, "bottom");
+  label(c, "minus", "−b", right - 10, bottom - 1, "bottom");
+  label(c, "mass", "ball", px(y), level - ballRadius - 1, "bottom");
 }
 
 /** The ball and its trail, relative to the current position of the cavity. */
@@ -189,12 +164,8 @@ function drawWithout(canvas, size, cursor) {
   const x = run.motion.withoutAbsorber(cursor);
   if (x === null) return blank(canvas, size); // not known yet
   const {peak} = run.answer.energy.without_absorber;
-  const {c, level, left, right} = new Drawing(canvas, size, {
-    x,
-    peak,
-    title: "without",
-    colour: "without",
-  });
+  const about = {x, peak, title: "without", colour: "without"};
+  const {c, level, left, right} = drawShared(canvas, size, about);
   ink(c, "without");
   c.globalAlpha = 0.2;
   c.fillRect(left, level - 3, right - left, 6);
@@ -206,7 +177,6 @@ const machines = [
   [$("machine-without"), drawWithout],
 ].map(([canvas, draw]) => ({canvas, draw, size: new Size(canvas, redraw)}));
 
-/** Draws the state at the cursor. */
 export function redraw() {
   const {cursor} = viewport;
   if (!run || cursor === null) return;
@@ -235,14 +205,11 @@ function partAt(event) {
   return [1, -1].some((side) => Math.abs(wall(side) - x) < reach) ? "wall" : undefined;
 }
 
-/**
- * set(fields, dragging) is called with y0 (m) or b (m). The scale is held during a drag, so that the
- * part stays under the pointer.
- */
+/** set(fields, dragging) is called with y0 or b, m. A drag holds the scale. */
 export function start(set) {
   const [{canvas}] = machines;
   let part;
-  let held; // the Drawing at the start of a drag
+  let held; // geometry at the start of a drag
   const drag = (event, dragging) => {
     const {b, parameters} = run.motion;
     const away = (held.along(event) - held.px(held.x)) / held.scale; // y - x

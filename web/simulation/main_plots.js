@@ -1,10 +1,8 @@
-// Plots of the first screen: motion over time (reconstructed from the impacts), largest modulus of
-// T, exponents, section and manifold. They share a cursor, and the impact nearest to it is ringed
-// in each.
+// Plots of the first screen. They share a cursor, and ring the impact nearest to it.
 import {$, attributes, reveal, setTexts} from "../shared/dom.js";
 import {exponentRange} from "../shared/exponents.js";
 import {beads, curve, dots, levels, line, symbols} from "../shared/marks.js";
-import {firstFrom, inMm, lastUpTo, mm, short} from "../shared/numbers.js";
+import {firstFrom, inMm, lastUpTo, mm, nearest, short} from "../shared/numbers.js";
 import {unitsOf} from "../shared/units.js";
 import {commonOptions, exponentLines, halves, picked} from "./plot_options.js";
 import {alongRun, inUnits, largestMagnitude, logRange, positive, run, viewport} from "./run.js";
@@ -29,10 +27,7 @@ export const redraw = () => plots.refresh();
 const optionsOf = {load, x: displacement, relative, lambda: exponents, section, largest, manifold};
 const deferredPlots = ["largest", "manifold"];
 
-/**
- * Returns functions that draw the plots. Plots that need the deferred answer are marked until it
- * arrives.
- */
+/** Functions that draw the plots; those that need the deferred answer are marked until then. */
 function stepsOf(...names) {
   for (const name of deferredPlots) $(`figure-${name}`).classList.toggle("pending", !run.deferred);
   return [...names.map((name) => () => plots.draw(name, optionsOf[name]())), tell];
@@ -184,7 +179,6 @@ function exponents() {
   return options;
 }
 
-/** States after each impact, by wall. */
 function section() {
   const {impacts} = run.motion;
   const {velocity} = run.units;
@@ -207,19 +201,16 @@ function section() {
   };
 }
 
-/** The largest modulus of T at an impact; null if unknown. */
-function modulusAt(tau) {
-  const {tau: moments, T} = run.deferred?.eigenvalues ?? {tau: []};
-  const k = firstFrom(moments, tau);
-  return moments[k] === tau ? (T?.[k]?.[0] ?? null) : null;
-}
-
 /** Shows the values at the cursor next to the titles; by: the cause of the cursor's move. */
 function tell(by) {
   const {cursor} = viewport;
   if (!run || cursor === null) return;
   const {motion} = run;
-  const modulus = modulusAt(motion.impacts.tau[motion.impactNear(cursor)]);
+  const {tau: moments} = motion.impacts;
+  const impact = moments[nearest(moments, cursor)];
+  const {tau: known, T} = run.deferred?.eigenvalues ?? {tau: []};
+  const k = firstFrom(known, impact);
+  const modulus = known[k] === impact ? T?.[k]?.[0] : null;
   const {x, y} = motion.at(cursor);
   const at = run.units.at(cursor);
   const texts = {
@@ -235,10 +226,7 @@ function tell(by) {
   }
 }
 
-/**
- * The branches extend far beyond most runs, so the plot shows the range of the run's points, the
- * fold and the free amplitude.
- */
+/** The branches extend far beyond the run's points, the fold and the free amplitude shown. */
 export function manifold() {
   const {points, fold, free_amplitude: free} = run.deferred.manifold;
   const dash = [5, 4];

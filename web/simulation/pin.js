@@ -18,7 +18,6 @@ const resultsOf = ({energy, exponents: {qr}, regime}) => ({
   z: digits(regime.z, 2),
 });
 
-/** Compares the results of the pinned run with those of the run shown. */
 export function compare() {
   if (!pinned?.answer || !run) return setTexts({"pinned-run": ""});
   const [before, now] = [pinned.answer, run.answer].map(resultsOf);

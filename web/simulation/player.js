@@ -1,7 +1,5 @@
-// The player: moves the cursor through the visible range in a loop, at a number of cycles per
-// second, optionally with a knock at each impact.
+// The player: moves the cursor through the visible range in a loop, with a knock at each impact.
 import {$, attributes, save, setTexts} from "../shared/dom.js";
-
 import {count, shortTo} from "../shared/numbers.js";
 import * as machine from "./machine.js";
 import {run, viewport} from "./run.js";
@@ -74,10 +72,7 @@ function pause() {
   showPlace();
 }
 
-function showButton(text, label) {
-  setTexts({play: text});
-  attributes($("play"), {"aria-label": label});
-}
+const showButton = (text, ariaLabel) => Object.assign($("play"), {textContent: text, ariaLabel});
 
 function toggleSound() {
   audio?.close();
@@ -85,7 +80,6 @@ function toggleSound() {
   attributes($("sound"), {"aria-pressed": audio !== null});
 }
 
-/** Saves the playing machine as a video. */
 function film() {
   const recorder = new MediaRecorder($("machine").captureStream());
   recorder.ondataavailable = ({data}) => save(data, "vines.webm");
@@ -107,15 +101,11 @@ function advance(seconds) {
   const {cursor} = viewport;
   const next = cursor + seconds * $("speed").value * run.motion.cycle;
   if (!inView(next)) return restart("play");
-  knockBetween(cursor, next);
-  viewport.point(next, "play");
-}
-
-function knockBetween(from, to) {
   const {impacts} = run.motion;
-  const i = run.motion.impactBefore(to);
-  if (audio?.state === "running" && impacts.tau[i] > from)
+  const i = run.motion.impactBefore(next);
+  if (audio?.state === "running" && impacts.tau[i] > cursor)
     knock(impacts.relative_speed_ratio[i] / 2);
+  viewport.point(next, "play");
 }
 
 function cursorMoved(by) {
@@ -124,7 +114,6 @@ function cursorMoved(by) {
   showPlace();
 }
 
-/** Shows the moment as text and on the scrub bar. */
 function showPlace() {
   const {cursor} = viewport;
   if (!run || cursor === null) return;

@@ -9,10 +9,7 @@ export const exponentLines = (estimator, range) => ({
   y: {label: "λ", range},
 });
 
-/**
- * Groups points by the halves of the run, the first paler, so that the steady state stands out.
- * kinds: [colour, test(i), name in tables].
- */
+/** Points by halves of the run, the first paler. kinds: [colour, test(i), name in tables]. */
 export function halves({x, y}, kinds) {
   const style = (late) => (late ? {alpha: 1, size: 1.5} : {alpha: 0.35, size: 1.2});
   const group = (late, [colour, is, label]) => {

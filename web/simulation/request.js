@@ -1,8 +1,4 @@
-// The request of the form: a preset and the given fields; and its conversion to and from a query.
-//
-// `name` is the selected preset, "" if none. The form holds the given fields only. The service merges
-// them with the preset, and its answer has the values and origins of the others.
-
+// The request: a preset (`name`, "" if none) and the given fields, which the service merges.
 import {absoluteUrl, asCurl} from "../shared/api.js";
 import {$, element, press, setTexts} from "../shared/dom.js";
 import {isObject, isOfMotion, queryOf, resolved, textOf} from "../shared/form.js";
@@ -10,7 +6,6 @@ import {run} from "./run.js";
 import {differenceText, parameterLine} from "./sliders.js";
 
 export class Request {
-  /** form: the Form; fields: of /v1/parameters; presets: of /v1/presets. */
   constructor(form, fields, presets) {
     Object.assign(this, {form, presets, name: ""});
     this.fieldOf = Object.fromEntries(fields.map((f) => [f.name, f]));
@@ -20,7 +15,6 @@ export class Request {
     return this.presets.find((preset) => preset.name === name);
   }
 
-  /** The selected preset; undefined without one. */
   get preset() {
     return this.presetOf(this.name);
   }
@@ -82,10 +76,7 @@ export class Request {
     return Object.fromEntries(Object.entries(request).filter(is));
   }
 
-  /**
-   * Fills the form from a query; an empty query selects fig3. Returns the unknown names, after
-   * "preset=NAME" if that preset is unknown.
-   */
+  /** Fills the form from a query; an empty one selects fig3. Returns the unknown names. */
   read(query) {
     const isJson = (text) => text.startsWith("{");
     const spaced = ([name, text]) => [
@@ -103,14 +94,10 @@ export class Request {
 /** A request as a query. Without fields it is `preset=`, because an empty query selects fig3. */
 export const toQuery = (fields) => queryOf(fields) || "preset=";
 
-// Presets: figures and tables of the paper, some as chips, all in a menu; and the plots that
-// correspond to them.
+// Presets: in a menu and as chips; and the plots that correspond to them.
 const chips = document.querySelectorAll("#chips button");
 
-/**
- * choose(name) is called with the name of a preset; "" means user-defined parameters; read(query)
- * with the query of a machine.
- */
+/** choose(name) gets a preset's name, or "" for none; read(query) the query of a machine. */
 export function start(presets, choose, read) {
   const menu = $("preset");
   menu.append(new Option("user-defined parameters", ""));

@@ -11,7 +11,6 @@ export function setRun(newest) {
 }
 
 // Preparing columns of an answer for plots.
-/** A column in other units. */
 export const inUnits = (column, quantity) => column.map(quantity.of);
 
 /** null for values that a logarithmic axis cannot show. */
@@ -21,10 +20,7 @@ export const positive = (v) => (v > 0 ? v : null);
 export const largestMagnitude = (values) =>
   values.reduce((a, v) => Math.max(a, Math.abs(v) || 0), 0);
 
-/**
- * Columns over tau for a line plot: repeated times are removed, and the time range is extended to
- * the whole run so that stacked plots align.
- */
+/** Columns over tau without repeated times, extended to the whole run so that plots align. */
 export function alongRun(tau, columns) {
   const {end} = run.motion;
   let last = -Infinity;

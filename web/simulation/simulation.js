@@ -1,10 +1,7 @@
-// The simulation tab: every change is sent as one request and its answer shown immediately. The
-// address holds the request and the visible range.
-
+// The simulation tab: each change is sent at once. The address holds request and visible range.
 import {simulate} from "../shared/api.js";
 import * as dom from "../shared/dom.js";
 import {$} from "../shared/dom.js";
-
 import {Form, unknownText} from "../shared/form.js";
 import {Job, RequestTab} from "../shared/job.js";
 import {isSampled, motionOf} from "../shared/motion.js";
@@ -34,10 +31,7 @@ const mostSamples = 60000; // of a run that is drawn from samples
 const large = 20000; // impacts above which a run is drawn in several tasks
 const idle = 100; // ms without an edit before the deferred parts are requested
 
-/**
- * The range first in view: the last six cycles of a periodic motion, or else the window, if it ends
- * well before the run.
- */
+/** The range first in view: the last cycles of a periodic motion, or else the window. */
 function homeOf({parameters, status, regime}) {
   const end = status.tau;
   if (regime.periodic && regime.contacts) {
@@ -51,15 +45,12 @@ function homeOf({parameters, status, regime}) {
 /** Shows the remarks: the reason for an undecided verdict, and warnings. */
 function remark({exponents: {verdict, verdict_reason: why}, regime, warnings}, more = {}) {
   const open = verdict === "not_decided" && !regime.periodic;
-  const all = [...warnings, ...(more.warnings ?? [])];
-  dom.showRemarks("remarks", [...new Set([...(open ? [`not decided: ${why}`] : []), ...all])]);
+  const all = [open && `not decided: ${why}`, ...warnings, ...(more.warnings ?? [])];
+  dom.showRemarks("remarks", [...new Set(all.filter(Boolean))]);
 }
 
-/** A request for the same run with a ball too light to matter: without the absorber. */
-function withLightBall({m2, ...fields}) {
-  const include = ["impacts", "series"];
-  return {max_points: mostSamples, ...fields, mass_ratio: 1e-9, include};
-}
+// Parts of the same run with a ball too light to matter: without the absorber.
+const lightParts = {m2: undefined, mass_ratio: 1e-9, include: ["impacts", "series"]};
 
 export class SimulationTab extends RequestTab {
   asked = null; // query of the request in the address
@@ -71,7 +62,8 @@ export class SimulationTab extends RequestTab {
     ask: (fields, signal) =>
       Promise.all([
         simulate({...fields, ...deferredParts}, signal),
-        run.motion.exact === false && simulate(withLightBall(fields), signal),
+        run.motion.exact === false &&
+          simulate({max_points: mostSamples, ...fields, ...lightParts}, signal),
       ]),
     show: ([answer, without], fields) => {
       if (fields !== run.fields) return;
@@ -165,13 +157,15 @@ export class SimulationTab extends RequestTab {
 
   /** Errors are shown at sliders, or else at fields, without moving the focus. */
   fail({message, errors = []}, fields) {
-    if (fields.linked && errors.length) return this.fallBack([...fields.unknown], errors);
+    if (fields.linked && errors.length) {
+      const faults = [...fields.unknown, ...errors.map(({detail}) => detail)].join("; ");
+      return this.open(new URLSearchParams(), `the address has faults, Fig. 3 is shown: ${faults}`);
+    }
     if (!run) dom.setTexts({sentence: "No results yet."});
     const left = this.form.showErrors(errors, false);
     const ofSliders = sliders.showErrors(errors);
     if (left.length + ofSliders.length < errors.length) $("more").open = true;
-    if (ofSliders.length) this.sayFault(ofSliders);
-    else this.sayFault([message, ...left.map(({detail}) => detail)]);
+    this.sayFault(ofSliders.length ? ofSliders : [message, ...left.map(({detail}) => detail)]);
   }
 
   showOrigins() {
@@ -237,11 +231,7 @@ export class SimulationTab extends RequestTab {
     if (!$("form").querySelector(".slider [aria-invalid=true]")) this.send();
   }
 
-  /**
-   * Sends the form. dragging: while a slider is dragged; fresh: not changed by a slider; unknown:
-   * names in the address; linked: the form has the fields of the address; note: to be shown with
-   * the run.
-   */
+  /** Sends the form. fresh: not by a slider; linked: as in the address; note: to be shown. */
   send({dragging = false, fresh = false, unknown = [], linked = false, note = ""} = {}) {
     const fields = this.request.fields();
     const about = {fresh, unknown, dragged: dragging, linked, note};
@@ -249,19 +239,12 @@ export class SimulationTab extends RequestTab {
     const {name, edited} = this.request;
     presetMenu.markChip(name, edited, !name && "m1" in fields);
     if (dragging) player.hold();
-    this.remember(toQuery(fields), dragging);
-    this.start(fields, {dragging});
-  }
-
-  /** Updates the address; Back undoes an edit. */
-  remember(query, soon) {
-    if (query === this.asked) {
-      if (!soon) this.changed(); // the edit is complete
-      return;
-    }
-    const edit = this.asked !== null;
+    const query = toQuery(fields);
+    const isNew = query !== this.asked;
+    const edit = isNew && this.asked !== null; // Back undoes it
     this.asked = query;
-    this.changed({edit, soon});
+    if (isNew || !dragging) this.changed({edit, soon: dragging});
+    this.start(fields, {dragging});
   }
 
   /** Called when the text in a slider's number is not a number. */
@@ -270,10 +253,7 @@ export class SimulationTab extends RequestTab {
     this.say(`${label}: “${number.value}” is not a number`, true);
   }
 
-  /**
-   * Called when a slider or the strip's marker moves. fields: to set, null to clear one; dragging:
-   * the slider is being dragged.
-   */
+  /** Called when a slider or the strip's marker moves. fields: to set, null to clear one. */
   sliderMoved(fields, slider, dragging) {
     this.lastMoved = slider.name;
     this.set(fields, dragging);
@@ -326,12 +306,6 @@ export class SimulationTab extends RequestTab {
     return joined([this.asked, ...more], "&");
   }
 
-  /** Shows Fig. 3 in place of a run whose address has faults, and names them. */
-  fallBack(unknown, errors) {
-    const faults = [...unknown, ...errors.map(({detail}) => detail)].join("; ");
-    this.open(new URLSearchParams(), `the address has faults, Fig. 3 is shown: ${faults}`);
-  }
-
   /** Shows the run of a query, with a note; by default the paper's Fig. 3. */
   open(given, note = "") {
     const rest = new URLSearchParams(given);
@@ -366,13 +340,12 @@ function startPlots() {
     for (const {id, classList} of figures) classList.toggle("chosen", id === `figure-${name}`);
   };
   for (const one of buttons) one.onclick = () => enlarge(one.dataset.plot);
-  for (const figure of figures) {
-    const act = () => enlarge(figure.id.replace("figure-", ""));
-    dom.on(figure, {
-      click: ({target}) => target.closest("button") || act(),
-      keydown: ({key, target}) => key === "Enter" && !target.closest("button") && act(),
-    });
-  }
+  const act = ({target, key = "Enter"}) => {
+    const figure = target.closest("figure");
+    if (figure && key === "Enter" && !target.closest("button"))
+      enlarge(figure.id.replace("figure-", ""));
+  };
+  dom.on($("plots"), {click: act, keydown: act});
 }
 
 /** On small screens the parameters are in a sheet. */

@@ -1,5 +1,4 @@
-// The main parameters, each with a slider, a number and a unit. They set fields of the
-// form.
+// The main parameters, each with a slider, a number and a unit. They set fields of the form.
 import {$, attributes} from "../shared/dom.js";
 import {lawsInSi} from "../shared/form.js";
 import {inMm, short, shortTo, toNumber} from "../shared/numbers.js";
@@ -8,11 +7,10 @@ import {symbolOf} from "../shared/quantities.js";
 const factors = {mm: 1000, "°": 180 / Math.PI};
 
 /**
- * A slider from its row of the page. of(parameters): value in the field's unit; fields(value,
+ * A slider from its row of the page, with of(parameters): value in the field's unit; fields(value,
  * parameters): fields to set, null to clear one; usualRange(parameters): in the slider's unit;
- * aboutOf(parameters): description where it depends on the system; textOf(parameters): the value as
- * text; isShown(parameters): false where the system does without. span: the current range, once it is
- * shown.
+ * aboutOf, textOf(parameters): description and value as text, where they depend on the system;
+ * isShown(parameters): false where the system does without. span: the range shown.
  */
 function slider(name, more) {
   const node = $(`slider-${name}`).parentNode;
@@ -28,9 +26,6 @@ function slider(name, more) {
     ...more,
   };
 }
-
-/** zeta divided by lambda: eq. (3), or the paper's closed form. */
-const zetaOver = ({epsilon, damping}) => (damping === "closed_form" ? epsilon : epsilon / 2);
 
 const clearance = slider("b", {usualRange: () => [1, 45]});
 const restitution = slider("R", {
@@ -53,10 +48,10 @@ const reduced = [
   slider("zeta", {
     usualRange: () => [0, 0.04],
     of: ({derived}) => derived.zeta,
-    // The damping law is given too: a changed lambda would leave that of the preset.
-    fields: (zeta, parameters) => ({
-      lambda: zeta / zetaOver(parameters),
-      damping: parameters.damping,
+    // The law, eq. (3) or closed form, is given too: a changed lambda would leave the preset's.
+    fields: (zeta, {epsilon, damping}) => ({
+      lambda: zeta / (damping === "closed_form" ? epsilon : epsilon / 2),
+      damping,
     }),
   }),
   slider("gravity", {
@@ -148,10 +143,9 @@ export function differenceText(names, parameters) {
 export function parameterLine(parameters) {
   const values = slidersOf(parameters).map((one) => valueText(one, parameters));
   const isOwn = (name) => parameters.origin[name] !== "default";
-  const start = ["x0", "x_dot0", "y0", "y_dot0"].filter(isOwn);
-  return [...values, ...start.map((name) => `${symbolOf(name)} = ${inMm(parameters[name])}`)].join(
-    ", ",
-  );
+  const text = (name) => `${symbolOf(name)} = ${inMm(parameters[name])}`;
+  const start = ["x0", "x_dot0", "y0", "y_dot0"].filter(isOwn).map(text);
+  return [...values, ...start].join(", ");
 }
 
 let shown = null; // parameters
@@ -163,7 +157,12 @@ export function start(its) {
   for (const one of all) {
     const {number, range} = one;
     Object.assign(number, {
-      onchange: () => typed(one),
+      onchange() {
+        const value = toNumber(number.value);
+        attributes(number, {"aria-invalid": value === null});
+        if (value === null) tab.sliderRefused(one);
+        else apply(one, value, false);
+      },
       oninput: () => tab.mark(number.value !== number.defaultValue),
       onblur: () => tab.mark(number.matches("[aria-invalid=true]")),
     });
@@ -172,10 +171,7 @@ export function start(its) {
   }
 }
 
-/**
- * fresh: the run was not reached with a slider; dragged: ranges stay unchanged; last: the slider
- * moved last.
- */
+/** fresh: not reached with a slider; dragged: ranges stay; last: the slider moved last. */
 export function show(parameters, {fresh, dragged}, last) {
   shown = parameters;
   $("sliders").inert = false;
@@ -221,13 +217,6 @@ export function showErrors(errors) {
 export function moveSlider(one, value, dragging) {
   one.number.value = written(value, one.span);
   apply(one, Number(one.number.value), dragging);
-}
-
-function typed(one) {
-  const value = toNumber(one.number.value);
-  attributes(one.number, {"aria-invalid": value === null});
-  if (value === null) tab.sliderRefused(one);
-  else apply(one, value, false);
 }
 
 function apply(one, value, dragging) {

@@ -7,13 +7,12 @@ import {regimes} from "../shared/quantities.js";
 import {run, viewport} from "./run.js";
 import {parameterLine, valueText} from "./sliders.js";
 
-const untouched = ({verdict}) => (verdict ? "no impacts in the window" : "the ball meets no wall");
-
 function motionText({regime, exponents, energy}, units) {
   const {type, periodic, capture, period_cycles: cycles, impacts_per_period: impacts} = regime;
   if (energy.peak === 0) return "at rest: no forcing, no impact";
-  if (type === "none")
-    return regime.description === "no impacts" ? untouched(exponents) : regime.description;
+  if (type === "none" && regime.description === "no impacts")
+    return exponents.verdict ? "no impacts in the window" : "the ball meets no wall";
+  if (type === "none") return regime.description;
   const name = `${regimes[type] ?? regime.description} (${type})`;
   if (periodic) {
     const hits = type === "V" ? `, ${count(impacts, "impact")}` : "";
@@ -43,13 +42,12 @@ function lambdaText({qr, verdict}, regime, parameters) {
   return verdict === "not_decided" ? `${value}, not decided` : value;
 }
 
-const amplitudeText = ({rms_ratio: ratio}) =>
-  ratio == null ? "" : `rms x ${percent(ratio)} of that without absorber`;
-
 /** slider: its value begins the sentence. */
 export function showSentence(answer, slider, units) {
   const {exponents, regime, energy, parameters} = answer;
-  const rest = joined([lambdaText(exponents, regime, parameters), amplitudeText(energy)], "; ");
+  const ratio = energy.rms_ratio;
+  const amplitude = ratio == null ? "" : `rms x ${percent(ratio)} of that without absorber`;
+  const rest = joined([lambdaText(exponents, regime, parameters), amplitude], "; ");
   const end = rest && ".";
   const motion = element("b", {textContent: motionText(answer, units) + end});
   $("sentence").replaceChildren(`${valueText(slider, parameters)}: `, motion, " ", rest + end);
@@ -62,7 +60,6 @@ function aboutFigure(name) {
   return {summary: `${title} ${notes}`, caption, name: `vines-${name}`};
 }
 
-/** The plots of the run shown in a part of the page. */
 export const plotsIn = (part) =>
   new PlotGroup(part, viewport, {
     about: aboutFigure,

@@ -15,9 +15,8 @@ function borders(at, log) {
 }
 
 /**
- * An axis in ascending order; position k shows entry order[k] of the requested axis. at: places
- * (logarithms on a logarithmic axis); borders: of their cells; to(value): a place; from(place): a
- * value.
+ * An axis in ascending order of the requested entries `order`; at: places, on a logarithmic axis
+ * logarithms; borders: of their cells; to(value): a place; from(place): a value.
  */
 function arrange({parameter, values}, scale) {
   const order = [...values.keys()].sort((a, b) => values[a] - values[b]);
@@ -29,10 +28,7 @@ function arrange({parameter, values}, scale) {
   return {parameter, log, order, given: values, values: sorted, at, borders: edges, to, from};
 }
 
-/**
- * A line of a reduction, and each motion in it, as a point whose largest |x| is the peak; `where`
- * is the peak's value of the reduced parameter.
- */
+/** A line of a reduction, and its motions, as points: x_max is the peak, `where` its place. */
 function unfold({worst, best, starts, ...line}, parameter) {
   const peak = ({x_peak, x_free_peak, ...rest}) => ({
     ...rest,
@@ -44,10 +40,7 @@ function unfold({worst, best, starts, ...line}, parameter) {
   return {...peak(line), ...motions};
 }
 
-/**
- * Half a forcing period, pi/Omega, from the fields of a point; what they lack is in the resolved
- * parameters of the sweep.
- */
+/** Half a forcing period from the fields of a point and the sweep's resolved parameters. */
 function halfPeriod({Omega, f, f0, k1, m1}, {Omega: standard, si}) {
   if (Omega || !(f ?? f0 ?? k1 ?? m1)) return Math.PI / (Omega ?? standard);
   const natural = f0 ?? Math.sqrt((k1 ?? si.k1) / (m1 ?? si.m1)) / (2 * Math.PI); // Hz
@@ -114,7 +107,6 @@ export class SweepData {
       this.blobs = [...this.blobs, new Blob(this.texts.splice(0))];
   }
 
-  /** Takes the axes from the first line. */
   begin({axes, parameters, points}) {
     const arranged = axes.map((axis, i) => arrange(axis, this.request.axes[i].scale));
     this.axes = arranged.filter((axis) => axis.parameter !== this.reduced);
@@ -122,9 +114,7 @@ export class SweepData {
     this.points = new Array(points).fill(null);
   }
 
-  /**
-   * Converts a section to columns of floats; over two axes it is dropped, since no plot shows it.
-   */
+  /** Converts a section to columns of floats; a map drops it. */
   trim(point) {
     if (this.reduced) return unfold(point, this.reduced);
     if (!point.section) return point;
@@ -141,10 +131,7 @@ export class SweepData {
     return rest;
   }
 
-  /**
-   * Index of the point at positions k, l, m of the ascending axes. The first axis varies fastest,
-   * then the starts, then the other axes.
-   */
+  /** Index of a point: the first axis varies fastest, then the starts, then the other axes. */
   index(k = 0, l = 0, start = 0, m = 0) {
     const [first, second, third] = this.axes;
     const size = (axis) => axis?.values.length ?? 1;
@@ -181,10 +168,7 @@ export class SweepData {
   }
 }
 
-/**
- * Requests the points that data (a SweepData) lacks. onLine(line) gets each line until the request
- * is aborted. Throws if the stream ends early.
- */
+/** Requests the points that a SweepData lacks. Throws if the stream ends early. */
 export async function receive(data, signal, onLine) {
   const indices = data.points.flatMap((point, i) => (point ? [] : [i]));
   const missing = data.received ? {indices} : {};
@@ -209,7 +193,6 @@ function placesOf(data, start) {
 }
 
 export class Layers {
-  /** base: a SweepData. */
   constructor(base) {
     this.base = base;
     this.all = [base];
@@ -228,10 +211,7 @@ export class Layers {
     return this.all.filter((data) => data.axes && (data.slice ?? slice) === slice);
   }
 
-  /**
-   * Points of a start on a single axis, in ascending order, with the borders of their cells: {at,
-   * low, high, value, p, data, index, start}.
-   */
+  /** Ascending points {at, low, high, value, p, data, index, start} with borders of their cells. */
   places(start) {
     const list = this.all.flatMap((data) => (data.axes ? placesOf(data, start) : []));
     if (this.all.length > 1) list.sort((a, b) => a.at[0] - b.at[0]);

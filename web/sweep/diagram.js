@@ -1,5 +1,4 @@
-// A sweep over one axis: the bifurcation diagram of its section, lambda1, and another quantity with
-// the regimes, stacked. They share the axis and the tooltip.
+// A sweep over one axis: its section, lambda1, and another quantity with the regimes, stacked.
 import {rangeOf} from "../shared/frame.js";
 import {levels} from "../shared/marks.js";
 import {clamp, short} from "../shared/numbers.js";
@@ -17,7 +16,6 @@ const startStyles = [
   {colour: "c4", shape: "diamond", mark: "◆"},
   {colour: "c3", shape: "pointed", mark: "▼"},
 ];
-/** Colour, symbol and key of a start. */
 export const startStyle = (s) => startStyles[s % startStyles.length];
 
 /** Applies `of` to the best or second motion of a point. */
@@ -27,24 +25,23 @@ const ofOtherMotion = (of) => (p) => {
 };
 
 /** Number of points of each regime: [regime, number]. */
-export const countRegimes = (points) =>
-  Object.keys(q.regimes).map((regime) => [
-    regime,
-    points.filter((p) => p?.regime === regime).length,
-  ]);
+export function countRegimes(points) {
+  const count = (regime) => points.filter((p) => p?.regime === regime).length;
+  return Object.keys(q.regimes).map((regime) => [regime, count(regime)]);
+}
 
-/** A plot of `view`, the DiagramView. Subclasses implement y() (as in Frame) and marks(frame). */
+/** A plot of a DiagramView. kind: its methods y() (as in Frame), marks(frame), and of a SweepPlot. */
 class Diagram extends SweepPlot {
+  constructor(view, name, kind) {
+    super(view, name);
+    Object.assign(this, kind);
+  }
+
   prepare(width, height) {
     if (!this.view.byStart) return null;
     const frame = this.frameOf(width, height);
     const strips = this.view.starts().map((s) => this.regimes(s, {down: 6 * s, height: 5}));
     return {frame, marks: [...this.marks(frame), ...strips]};
-  }
-
-  /** The value of a point drawn as a single dot; null if it has several. */
-  drawn() {
-    return null;
   }
 
   /** Values of all points, a list of each, for the range. */
@@ -70,10 +67,7 @@ class Diagram extends SweepPlot {
     return dotsOf(this.view.byStart[start], of, {shape, size, ...more});
   }
 
-  /**
-   * The best motion of each point, or one from another start that differs, as rings on a thin line.
-   * Not drawn for several starts.
-   */
+  /** The best motion of each point, or one from another start that differs, as rings on a line. */
   rings(frame, of) {
     if (this.view.several) return [];
     const other = ofOtherMotion(of);
@@ -81,12 +75,10 @@ class Diagram extends SweepPlot {
     return [this.line(0, other, "best", {alpha: 0.6}), this.dots(frame, 0, other, ring)];
   }
 
-  /** Stretches of the same regime of a start. */
   regimes(start, more) {
     return regimesOf(this.view.byStart[start], this.view.data.axes[0], more);
   }
 
-  /** The points of the first start. */
   get points() {
     return this.view.byStart[0].map(({p}) => p);
   }
@@ -99,7 +91,8 @@ const phaseLabels = (min, max) =>
     .map((text, i) => ({at: (i * Math.PI) / 2, text}))
     .filter(({at}) => at >= min - 1e-9 && at <= max + 1e-9);
 
-class SectionDiagram extends Diagram {
+const sectionDiagram = {
+  drawn: () => null, // several values
   /** The coordinate drawn and its column; velocities can be in mm/s. */
   shown() {
     const {data, choice} = this.view;
@@ -107,46 +100,38 @@ class SectionDiagram extends Diagram {
     const own = q.coordinates[data.section]?.[name] ?? {label: "", title: ""};
     const seconds = data.parameters.si && inSeconds() && own.seconds;
     return {...own, ...(seconds ? {label: seconds.label, column: `${name}_SI`} : {column: name})};
-  }
-
+  },
   y() {
     const {column, range, log, least = -Infinity, turns: phase, label} = this.shown();
     const large = (p) => p.section?.[column]?.filter((v) => !(v <= least)) ?? [];
     const held = range ?? rangeOf(this.values(large), log) ?? (log ? [0.1, 10] : [-1, 1]);
     return {range: held, log, label, labels: phase && phaseLabels};
-  }
-
+  },
   marks() {
     const {column, levels: y = []} = this.shown();
     const [axis] = this.view.data.axes;
     const ofStart = (s) => sectionOf(this.view.byStart[s], axis, column, this.tint(s, "c1"));
     return [levels({y}), ...this.view.starts().map(ofStart)];
-  }
-
+  },
   columns() {
     return {[this.shown().label]: null};
-  }
-
+  },
   rows(p) {
     return Array.from(p.section?.[this.shown().column] ?? [], (v) => [v]);
-  }
-
+  },
   about() {
     const {title, label} = this.shown();
     const summary = `${label} of the section at ${this.points.length} points`;
     return {title: `Section: ${title}`, summary};
-  }
-}
+  },
+};
 
 const lambda = (i) => (p) => p.lambda?.[i] ?? null;
 const errorOf = (p) => p.standard_error?.[0] ?? null;
 const drawnLambda = (p) => (q.untouched(p) ? 0 : lambda(0)(p));
 
-class LambdaDiagram extends Diagram {
-  drawn({p}) {
-    return drawnLambda(p);
-  }
-
+const lambdaDiagram = {
+  drawn: ({p}) => drawnLambda(p),
   y() {
     const held = (p) => {
       const [first, error] = [lambda(0)(p), errorOf(p)];
@@ -154,8 +139,7 @@ class LambdaDiagram extends Diagram {
       return [first - error, first + error, lambda(1)(p), ofOtherMotion(lambda(0))(p)];
     };
     return {range: rangeOf([[0], ...this.values(held)]), label: "λ"};
-  }
-
+  },
   marks(frame) {
     const alpha = this.view.several ? 0.5 : 1;
     const ofStart = (s) => {
@@ -167,17 +151,13 @@ class LambdaDiagram extends Diagram {
     };
     const zero = levels({y: 0, colour: "soft"});
     return [zero, ...this.view.starts().flatMap(ofStart), ...this.rings(frame, lambda(0))];
-  }
-
-  columns() {
-    return {
-      "λ₁": lambda(0),
-      "standard error": errorOf,
-      "λ₂": lambda(1),
-      verdict: (p) => q.verdicts[p.verdict] ?? "–",
-    };
-  }
-
+  },
+  columns: () => ({
+    "λ₁": lambda(0),
+    "standard error": errorOf,
+    "λ₂": lambda(1),
+    verdict: (p) => q.verdicts[p.verdict] ?? "–",
+  }),
   about() {
     const points = this.points.filter((p) => p.lambda);
     const chaotic = points.filter((p) => p.verdict === "chaotic").length;
@@ -186,18 +166,16 @@ class LambdaDiagram extends Diagram {
     const ends = values.length ? `λ₁ from ${least} to ${most}; ` : "";
     const summary = `${ends}chaotic over the measured cycles at ${chaotic} of ${points.length} points`;
     return {title: "Largest exponent λ₁", summary};
-  }
-}
+  },
+};
 
-class QuantityDiagram extends Diagram {
+const quantityDiagram = {
   quantity() {
     return q.quantityOf(this.view.choice.beside, this.view.data);
-  }
-
+  },
   drawn({p}) {
     return this.quantity().of(p);
-  }
-
+  },
   y() {
     const {of, levels = [], free = () => null, from0, label} = this.quantity();
     const held = (p) => [of(p), free(p), ofOtherMotion(of)(p)];
@@ -205,8 +183,7 @@ class QuantityDiagram extends Diagram {
     if (!from0) return {range: [min, max], label};
     const most = Math.max(max, Math.min(levels[0] ?? 0, max * 1.5)) * 1.02;
     return {range: [0, most], label};
-  }
-
+  },
   marks(frame) {
     const {of, levels: y = [], free} = this.quantity();
     const ofStart = (s) => {
@@ -220,27 +197,21 @@ class QuantityDiagram extends Diagram {
     const bands = this.view.several ? [] : [this.regimes(0, named)];
     const ofStarts = this.view.starts().flatMap(ofStart);
     return [...bands, levels({y}), ...ofStarts, ...this.rings(frame, of)];
-  }
-
+  },
   columns() {
     const {label, of, free} = this.quantity();
-    return {
-      [label]: of,
-      ...(free && {"without the absorber": free}),
-      regime: (p) => p.regime ?? "–",
-    };
-  }
-
+    const without = free && {"without the absorber": free};
+    return {[label]: of, ...without, regime: (p) => p.regime ?? "–"};
+  },
   about() {
     const texts = countRegimes(this.points)
       .filter(([, n]) => n)
       .map(([regime, n]) => `${regime === "none" ? q.regimes.none : regime}: ${n}`);
     const summary = `points of each regime: ${texts.join(", ")}`;
     return {title: `Regimes and ${this.quantity().title}`, summary};
-  }
-}
+  },
+};
 
-/** Steps of the keys along the axis. */
 const steps = {
   ArrowLeft: -1,
   ArrowRight: 1,
@@ -257,8 +228,8 @@ const closest = (places, away) =>
 export class DiagramView extends SweepView {
   constructor(root, ...rest) {
     super(root, [new Viewport()], ...rest);
-    const kinds = {section: SectionDiagram, lambda: LambdaDiagram, other: QuantityDiagram};
-    this.plots = Object.entries(kinds).map(([name, Kind]) => new Kind(this, name));
+    const kinds = {section: sectionDiagram, lambda: lambdaDiagram, other: quantityDiagram};
+    this.plots = Object.entries(kinds).map(([name, kind]) => new Diagram(this, name, kind));
   }
 
   refresh(choice) {
@@ -283,10 +254,7 @@ export class DiagramView extends SweepView {
     return this.byStart.map((list) => list.find((place) => place.at[0] === at));
   }
 
-  /**
-   * The nearest point of the first start or, given a height in px, of the start drawn nearest to
-   * it.
-   */
+  /** The nearest point of the first start or, given a height, of the start drawn nearest to it. */
   nearest({plot, at, top}) {
     const place = closest(this.byStart[0], (other) => Math.abs(other.at[0] - at[0]));
     if (!place || top === undefined) return place;

@@ -1,5 +1,4 @@
-// A map: a sweep over two axes, or one slice of a sweep over three. A quantity is shown as colours
-// with a scale. Missing points take the colour of a coarser neighbour.
+// A map: a quantity over two axes, as colours. Missing points look like a coarser neighbour.
 import {font, ticks} from "../shared/frame.js";
 import {colour, drawText, drawTextUpwards, hex, ink, rgb} from "../shared/ink.js";
 import {kind, pixel, raster} from "../shared/marks.js";
@@ -10,7 +9,6 @@ import * as labels from "./axis_labels.js";
 import {startStyle} from "./diagram.js";
 import {missingPoint, SweepPlot, SweepView} from "./sweep_view.js";
 
-/** Steps of the keys over the cells. */
 const moves = {ArrowLeft: [-1, 0], ArrowRight: [1, 0], ArrowUp: [0, 1], ArrowDown: [0, -1]};
 
 const firstPass = 1 / 40; // fraction of the points after which the colour scale is fixed
@@ -30,7 +28,6 @@ export class MapView extends SweepView {
     return {...place, p: data.points[index], data, index, best};
   }
 
-  /** Cells of a layer with a point. */
   *cells(data) {
     const [first, second] = data.axes;
     for (let l = 0; l < second.at.length; ++l)
@@ -51,14 +48,11 @@ export class MapView extends SweepView {
 
   /** The finest cell at a place, preferably one with a point. */
   nearest({at}) {
-    let found = null;
-    for (const data of this.over()) {
+    const cells = this.over().flatMap((data) => {
       const [k, l] = at.map((place, i) => positionAt(data.axes[i], place));
-      if (k < 0 || l < 0) continue;
-      const cell = this.cell(data, k, l);
-      if (cell.p || !found) found = cell;
-    }
-    return found;
+      return k < 0 || l < 0 ? [] : [this.cell(data, k, l)];
+    });
+    return cells.findLast(({p}) => p) ?? cells[0];
   }
 
   rowsOf({p, data, value, height}) {
@@ -100,14 +94,10 @@ class MapPlot extends SweepPlot {
     return p.error ? null : (this.quantity().of(this.motion(p)) ?? null);
   }
 
-  /** The attractors of the visible slice: a map from the name to the number of points. */
-  attractors() {
-    const counts = new Map();
-    for (const {p} of this.view.cells(this.view.data)) {
-      const name = this.valueOf(p);
-      if (name !== null) counts.set(name, (counts.get(name) ?? 0) + 1);
-    }
-    return counts;
+  /** The values of the visible slice. */
+  values() {
+    const values = [...this.view.cells(this.view.data)].map(({p}) => this.valueOf(p));
+    return values.filter((v) => v !== null);
   }
 
   /** Colour name of a category; that of an attractor does not change while points arrive. */
@@ -120,18 +110,14 @@ class MapPlot extends SweepPlot {
     return coloured.get(name);
   }
 
-  /**
-   * The colour scale; null for categories. It is fixed for each quantity once a coarse picture of
-   * the whole map exists, and holds for all slices and starts.
-   */
+  /** The colour scale; null for categories. It stays once a coarse picture of the map exists. */
   scale() {
     const quantity = this.quantity();
     if (quantity.categories) return null;
     const {layers, data, choice} = this.view;
     const chosen = layers.ends[choice.map];
     if (chosen) return scaleOf(quantity, chosen);
-    const drawn = [...this.view.cells(data)].map(({p}) => this.valueOf(p));
-    const values = drawn.filter((v) => v !== null);
+    const values = this.values();
     const ends = endsOf(quantity, values);
     const seen = data.complete || data.received > Math.max(firstPass * data.total, 50);
     if (seen && values.length) layers.ends[choice.map] = ends;
@@ -225,11 +211,7 @@ function positions(axis, [from, to], pixels) {
 /** Step of the coarsest grid along an axis of n values; the service starts with that grid. */
 const coarsest = (n) => 2 ** Math.floor(Math.log2(Math.max(Math.floor(n / 8), 1)));
 
-/**
- * Gives missing cells the colour of the preceding point on a coarser grid, in the order in which
- * the service computes. columns, rows: index of each position in the requested axis, ascending or
- * descending, which makes them their own inverses.
- */
+/** Gives missing cells the colour of the preceding point on a coarser grid of the service. */
 function fillGaps(cells, columns, rows) {
   const n = columns.length;
   const [widest, highest] = [coarsest(n), coarsest(rows.length)];
@@ -262,10 +244,7 @@ function rounded(v) {
 
 const spare = 0.02; // fraction of the values at either end that can lie beyond the scale
 
-/**
- * Round ends of the colour scale of some values. A few outliers can lie beyond the ends, so that
- * they do not flatten the colours of the others.
- */
+/** Round ends of the colour scale, beyond which a few outliers can lie. */
 function endsOf({diverging, from0}, values) {
   const sorted = Float64Array.from(values).sort();
   const n = sorted.length;
@@ -281,10 +260,7 @@ function endsOf({diverging, from0}, values) {
   return ends[0] < ends[1] ? ends : [ends[0], ends[0] + step];
 }
 
-/**
- * {at(value): colour as bytes, ends, beyond: [whether at() got values below the scale, above it]}.
- * The colours of a diverging scale are symmetric about 0, whatever its ends.
- */
+/** {at(value): colour as bytes, ends, beyond: whether at() got values below and above the ends}. */
 function scaleOf({diverging}, ends) {
   const [low, high] = ends;
   const stops = colour(diverging ? "diverging" : "sequential")

@@ -1,32 +1,25 @@
 // Refinement: the visible range of a zoomed sweep is computed again with the same number of points.
 import {Job} from "../shared/job.js";
+import {clamp} from "../shared/numbers.js";
 import {receive, SweepData} from "./data.js";
 
 const pause = 350; // ms without zooming before it starts
 const maxPoints = 20000;
 
-/**
- * An axis of the request whose `count` values are the centres of equal cells of the visible range
- * [low, high], clipped to the full range. low, high and at are places on the axis (data.js), which
- * valueAt() converts to values.
- */
+/** An axis of the request with the centres of `count` equal cells of visible places (data.js). */
 function axisOf(given, {from: valueAt, at}, [low, high], count) {
   const half = (high - low) / count / 2;
-  const inside = (place) => Math.min(Math.max(place, at[0]), at.at(-1));
-  const rounded = (place) => Number(valueAt(inside(place)).toPrecision(12));
+  const rounded = (place) => Number(valueAt(clamp(place, at[0], at.at(-1))).toPrecision(12));
   const [from, to] = [low + half, high - half].map(rounded);
   return {parameter: given.parameter, from, to, count, scale: given.scale};
 }
 
 export class Refiner {
-  /**
-   * drawn(): called when points were received; settled(): when all were received; say(text): shows
-   * the status, "" for none.
-   */
+  /** drawn(), settled(): called for some or all received points; say(text): shows the status. */
   constructor({drawn, settled, say}) {
     Object.assign(this, {drawn, say, view: null, waiting: 0});
     this.job = new Job({
-      ask: (data, signal) => this.ask(data, signal),
+      ask: (data, signal) => receive(data, signal, (line) => this.take(data, line)),
       show: () => {
         this.say("");
         settled();
@@ -75,32 +68,26 @@ export class Refiner {
   /** Sweep of the visible range. A third axis is fixed at the slice shown, a reduced axis stays. */
   makeRefined(counts) {
     const {data, viewports, choice} = this.view;
-    const request = data.request.axes.map((given) => {
+    const axes = data.request.axes.map((given) => {
       const i = data.axes.findIndex(({parameter}) => parameter === given.parameter);
       const {parameter, values} = data.axes[i] ?? {};
       if (viewports[i]) return axisOf(given, data.axes[i], viewports[i].range, counts[i]);
       return i < 0 ? given : {parameter, values: [values[choice.slice]]};
     });
-    const refined = new SweepData({...data.request, axes: request});
-    refined.ranges = viewports.map(({range}) => range);
-    if (data.axes[2]) refined.slice = choice.slice;
-    return refined;
+    const ranges = viewports.map(({range}) => range);
+    const slice = data.axes[2] ? choice.slice : null;
+    return Object.assign(new SweepData({...data.request, axes}), {ranges, slice});
   }
 
-  async ask(data, signal) {
-    await receive(data, signal, ({type}) => {
-      if (type === "start") this.view.layers.add(data);
-      if (type !== "point") return;
-      this.say(`refining: ${data.received} of ${data.total} points`);
-      this.drawn();
-    });
+  take(data, {type}) {
+    if (type === "start") this.view.layers.add(data);
+    if (type !== "point") return;
+    this.say(`refining: ${data.received} of ${data.total} points`);
+    this.drawn();
   }
 }
 
-/**
- * Points along each visible axis, unchanged or scaled down equally so that all points times starts
- * stay within maxPoints, but at least 2.
- */
+/** Points along each axis, scaled down so that all stay within maxPoints, but at least 2. */
 function countsOf({axes, starts}, n) {
   const counts = axes.slice(0, n).map(({at}) => at.length);
   const product = counts.reduce((a, b) => a * b, starts);

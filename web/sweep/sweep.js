@@ -1,9 +1,7 @@
-// The sweep tab: the form starts a stream of points, drawn while they arrive. The query holds the
-// request and the menus.
+// The sweep tab: a stream of points, drawn while they arrive. The query holds request and menus.
 import {asCurl} from "../shared/api.js";
 import * as dom from "../shared/dom.js";
 import {$} from "../shared/dom.js";
-
 import {RequestTab} from "../shared/job.js";
 import {percent} from "../shared/numbers.js";
 import * as q from "../shared/quantities.js";
@@ -48,13 +46,12 @@ function time(seconds) {
 
 /** Failed and truncated points of a complete sweep, as text. */
 function remarksOn({points}) {
-  const found = new Map();
-  for (const {error, reason} of points) {
-    const early = reason && reason !== "complete" && "stopped at max_impacts";
-    const what = error ? `failed: ${error}` : early;
-    if (what) found.set(what, (found.get(what) ?? 0) + 1);
-  }
-  return [...found].map(([what, n]) => `${grouped(n)} points ${what}`).join("; ");
+  const found = Map.groupBy(points, ({error, reason}) => {
+    if (error) return `failed: ${error}`;
+    return reason && reason !== "complete" ? "stopped at max_impacts" : "";
+  });
+  found.delete("");
+  return [...found].map(([what, {length}]) => `${grouped(length)} points ${what}`).join("; ");
 }
 
 /** Shows the elements whose data-if names something that holds for the sweep. */
@@ -82,7 +79,6 @@ function showParts({axes, section, defaultSet, starts, parameters, reduced, poin
     node.hidden = !holds[node.dataset.if];
 }
 
-/** Shows the number of points of each regime. */
 function showRegimes({points}) {
   for (const [regime, n] of countRegimes(points)) {
     const number = $(`sweep-regime-${regime}`);
@@ -93,7 +89,7 @@ function showRegimes({points}) {
 }
 
 /** Legend entry with a mark, both in a colour; `more` follows it. */
-function legendEntry(text, mark, colour, ...more) {
+function legendEntry(text, {mark, colour}, ...more) {
   const key = dom.keyOf(mark, colour, text);
   key.dataset.colour = colour;
   return dom.element("li", {}, key, ...more);
@@ -101,21 +97,15 @@ function legendEntry(text, mark, colour, ...more) {
 
 /** Shows the legend of a map of attractors, the most frequent first; empty for other plots. */
 function showAttractors({choice, plots: [map]}) {
-  const counts = choice.map === "attractor" ? [...map.attractors()] : [];
-  const all = counts.reduce((sum, [, n]) => sum + n, 0);
-  const items = counts
-    .sort(([, n], [, m]) => m - n)
-    .map(([name, n]) => {
-      const share = dom.element("small", {}, percent(n / all));
-      return legendEntry(name.replace("_", " "), "■", map.colourOf(name), share);
+  const names = choice.map === "attractor" ? map.values() : [];
+  const items = [...Map.groupBy(names, (name) => name)]
+    .sort(([, one], [, other]) => other.length - one.length)
+    .map(([name, {length}]) => {
+      const share = dom.element("small", {}, percent(length / names.length));
+      const style = {mark: "■", colour: map.colourOf(name)};
+      return legendEntry(name.replace("_", " "), style, share);
     });
   $("sweep-attractors").replaceChildren(...items);
-}
-
-/** Legend entry of a start: its symbol and state. */
-function startKey(state, s) {
-  const {mark, colour} = startStyle(s);
-  return legendEntry(`${s + 1}: ${labels.fields(state)}`, mark, colour);
 }
 
 // The table of peaks.
@@ -140,10 +130,7 @@ function ofStarts(data) {
   return [...own, ...motionsOf(points[0])];
 }
 
-/**
- * Shows the table of the largest |x| from each start over a whole axis: for a reduction that leaves no
- * axis, and for the default set of starts over one axis.
- */
+/** Shows the largest |x| from each start over a whole axis: reduced, or of the default set. */
 function showPeaks(data) {
   const {reduced, axes, defaultSet, request} = data;
   const bare = reduced && !axes.length;
@@ -154,12 +141,11 @@ function showPeaks(data) {
   const which = request.reduce?.startsWith("min") ? "Smallest" : "Largest";
   const title = `${which} |x| over ${q.symbolOf(parameter)}, from each start`;
   dom.setTexts({"sweep-peaks-title": title});
-  const peaks = new Map(); // the highest of each start, in descending order
   const motions = bare ? ofStarts(data) : alongAxis(data);
-  for (const m of motions.sort((a, b) => (b.x_max ?? -1) - (a.x_max ?? -1)))
-    if (!peaks.has(m.start)) peaks.set(m.start, m);
+  motions.sort((a, b) => (b.x_max ?? -1) - (a.x_max ?? -1));
+  const peaks = Map.groupBy(motions, ({start}) => start); // of each start the highest first
   const head = ["start", "largest |x| (mm)", `at ${labels.label(parameter)}`, "regime", "verdict"];
-  const rows = [...peaks.values()].map((m) => [
+  const rows = [...peaks.values()].map(([m]) => [
     startsAndFree[m.start] ?? m.start,
     m.x_max == null ? "–" : (m.x_max * 1000).toFixed(1),
     m.where == null ? "–" : labels.text(parameter, m.where),
@@ -220,9 +206,8 @@ export class SweepTab extends RequestTab {
       dom.copy(asCurl({path: "v1/sweep", body: this.form.request()}, "-sN"), this.say);
   }
 
-  /** The request of the sweep shown, as a query; null before the first. */
-  shown() {
-    return this.data && SweepForm.toQuery(this.data.request);
+  formQuery() {
+    return SweepForm.toQuery(this.form.request());
   }
 
   query() {
@@ -231,13 +216,13 @@ export class SweepTab extends RequestTab {
       .filter(([, {selectedIndex}]) => selectedIndex > 0)
       .map(([name, {value}]) => `${name}=${value}`);
     const ends = this.view?.ends().join(",");
-    return [this.shown(), ...menu, ...(ends ? [`view=${ends}`] : [])].join("&");
+    return [this.asked, ...menu, ...(ends ? [`view=${ends}`] : [])].join("&");
   }
 
   open(given) {
     const numbers = given.get("view")?.split(",").map(Number) ?? [];
     const ends = numbers.every(Number.isFinite) ? numbers : [];
-    if (this.data && requestOf(given) === requestOf(this.shown())) {
+    if (this.data && requestOf(given) === requestOf(this.asked)) {
       // The same sweep with other menus: Back or Forward.
       for (const [name, menu] of Object.entries(ofQuery)) dom.choose(menu, given.get(name));
       this.view?.zoomTo(ends);
@@ -305,23 +290,21 @@ export class SweepTab extends RequestTab {
 
   /** Marks the results if the form differs, and selects the example that the form shows. */
   markStale() {
-    exampleOf(SweepForm.toQuery(this.form.request())).selected = true;
+    exampleOf(this.formQuery()).selected = true;
     super.markStale();
-  }
-
-  isStale() {
-    return this.data !== null && SweepForm.toQuery(this.form.request()) !== this.shown();
   }
 
   /** Shows the empty diagrams of a new sweep. */
   present(data) {
     const edit = this.data && !data.ends;
     this.data = data;
+    this.asked = SweepForm.toQuery(data.request);
     data.folded = data.reduced && labels.of(data.reduced);
     this.view = this.views[data.axes.length];
     this.form.showOrigins(data.parameters);
     this.fillMenus();
-    $("sweep-starts").replaceChildren(...data.states.map(startKey));
+    const keyOf = (state, s) => legendEntry(`${s + 1}: ${labels.fields(state)}`, startStyle(s));
+    $("sweep-starts").replaceChildren(...data.states.map(keyOf));
     this.view?.show(new Layers(data));
     this.refiner.follow(this.view);
     this.redraw();
@@ -335,11 +318,9 @@ export class SweepTab extends RequestTab {
     const {section, defaultSet, axes, states} = this.data;
     const {parameter = "", values = []} = axes[2] ?? {};
     dom.setTexts({"sweep-slice-word": `where ${q.symbolOf(parameter)} =`});
+    const titled = ([name, {title}]) => [name, title];
     const entries = {
-      coordinate: Object.entries(q.coordinates[section] ?? {}).map(([name, {title}]) => [
-        name,
-        title,
-      ]),
+      coordinate: Object.entries(q.coordinates[section] ?? {}).map(titled),
       [axes.length > 1 ? "map" : "beside"]: q.menuOf(this.data),
       start: defaultSet ? [[0, "worst"], ["best"]] : states.map((_, s) => [s, s + 1]),
       slice: values.map((v, m) => [m, labels.valueText(parameter, v)]),

@@ -1,7 +1,7 @@
-// The form of a sweep: axes, run of each point, shared fields; and its conversion to and from a
-// query. The fields of an axis have its name in front: axis1_from.
+// The form of a sweep; its fields of an axis have the axis' name in front: axis1_from.
 import {$, element, fillMenu, setTexts} from "../shared/dom.js";
 import {BaseForm, defaultSet, queryOf, shown, smallScreen, unknownText} from "../shared/form.js";
+import {joined} from "../shared/numbers.js";
 import {unitShown} from "../shared/units.js";
 
 const none = "none";
@@ -27,19 +27,13 @@ function axisFields(axis, fields, parameters, optional) {
 function runFields(fields, base) {
   const own = fields.filter((f) => ["integer", "choice"].includes(f.type) && f.name !== "format");
   const reduce = {choices: [none], default: none};
-  const of = (part) => (f) => ({...f, part, group: "sweep"});
-  return [
-    ...own
-      .map((f) => ({...f, ...(f.name === "reduce" ? reduce : {}), narrow: true}))
-      .map(of("run")),
-    ...base.filter((f) => f.name === "max_impacts").map(of("base")),
-    ...fields.filter((f) => f.name === "starts").map((f) => ({...of("run")(f), type: "states"})),
+  const named = (list, name) => list.find((f) => f.name === name);
+  const all = [
+    ...own.map((f) => ({...f, ...(f.name === "reduce" && reduce), narrow: true})),
+    {...named(base, "max_impacts"), part: "base"},
+    {...named(fields, "starts"), type: "states"},
   ];
-}
-
-function noteOf({description, unit: own}) {
-  const {unit} = unitShown(own);
-  return unit ? `${description}, in ${unit}` : description;
+  return all.map((f) => ({part: "run", ...f, group: "sweep"}));
 }
 
 /** A count with its digits in groups of three. */
@@ -60,9 +54,8 @@ export class SweepForm extends BaseForm {
       ...runFields(tables.sweep_fields, tables.fields),
     ]);
     $("sweep-more").open = !smallScreen; // the results lie below the form
-    this.notes = axisNames.map((axis) =>
-      this.parts.get(axis).appendChild(element("p", {className: "note"})),
-    );
+    const addNote = (axis) => this.parts.get(axis).appendChild(element("p", {className: "note"}));
+    this.notes = axisNames.map(addNote);
     this.named.get("starts").error.before($("sweep-default"));
     container.addEventListener("input", ({target}) => {
       const field = this.fields.find(({input}) => input === target);
@@ -73,37 +66,22 @@ export class SweepForm extends BaseForm {
     });
   }
 
-  /**
-   * Another parameter of an axis clears the ends, which belong to the previous one. A map does not
-   * show a section, which would be most of the answer, so it is turned off.
-   */
+  /** Another parameter clears the ends of its axis. A second axis turns off the section. */
   edited(name, value) {
     const axis = axisNames.find((each) => name === parameterOf(each));
     if (axis) for (const end of endsOf(axis)) this.replace(end, "");
     if (axis && axis !== axisNames[0] && value !== none) this.input("section").value = none;
   }
 
-  /** The default of a field. */
-  standard(name) {
-    return this.fields.find((f) => f.name === name).default;
-  }
-
-  /** Parameters of the axes; "none" for a missing axis. */
-  swept() {
-    return axisNames.map((axis) => this.input(parameterOf(axis)).value);
-  }
-
-  /**
-   * Adapts ranges, units, disabled fields and the size to the fields. reduce: the reduction to
-   * select, if it changes.
-   */
+  /** Adapts ranges, units, disabled fields and size. reduce: the reduction to select, if new. */
   adapt(reduce) {
-    const swept = this.swept();
+    const swept = axisNames.map((axis) => this.input(parameterOf(axis)).value);
     for (const [i, axis] of axisNames.entries()) {
       const field = this.parameters.get(swept[i]);
       for (const part of axisParts)
         this.named.get(`${axis}_${part}`).row.hidden = !field && part !== "parameter";
-      this.notes[i].textContent = field ? noteOf(field) : "";
+      const {unit} = unitShown(field?.unit);
+      this.notes[i].textContent = joined([field?.description, unit && `in ${unit}`]);
       const [from, to] = endsOf(axis);
       this.scale([from, to], swept[i]);
       this.input(from).placeholder = `from ${shown(this.named.get(from), field?.minimum)}`;
@@ -113,10 +91,7 @@ export class SweepForm extends BaseForm {
     this.showSize();
   }
 
-  /**
-   * Adapts the reductions, and disables fields that are swept, or that cannot be combined with the
-   * default set of starts or with a reduction, both of which report several motions.
-   */
+  /** Adapts the reductions; disables what is swept or excluded by several motions of a point. */
   adaptRun(swept, reduce) {
     const axes = swept.filter((name) => name !== none);
     const reductions = axes.flatMap((name) => [[`max over ${name}`], [`min over ${name}`]]);
@@ -150,7 +125,6 @@ export class SweepForm extends BaseForm {
     return queryOf({...Object.fromEntries(texts), ...run, ...base});
   }
 
-  /** Fills the form from a query. */
   setQuery(query) {
     const fields = Object.fromEntries(query);
     const unknown = this.unknown(fields).filter((name) => !axisNames.includes(name));
@@ -184,7 +158,7 @@ export class SweepForm extends BaseForm {
     const starts = several ? 1 : given?.length || 1;
     const counts = axes.map(({count}) => count ?? NaN);
     const points = counts.reduce((a, n) => a * n, starts);
-    const cyclesOf = (name) => run[name] ?? this.standard(name);
+    const cyclesOf = (name) => run[name] ?? this.named.get(name).default;
     // The default set: five motions per point.
     const each = (several ? 5 : 1) * (cyclesOf("transient_cycles") + cyclesOf("cycles"));
     const factors = [...counts, ...(starts > 1 ? [`${starts} starts`] : [])];

@@ -1,5 +1,4 @@
-// Base of the views of a sweep, over one axis or two: its plots share viewports, choices and a
-// tooltip, which follows the mouse, a tap or the keys.
+// Base of the views of a sweep: its plots share viewports, choices and a tooltip.
 import {$, button, element} from "../shared/dom.js";
 import {addExportButton} from "../shared/export.js";
 import {Frame} from "../shared/frame.js";
@@ -11,25 +10,18 @@ import * as labels from "./axis_labels.js";
 const gap = 14; // px between a place and its tooltip
 const zooms = {"+": 1.5, "=": 1.5, "-": 1 / 1.5};
 
-/** Tooltip of a missing point. */
 export const missingPoint = [["", "not computed yet"]];
 
-/**
- * A plot of a SweepView. Subclasses implement
- * about(): {title, summary};
- * drawn(place): y at which a place is drawn, null if it has several or none;
- * columns(): functions that return numbers of a point, {name: of(p)}.
- */
+/** Subclasses have about(): {title, summary}, drawn(place): y or null, columns(): {name: of(p)}. */
 export class SweepPlot extends ZoomablePlot {
   /** name: in the ids of its figure and container. */
   constructor(view, name) {
     super($(`plot-sweep-${name}`), ...view.viewports);
     this.view = view;
-    addExportButton($(`figure-sweep-${name}`), this, () => ({
-      ...this.about(),
-      caption: view.caption(),
-      name: `sweep-${name}`,
-    }));
+    addExportButton($(`figure-sweep-${name}`), this, () => {
+      const {base, axes, ...run} = view.data.request; // the caption shows the shared fields
+      return {...this.about(), caption: labels.fields({...base, ...run}), name: `sweep-${name}`};
+    });
     this.over.addEventListener("pointermove", ({pointerType, buttons}) => {
       if (pointerType !== "mouse" || this.viewport.cursor === null) return;
       if (buttons) view.hideTip();
@@ -69,7 +61,7 @@ export class SweepPlot extends ZoomablePlot {
     return [Object.values(this.columns()).map((of) => of(p))];
   }
 
-  /** {names, columns} of the visible points. */
+  /** {names, rows} of the visible points. */
   numbers() {
     const {data, viewports, several} = this.view;
     const shown = data.axes.slice(0, viewports.length).map(({parameter}) => parameter);
@@ -79,33 +71,23 @@ export class SweepPlot extends ZoomablePlot {
       const at = shown.map((parameter, i) => labels.number(parameter, i ? height : value));
       return this.rows(p).map((row) => [...at, ...starts.map(() => start + 1), ...row]);
     });
-    return {names, columns: names.map((_, i) => rows.map((row) => row[i]))};
+    return {names, rows};
   }
 }
 
 /**
- * A place is {at, value, height, p, data, index}: at, the coordinates on the axes; value and
- * height, the values of the first and the second parameter there; p, the received point; data and
- * index, its sweep and its index in the sweep.
- *
- * Subclasses have
- * plots: [SweepPlot];
- * places(): the places with received points;
- * nearest({plot, at, top}): the place nearest to `at`; top: the clicked height in px, if any;
- * rowsOf(place): rows of the tooltip, [term, value];
- * move(key): goes to another place; returns false for other keys.
- *
- * `current` is the position of the tooltip: {plot, at, act: true if it has a button}.
+ * A place is {at: coordinates on the axes, value, height: of the parameters, p: the point, data,
+ * index: its sweep and index there}. Subclasses have plots; places() with received points;
+ * nearest({plot, at, top: the clicked height, if any}); rowsOf(place): [term, value] of the
+ * tooltip; move(key): goes to another place, false for other keys. `current`: the tooltip's {plot,
+ * at, act: whether it has a button}.
  */
 export class SweepView {
   layers = null;
   current = null;
   tip = element("div", {className: "tip", hidden: true, ariaLive: "polite"});
 
-  /**
-   * root: contains the plots and receives the keys; open({data, index, best}): called for a chosen
-   * point.
-   */
+  /** root: contains the plots, receives the keys; open({data, index, best}): opens a point. */
   constructor(root, viewports, open) {
     Object.assign(this, {root, viewports, open});
     root.append(this.tip);
@@ -134,21 +116,13 @@ export class SweepView {
     }
   }
 
-  /**
-   * Draws the received points. choice: texts of the menus,
-   * coordinate: of the section;
-   * beside: quantity of the lowest plot;
-   * map: quantity of a map;
-   * start: index of the start that a map shows, or "best" for the best motion in place of the worst;
-   * slice: position on the third axis.
-   */
+  /** Draws the received points by the texts of the menus; start: an index, or "best". */
   refresh({start, slice, ...choice}) {
     const best = start === "best";
     this.choice = {...choice, best, start: best ? 0 : Number(start), slice: Number(slice)};
     for (const plot of this.plots) plot.refresh();
   }
 
-  /** The visible places. */
   visiblePlaces() {
     const {viewports} = this;
     return this.places().filter(({at}) => viewports.every((each, i) => each.holds(at[i])));
@@ -160,12 +134,6 @@ export class SweepView {
       const {title, summary} = plot.about();
       makeAccessible(plot, `${title}: ${summary}`);
     }
-  }
-
-  /** Subtitle of an exported picture: the shared fields. */
-  caption() {
-    const {base, axes, ...run} = this.data.request;
-    return labels.fields({...base, ...run});
   }
 
   /** Ends of the visible ranges as rounded values; empty for the full range. */
@@ -184,7 +152,9 @@ export class SweepView {
   }
 
   key(key) {
-    if (key in zooms) for (const viewport of this.viewports) viewport.zoomAbout(zooms[key]);
+    const middle = ({range, width}) => range[0] + width / 2;
+    if (key in zooms)
+      for (const each of this.viewports) each.zoomAt(each.cursor ?? middle(each), zooms[key]);
     else if (key === "0") for (const viewport of this.viewports) viewport.reset();
     else if (key === "Enter") this.choose(this.current);
     else if (key === "Escape") this.hideTip();
