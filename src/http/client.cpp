@@ -19,11 +19,14 @@ constexpr int owner_bits = 64;
 
 bool is_v4(const std::string& text) { return text.find(':') == std::string::npos; }
 
-std::optional<Bytes> bytes_of(std::string text) {
-    if (is_v4(text)) text.insert(0, "::ffff:");
+std::optional<Bytes> bytes_of(const std::string& text) {
     Bytes bytes{};
-    if (::inet_pton(AF_INET6, text.c_str(), bytes.data()) != 1) return std::nullopt;
-    return bytes;
+    int read = 0;
+    if (is_v4(text)) {
+        bytes[10] = bytes[11] = 0xff;
+        read = ::inet_pton(AF_INET, text.c_str(), &bytes[12]);
+    } else read = ::inet_pton(AF_INET6, text.c_str(), bytes.data());
+    return read == 1 ? std::optional(bytes) : std::nullopt;
 }
 
 void clear_after(Bytes& bytes, int bits) {
