@@ -2,8 +2,6 @@
 
 #include <arpa/inet.h>
 
-#include <algorithm>
-
 #include "program/whole_number.hpp"
 
 namespace vines::http {
@@ -60,10 +58,11 @@ bool Network::contains(std::string_view address) const {
 }
 
 bool contain(const Networks& networks, std::string_view address) {
-    return std::any_of(networks.begin(), networks.end(), [address](const Network& network) {
-        return network.contains(address);
-    });
+    return std::ranges::any_of(
+        networks, [address](const Network& network) { return network.contains(address); });
 }
+
+bool is_address(const std::string& text) { return bytes_of(text).has_value(); }
 
 std::string client_address(const Head& head, const std::string& peer, const Networks& proxies) {
     std::string client = peer;
@@ -72,7 +71,7 @@ std::string client_address(const Head& head, const std::string& peer, const Netw
         const std::size_t comma = forwarded.rfind(',');
         const std::size_t begin = comma == std::string_view::npos ? 0 : comma + 1;
         const std::string stated(trimmed(forwarded.substr(begin)));
-        if (!bytes_of(stated)) break;
+        if (!is_address(stated)) break;
         client = stated;
         forwarded = forwarded.substr(0, begin == 0 ? 0 : comma);
     }

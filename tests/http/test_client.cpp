@@ -37,7 +37,8 @@ TEST_CASE("entries before the one of an untrusted address can be forged and do n
 }
 
 TEST_CASE("a network is an address with up to as many bits as it has") {
-    for (const char* text : {"", "10.0.0.0/33", "10.0.0.0/", "10.0.0/8", "::/129", "host", "cafe", "/8"})
+    for (const char* text :
+         {"", "10.0.0.0/33", "10.0.0.0/", "10.0.0/8", "::/129", "host", "cafe", "/8"})
         CHECK_FALSE(Network::read(text));
     CHECK(Network::read("0.0.0.0/0")->contains("255.1.2.3"));
     CHECK_FALSE(Network::read("0.0.0.0/0")->contains("2001:db8::1"));
