@@ -133,8 +133,7 @@ private:
     }
 
     /// True after this multiple of the deadline, not counting the time in which the permit waits;
-    /// without a permit; once the client has left; or if the server stops. For one thread at a
-    /// time.
+    /// without a permit; once the client has left; or if the server stops. One thread at a time.
     bool is_over(double fraction) {
         if (!permit_.renew()) return true;
         const auto now = Clock::now();
@@ -212,8 +211,7 @@ std::string encoded(
 }
 
 /// RunControl of a streamed answer: one slot for each run, none while its lists are sent. It
-/// releases the slot while requests wait. A started answer is finished even if the server is about
-/// to stop.
+/// releases the slot while requests wait. A started answer is finished even if sweeps are stopped.
 class StreamPace : public RunControl {
 public:
     StreamPace(AdmissionControl& admission, std::string client, Writer& out)

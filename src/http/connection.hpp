@@ -1,7 +1,6 @@
 // One client's connection. It turns the bytes that arrive into one complete request after another,
 // and sends the answers, without blocking.
-// Its time limits: 10 s for a head, 10 s for each further 64 KiB of a body, 60 s idle between
-// requests.
+// Time limits: 10 s for a head, 10 s for each further 64 KiB of a body, 60 s between requests.
 #pragma once
 
 #include <memory>
