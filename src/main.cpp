@@ -1,14 +1,6 @@
 // Entry point of the program `vines`: registers the subcommands and runs the selected one.
-#include <fmt/format.h>
-
-#include <CLI/CLI.hpp>
-#include <algorithm>
-#include <cstdlib>
-#include <functional>
 #include <set>
 #include <sstream>
-#include <string>
-#include <vector>
 
 #include "api/schema/field.hpp"
 #include "api/version.hpp"
@@ -17,17 +9,6 @@
 #include "program/subcommand.hpp"
 
 namespace {
-
-const char* const examples =
-    "vines simulate -p preset=fig3 --plot\n"
-    "vines identify record.csv -p preset=fig20 | jq .verdict\n"
-    "vines serve --port 8080";
-
-/// "vines" and the selected subcommand, for usage errors.
-std::string name_of_selected(const CLI::App& app) {
-    const auto selected = app.get_subcommands();
-    return "vines" + (selected.empty() ? "" : " " + selected[0]->get_name());
-}
 
 /// Error message for the first argument, which must be a subcommand or a flag of the program; empty
 /// if it is valid.
@@ -38,7 +19,7 @@ std::string first_argument_error(const CLI::App& app, const std::string& first) 
     if (first.empty())
         return fmt::format("no subcommand given; expected one of: {}", fmt::join(names, ", "));
     if (first[0] == '-') return app.get_option_no_throw(first) ? "" : "unknown flag " + first;
-    if (std::find(names.begin(), names.end(), first) != names.end()) return "";
+    if (std::ranges::count(names, first) > 0) return "";
     return "unknown subcommand " + first + vines::api::did_you_mean(names, first);
 }
 
@@ -72,14 +53,6 @@ int run_with_exit_code(const std::function<int()>& run) {
     }
 }
 
-/// Prints the text of --help or --version.
-int print_text(const CLI::App& app, const CLI::Success& request) {
-    std::ostringstream text;
-    const int code = app.exit(request, text, text);
-    vines::print(text.str());
-    return code;
-}
-
 }  // namespace
 
 int main(int argc, char** argv) {
@@ -109,7 +82,12 @@ int main(int argc, char** argv) {
         vines::cli::ended_by_signals(vines::report::add_reproduce(app)),
         vines::cli::add_completion(app),
         vines::cli::add_manual(app)};
-    vines::add_examples(app, examples);  // after the subcommands, which would inherit the examples
+    // After the subcommands, which would inherit the examples.
+    vines::add_examples(
+        app,
+        "vines simulate -p preset=fig3 --plot\n"
+        "vines identify record.csv -p preset=fig20 | jq .verdict\n"
+        "vines serve --port 8080");
     const std::string first = argc > 1 ? argv[1] : "";
     // Called by the functions of `vines completion`, hence in no help.
     if (first == "complete" && argc > 2)
@@ -120,14 +98,19 @@ int main(int argc, char** argv) {
     ignore_variables_of_others(commands, first);
     try {
         app.parse(argc, argv);
-    } catch (const CLI::Success& request) {
-        return run_with_exit_code([&] { return print_text(app, request); });
+    } catch (const CLI::Success& request) {  // --help or --version
+        return run_with_exit_code([&] {
+            std::ostringstream text;
+            const int code = app.exit(request, text, text);
+            vines::print(text.str());
+            return code;
+        });
     } catch (const CLI::ParseError& e) {
-        return usage_error(e.what(), name_of_selected(app));
+        const auto selected = app.get_subcommands();
+        return usage_error(
+            e.what(), "vines" + (selected.empty() ? "" : " " + selected[0]->get_name()));
     }
     // One subcommand has been parsed: require_subcommand(1).
-    return run_with_exit_code(
-        std::find_if(commands.begin(), commands.end(), [](const vines::Command& command) {
-            return command.app->parsed();
-        })->run);
+    const auto is_parsed = [](const vines::Command& command) { return command.app->parsed(); };
+    return run_with_exit_code(std::ranges::find_if(commands, is_parsed)->run);
 }

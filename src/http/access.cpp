@@ -1,31 +1,15 @@
 #include "http/access.hpp"
 
-#include <arpa/inet.h>
-#include <fmt/format.h>
 #include <openssl/crypto.h>
 
-#include <algorithm>
-#include <array>
 #include <sstream>
-#include <stdexcept>
 
-#include "api/problem.hpp"
 #include "api/provenance.hpp"
 #include "api/schema/field.hpp"
 #include "program/descriptor.hpp"
 #include "program/whole_number.hpp"
 
 namespace vines::http {
-
-// --- Routes ---
-
-const Route* find_route(
-    const std::vector<Route>& routes, std::string_view method, std::string_view path) {
-    for (const Route& r : routes)
-        if (r.path == path && (r.method == method || (r.method == "GET" && method == "HEAD")))
-            return &r;
-    return nullptr;
-}
 
 namespace {
 
@@ -68,64 +52,17 @@ std::optional<Response> request_refusal(
         const std::string methods = allowed_methods(routes, head.path());
         if (methods.empty())
             return problem_response(404, fmt::format("there is nothing at {}", path));
-        Response response = problem_response(
-            405, fmt::format("{} takes {}, not {}", path, methods, api::shortened(head.method)));
-        response.headers.emplace_back("Allow", methods);
-        return response;
+        return problem_response(
+            405, fmt::format("{} takes {}, not {}", path, methods, api::shortened(head.method)),
+            {{"Allow", methods}});
     }
     return body_refusal(head, std::max(body_limit, route->body_limit));
 }
-
-}  // namespace
-
-// --- API keys ---
-
-namespace {
 
 // About ten thousand keys.
 constexpr std::size_t max_key_file_size = 1 << 20;
 
 constexpr std::string_view key_characters = "-._~+/=";  // and letters and digits (RFC 6750)
-
-}  // namespace
-
-std::size_t ApiKeys::reload() {
-    std::istringstream in(
-        read_regular(Descriptor(::open(path_.c_str(), open_regular)), path_, max_key_file_size));
-    std::vector<Key> keys;
-    std::size_t number = 0;
-    for (std::string line; std::getline(in, line);) {
-        ++number;
-        line = trimmed(line.substr(0, line.find('\r')));
-        if (line.empty() || line[0] == '#') continue;
-        if (line.size() < min_length || !consists_of(line, key_characters))
-            throw std::runtime_error(fmt::format(
-                "{}, line {}: a key must have {} or more characters: letters, digits or {}", path_,
-                number, min_length, key_characters));
-        keys.push_back({line, api::sha256(line).substr(0, 8)});
-    }
-    if (keys.empty()) throw std::runtime_error(fmt::format("{} contains no key", path_));
-    const std::lock_guard lock(mutex_);
-    keys_ = std::make_shared<const std::vector<Key>>(std::move(keys));
-    return keys_->size();
-}
-
-std::string ApiKeys::name_of(std::string_view authorization) const {
-    const std::string_view scheme = next_part(authorization, ' ');
-    const std::string_view shown = trimmed(authorization);
-    if (lower_case(scheme) != "bearer") return {};
-    std::string name;
-    const Keys known = keys();
-    for (const auto& [secret, its_name] : *known)
-        if (secret.size() == shown.size() &&
-            CRYPTO_memcmp(secret.data(), shown.data(), secret.size()) == 0)
-            name = its_name;
-    return name;
-}
-
-// --- Host names, origins, CORS ---
-
-namespace {
 
 /// Length of the host in HOST or HOST:PORT, with the brackets of an IPv6 address.
 std::size_t host_length(std::string_view authority) {
@@ -141,11 +78,11 @@ std::string host_of(std::string_view authority) {
     return host;
 }
 
-bool is_address(std::string_view host) {
-    std::array<unsigned char, sizeof(in6_addr)> bytes{};
+/// True for an IPv4 address, or an IPv6 address in brackets.
+bool is_address_host(std::string_view host) {
     const bool six = host.size() > 2 && host.front() == '[' && host.back() == ']';
     const std::string text(six ? host.substr(1, host.size() - 2) : host);
-    return ::inet_pton(six ? AF_INET6 : AF_INET, text.c_str(), bytes.data()) == 1;
+    return six == (text.find(':') != std::string::npos) && is_address(text);
 }
 
 /// True for a host name (RFC 1123) whose last label is not a number, which would be an address.
@@ -155,14 +92,13 @@ bool is_name(const std::string& host) {
         return !label.empty() && consists_of(label, "-") && label.front() != '-' &&
                label.back() != '-';
     };
-    return !labels.empty() && std::all_of(labels.begin(), labels.end(), is_label) &&
-           !whole_number(labels.back());
+    return !labels.empty() && std::ranges::all_of(labels, is_label) && !whole_number(labels.back());
 }
 
 /// True for localhost, names below it, and loopback addresses: 127.0.0.1, [::1].
 bool is_loopback(std::string_view host) {
     return host == "localhost" || host.ends_with(".localhost") || host == "[::1]" ||
-           host == "::1" || (is_address(host) && host.substr(0, 4) == "127.");
+           host == "::1" || (is_address_host(host) && host.starts_with("127."));
 }
 
 /// DNS rebinding: an attacker's page has a host name with a dot, registered by the attacker, who
@@ -174,8 +110,8 @@ bool is_allowed_host(std::string_view host, const AccessOptions& options) {
     };
     return is_loopback(host) || host.find_first_of(".:") == std::string_view::npos ||
            host == host_of(in_url(options.host)) ||
-           (!is_loopback(options.host) && is_address(host)) ||
-           std::any_of(options.hosts.begin(), options.hosts.end(), allows);
+           (!is_loopback(options.host) && is_address_host(host)) ||
+           std::ranges::any_of(options.hosts, allows);
 }
 
 /// Host and port of an origin, without a default port: a proxy may listen on another one.
@@ -205,18 +141,9 @@ bool follows_link(const Head& head, const Route* route) {
 
 bool is_allowed_origin(const Head& head, const AccessOptions& options) {
     const std::string origin = lower_case(head.header("origin"));
-    return !origin.empty() &&
-           std::any_of(
-               options.origins.begin(), options.origins.end(), [&origin](const auto& allowed) {
-                   return allowed == "*" || lower_case(allowed) == origin;
-               });
-}
-
-Response key_refusal() {
-    Response response = problem_response(
-        401, "this server requires an API key, in the header \"Authorization: Bearer KEY\"");
-    response.headers.emplace_back("WWW-Authenticate", "Bearer realm=\"vines\"");
-    return response;
+    return !origin.empty() && std::ranges::any_of(options.origins, [&origin](const auto& allowed) {
+        return allowed == "*" || lower_case(allowed) == origin;
+    });
 }
 
 /// The refusal by host name, origin or key.
@@ -233,7 +160,10 @@ std::optional<Response> access_refusal(
     }
     if (is_cross_origin(head) && !follows_link(head, route) && !is_allowed_origin(head, options))
         return problem_response(403, "pages of other origins may not use this server");
-    if (route && !route->is_public && options.keys && key.empty()) return key_refusal();
+    if (route && !route->is_public && options.keys && key.empty())
+        return problem_response(
+            401, "this server requires an API key, in the header \"Authorization: Bearer KEY\"",
+            {{"WWW-Authenticate", "Bearer realm=\"vines\""}});
     return std::nullopt;
 }
 
@@ -245,12 +175,56 @@ bool is_preflight(const Head& head, const AccessOptions& options) {
 
 }  // namespace
 
+const Route* find_route(
+    const std::vector<Route>& routes, std::string_view method, std::string_view path) {
+    for (const Route& r : routes)
+        if (r.path == path && (r.method == method || (r.method == "GET" && method == "HEAD")))
+            return &r;
+    return nullptr;
+}
+
+std::size_t ApiKeys::reload() {
+    std::istringstream in(
+        read_regular(Descriptor(::open(path_.c_str(), open_regular)), path_, max_key_file_size));
+    std::vector<Key> keys;
+    std::size_t number = 0;
+    for (std::string line; std::getline(in, line);) {
+        ++number;
+        line = trimmed(line.substr(0, line.find('\r')));
+        if (line.empty() || line[0] == '#') continue;
+        if (line.size() < min_length || !consists_of(line, key_characters))
+            throw std::runtime_error(fmt::format(
+                "{}, line {}: a key must have {} or more characters: letters, digits or {}", path_,
+                number, min_length, key_characters));
+        keys.push_back({line, api::sha256(line).substr(0, 8)});
+    }
+    if (keys.empty()) throw std::runtime_error(fmt::format("{} contains no key", path_));
+    const std::lock_guard lock(mutex_);
+    keys_ = std::make_shared<const std::vector<Key>>(std::move(keys));
+    return keys_->size();
+}
+
+std::string ApiKeys::name_of(std::string_view authorization) const {
+    const std::string_view scheme = next_part(authorization, ' ');
+    const std::string_view shown = trimmed(authorization);
+    if (lower_case(scheme) != "bearer") return {};
+    std::string name;
+    std::unique_lock lock(mutex_);
+    const auto keys = keys_;
+    lock.unlock();
+    for (const auto& [secret, its_name] : *keys)
+        if (secret.size() == shown.size() &&
+            CRYPTO_memcmp(secret.data(), shown.data(), secret.size()) == 0)
+            name = its_name;
+    return name;
+}
+
 bool is_origin(std::string_view text) {
     if (!text.starts_with("http://") && !text.starts_with("https://")) return false;
     const std::string_view authority = text.substr(text.find("//") + 2),
                            port = authority.substr(host_length(authority));
     const std::string host = host_of(authority);
-    return (is_address(host) || is_name(host)) &&
+    return (is_address_host(host) || is_name(host)) &&
            (port.empty() || whole_number(port.substr(1), 1, 65535));
 }
 
@@ -259,29 +233,28 @@ std::string in_url(const std::string& address) {
 }
 
 void check_head(
-    Exchange& exchange, const std::string& peer, const std::vector<Route>& routes,
+    Request& request, const std::string& peer, const std::vector<Route>& routes,
     const AccessOptions& options) {
     // Its content is in its headers.
     static const Route preflight = {
         .name = "preflight",
         .answer = [](Request&) { return Response{.body = "{}\n"}; },
         .on_event_loop = true};
-    const Head& head = exchange.request.head;
-    Sender& sender = exchange.request.sender;
+    const Head& head = request.head;
+    Sender& sender = request.sender;
     sender.address = client_address(head, peer, options.proxies);
     if (options.keys) sender.key = options.keys->name_of(head.header("authorization"));
-    exchange.route = find_route(routes, head.method, head.path());
-    exchange.refused = access_refusal(head, exchange.route, sender.key, options);
-    if (exchange.refused) return;
-    if (is_preflight(head, options)) exchange.route = &preflight;
-    exchange.refused = request_refusal(head, exchange.route, routes, options.payload_limit);
+    request.route = find_route(routes, head.method, head.path());
+    request.refused = access_refusal(head, request.route, sender.key, options);
+    if (request.refused) return;
+    if (is_preflight(head, options)) request.route = &preflight;
+    request.refused = request_refusal(head, request.route, routes, options.payload_limit);
 }
 
-std::vector<std::pair<std::string, std::string>> cors_headers(
-    const Head& head, const AccessOptions& options) {
+std::vector<Header> cors_headers(const Head& head, const AccessOptions& options) {
     if (options.origins.empty()) return {};
     if (!is_allowed_origin(head, options)) return {{"Vary", "Origin"}};
-    std::vector<std::pair<std::string, std::string>> headers = {
+    std::vector<Header> headers = {
         {"Vary", "Origin"},
         {"Access-Control-Allow-Origin", std::string(head.header("origin"))},
         {"Access-Control-Expose-Headers", "ETag, Retry-After, Server-Timing, X-Request-ID"}};

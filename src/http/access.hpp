@@ -6,14 +6,7 @@
 
 #include <memory>
 #include <mutex>
-#include <optional>
-#include <string>
-#include <string_view>
-#include <utility>
-#include <vector>
 
-#include "http/client.hpp"
-#include "http/head.hpp"
 #include "http/message.hpp"
 
 namespace vines::http {
@@ -44,15 +37,10 @@ private:
     struct Key {
         std::string secret, name;
     };
-    using Keys = std::shared_ptr<const std::vector<Key>>;
-    Keys keys() const {
-        const std::lock_guard lock(mutex_);
-        return keys_;
-    }
 
     const std::string path_;
     mutable std::mutex mutex_;
-    Keys keys_;
+    std::shared_ptr<const std::vector<Key>> keys_;
 };
 
 struct AccessOptions {
@@ -66,17 +54,16 @@ struct AccessOptions {
     std::size_t payload_limit = 1 << 20;  ///< largest body of a route without its own limit, bytes
 };
 
-/// Sets the sender of an exchange, its route and, if its head is unacceptable, its refusal: problem
+/// Sets the sender of a request, its route and, if its head is unacceptable, its refusal: problem
 /// 421 for a host name that is not this server's, as in DNS rebinding; 403 for a cross-origin
 /// request, unless its origin is allowed or it follows a link (but not into a frame); 401 for a
 /// route that needs a key, without a valid one; others for what is unacceptable from any client.
-/// peer: the other end's address. The routes must outlive the exchange.
+/// peer: the other end's address. The routes must outlive the request.
 void check_head(
-    Exchange& exchange, const std::string& peer, const std::vector<Route>& routes,
+    Request& request, const std::string& peer, const std::vector<Route>& routes,
     const AccessOptions& options);
 
-std::vector<std::pair<std::string, std::string>> cors_headers(
-    const Head& head, const AccessOptions& options);
+std::vector<Header> cors_headers(const Head& head, const AccessOptions& options);
 
 /// True for http:// or https://, a host (a name, an IPv4 address, or an IPv6 address in brackets)
 /// and optionally a port from 1 to 65535.

@@ -1,12 +1,8 @@
 #include "http/admission_control.hpp"
 
-#include <utility>
-
 #include "http/memory.hpp"
 
 namespace vines::http {
-
-// --- Slots ---
 
 namespace {
 
@@ -20,6 +16,12 @@ constexpr int graces_per_slot = 4;
 // one alone. While they are read and computed they take up to fifteen times their size, one of the
 // largest up to 340 MB. Bytes.
 constexpr std::size_t immediate_body = 1 << 20, bodies_at_once = 16 << 20;
+
+// Larger bodies that wait, and their bytes; each occupies a worker.
+constexpr std::size_t most_waiting_bodies = 32, most_waiting_bytes = 256 << 20;
+
+// Many times the duration of a small answer, and short compared to a time slice of the scheduler.
+constexpr auto grace_time = std::chrono::milliseconds(1);
 
 }  // namespace
 
@@ -76,24 +78,19 @@ bool AdmissionControl::is_full() const {
     return static_cast<int>(foreground_.size()) + graces_ >= limits_.waiting;
 }
 
-AdmissionControl::Attempt AdmissionControl::try_acquire() {
+AdmissionControl::Slot AdmissionControl::try_acquire() {
     const std::lock_guard lock(mutex_);
     if (free_ > 0) {
         --free_;
-        return {Slot(this), {}};
+        return Slot(this);
     }
-    if (is_full() || graces_ >= graces_per_slot * limits_.running) return {};
+    if (is_full() || graces_ >= graces_per_slot * limits_.running) return nullptr;
     ++graces_;
-    return {{}, Grace(this)};
-}
-
-void AdmissionControl::end_grace() {
-    const std::lock_guard lock(mutex_);
-    --graces_;
+    return {this, {.is_grace = true}};
 }
 
 AdmissionControl::Slot AdmissionControl::acquire(
-    const std::string& client, const std::function<bool()>& gives_up, Grace grace) {
+    const std::string& client, const std::function<bool()>& gives_up, Slot grace) {
     std::unique_lock lock(mutex_);
     if (grace.release()) --graces_;
     else if (free_ == 0 && is_full()) {
@@ -120,16 +117,22 @@ AdmissionControl::Slot AdmissionControl::acquire_background(
     return nullptr;
 }
 
-void AdmissionControl::release() {
+void AdmissionControl::release(bool is_grace) {
     const std::lock_guard lock(mutex_);
-    ++free_;
-    assign();
+    if (is_grace) {
+        --graces_;
+    } else {
+        ++free_;
+        assign();
+    }
 }
 
 AdmissionControl::SweepSlot AdmissionControl::acquire_sweep(const std::string& client) {
     std::unique_lock lock(mutex_);
-    if (!has_sweeps_left() || sweeps_stopped_) return nullptr;
-    if (limits_.sweeps > 1 && static_cast<int>(sweeps_.count(client)) >= limits_.sweeps - 1)
+    const auto running = static_cast<int>(sweeps_.size()),
+               own = static_cast<int>(sweeps_.count(client));
+    if (running >= limits_.sweeps || (limits_.sweeps > 1 && own >= limits_.sweeps - 1) ||
+        sweeps_stopped_)
         return nullptr;
     const auto place = sweeps_.insert(client);
     lock.unlock();
@@ -139,19 +142,7 @@ AdmissionControl::SweepSlot AdmissionControl::acquire_sweep(const std::string& c
             }};
 }
 
-bool AdmissionControl::sweeps_left() const {
-    const std::lock_guard lock(mutex_);
-    return has_sweeps_left();
-}
-
-// --- Large bodies ---
-
-namespace {
-
-// Larger bodies that wait, and their bytes; each occupies a worker.
-constexpr std::size_t most_waiting_bodies = 32, most_waiting_bytes = 256 << 20;
-
-}  // namespace
+bool AdmissionControl::sweeps_left() const { return load().sweeps < limits_.sweeps; }
 
 /// False if a body finds no space in the queue, even instead of the last one.
 bool AdmissionControl::make_space(const std::string& client, std::size_t bytes) {
@@ -196,33 +187,20 @@ AdmissionLoad AdmissionControl::load() const {
     return {limits_.running - free_, foreground_.size(), static_cast<int>(sweeps_.size())};
 }
 
-// --- Permits ---
-
-namespace {
-
-// Many times the duration of a small answer, and short compared to a time slice of the scheduler.
-constexpr auto grace_time = std::chrono::milliseconds(1);
-
-}  // namespace
-
 Permit::Permit(
     AdmissionControl& admission, std::string client, std::function<bool()> gives_up, bool may_begin)
     : admission_(admission),
       client_(std::move(client)),
       gives_up_(std::move(gives_up)) {
-    if (may_begin) {
-        AdmissionControl::Attempt attempt = admission_.try_acquire();
-        slot_ = std::move(attempt.slot);
-        grace_ = std::move(attempt.grace);
-    }
-    if (!*this) slot_ = admission_.acquire(client_, gives_up_);
+    if (may_begin) slot_ = admission_.try_acquire();
+    if (!slot_) slot_ = admission_.acquire(client_, gives_up_);
 }
 
 bool Permit::renew() {
-    if (!grace_) return slot_ != nullptr;
+    if (!AdmissionControl::is_grace(slot_)) return slot_ != nullptr;
     const Clock::time_point now = Clock::now();
     if (now - began_ < grace_time) return true;
-    slot_ = admission_.acquire(client_, gives_up_, std::move(grace_));
+    slot_ = admission_.acquire(client_, gives_up_, std::move(slot_));
     waited_ = Clock::now() - now;
     return slot_ != nullptr;
 }

@@ -12,14 +12,11 @@
 #pragma once
 
 #include <atomic>
-#include <chrono>
 #include <condition_variable>
 #include <functional>
-#include <memory>
 #include <mutex>
 #include <set>
 #include <stop_token>
-#include <string>
 
 #include "http/fair_queue.hpp"
 #include "program/process.hpp"
@@ -40,12 +37,10 @@ struct AdmissionLoad {
 
 /// Must outlive the slots that it hands out.
 class AdmissionControl {
-    void release();
-    void end_grace();
-    /// Calls one of these functions.
-    template <auto function>
-    struct Deleter {
-        void operator()(AdmissionControl* admission) const { (admission->*function)(); }
+    void release(bool is_grace);
+    struct Release {
+        bool is_grace;  // false unless given
+        void operator()(AdmissionControl* admission) const { admission->release(is_grace); }
     };
 
 public:
@@ -55,25 +50,20 @@ public:
 
     int threads() const { return limits_.running; }
 
-    /// The right to compute, or null. The destructor gives it back.
-    using Slot = std::unique_ptr<AdmissionControl, Deleter<&AdmissionControl::release>>;
-    /// The right to compute for a moment without a slot; counts towards the queue's limit.
-    using Grace = std::unique_ptr<AdmissionControl, Deleter<&AdmissionControl::end_grace>>;
-    /// Result of try_acquire(): a slot, a grace period or neither.
-    struct Attempt {
-        Slot slot;
-        Grace grace;
-    };
-    /// For foreground work; does not wait.
-    Attempt try_acquire();
+    /// The right to compute, or null. The destructor gives it back. A grace period is the right for
+    /// a moment without a slot; it counts towards the queue's limit.
+    using Slot = std::unique_ptr<AdmissionControl, Release>;
+    static bool is_grace(const Slot& slot) { return slot && slot.get_deleter().is_grace; }
+    /// For foreground work; does not wait: a slot, a grace period or null.
+    Slot try_acquire();
     /// For foreground work: waits for a slot. Null if the queue is full of work whose turn is
     /// earlier, or gives_up() returned true; it is polled every 50 ms. The end of a grace period
     /// always finds space in the queue.
     Slot acquire(
-        const std::string& client, const std::function<bool()>& gives_up = {}, Grace grace = {});
+        const std::string& client, const std::function<bool()>& gives_up = {}, Slot grace = {});
     /// For background work: waits for a slot, after all foreground work and the background work
     /// whose turn is earlier. Null once `stop` is requested or sweeps are stopped.
-    Slot acquire_background(const std::string& client, const std::stop_token& stop);
+    Slot acquire_background(const std::string& client, const std::stop_token& stop = {});
     /// True while foreground work waits: background work should release its slot and wait again.
     bool foreground_waits() const { return foreground_waits_; }
     /// True while background work waits.
@@ -114,7 +104,6 @@ private:
     using Lock = std::unique_lock<std::mutex>;
 
     bool is_full() const;
-    bool has_sweeps_left() const { return static_cast<int>(sweeps_.size()) < limits_.sweeps; }
     void assign();
     bool end_wait(Queue& queue, Waiter& waiter);
     static void displace_last(Queue& queue);
@@ -147,7 +136,7 @@ public:
         AdmissionControl& admission, std::string client, std::function<bool()> gives_up,
         bool may_begin);
     /// False if the queue was full or the wait was given up.
-    explicit operator bool() const { return slot_ || grace_; }
+    explicit operator bool() const { return slot_ != nullptr; }
 
     /// To be called regularly: waits for a slot after the grace period. False if it gave up.
     bool renew();
@@ -160,7 +149,6 @@ private:
     const std::string client_;
     const std::function<bool()> gives_up_;
     AdmissionControl::Slot slot_;
-    AdmissionControl::Grace grace_;
     Clock::time_point began_ = Clock::now();
     Clock::duration waited_{};
 };

@@ -2,8 +2,6 @@
 
 #include <arpa/inet.h>
 
-#include <algorithm>
-
 #include "program/whole_number.hpp"
 
 namespace vines::http {
@@ -19,11 +17,14 @@ constexpr int owner_bits = 64;
 
 bool is_v4(const std::string& text) { return text.find(':') == std::string::npos; }
 
-std::optional<Bytes> bytes_of(std::string text) {
-    if (is_v4(text)) text.insert(0, "::ffff:");
+std::optional<Bytes> bytes_of(const std::string& text) {
     Bytes bytes{};
-    if (::inet_pton(AF_INET6, text.c_str(), bytes.data()) != 1) return std::nullopt;
-    return bytes;
+    int read = 0;
+    if (is_v4(text)) {
+        bytes[10] = bytes[11] = 0xff;
+        read = ::inet_pton(AF_INET, text.c_str(), &bytes[12]);
+    } else read = ::inet_pton(AF_INET6, text.c_str(), bytes.data());
+    return read == 1 ? std::optional(bytes) : std::nullopt;
 }
 
 void clear_after(Bytes& bytes, int bits) {
@@ -57,10 +58,11 @@ bool Network::contains(std::string_view address) const {
 }
 
 bool contain(const Networks& networks, std::string_view address) {
-    return std::any_of(networks.begin(), networks.end(), [address](const Network& network) {
-        return network.contains(address);
-    });
+    return std::ranges::any_of(
+        networks, [address](const Network& network) { return network.contains(address); });
 }
+
+bool is_address(const std::string& text) { return bytes_of(text).has_value(); }
 
 std::string client_address(const Head& head, const std::string& peer, const Networks& proxies) {
     std::string client = peer;
@@ -69,7 +71,7 @@ std::string client_address(const Head& head, const std::string& peer, const Netw
         const std::size_t comma = forwarded.rfind(',');
         const std::size_t begin = comma == std::string_view::npos ? 0 : comma + 1;
         const std::string stated(trimmed(forwarded.substr(begin)));
-        if (!bytes_of(stated)) break;
+        if (!is_address(stated)) break;
         client = stated;
         forwarded = forwarded.substr(0, begin == 0 ? 0 : comma);
     }

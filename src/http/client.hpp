@@ -4,9 +4,6 @@
 
 #include <array>
 #include <optional>
-#include <string>
-#include <string_view>
-#include <vector>
 
 #include "http/head.hpp"
 
@@ -26,6 +23,8 @@ private:
 using Networks = std::vector<Network>;
 
 bool contain(const Networks& networks, std::string_view address);
+
+bool is_address(const std::string& text);  ///< IPv4 or IPv6
 
 /// The client's address: the peer's, or if that is a trusted proxy the last address in
 /// X-Forwarded-For that is not one. An entry that is no address ends the search.

@@ -1,24 +1,10 @@
 #include "http/routes.hpp"
 
-#include <fmt/format.h>
-
-#include <algorithm>
-#include <chrono>
-#include <functional>
-#include <memory>
-#include <optional>
-#include <thread>
-#include <utility>
-
-#include "api/cancellation.hpp"
 #include "api/format/answer_request.hpp"
-#include "api/format/sweep_table.hpp"
 #include "api/parse.hpp"
 #include "api/schema/tables.hpp"
 #include "api/version.hpp"
-#include "http/admission_control.hpp"
 #include "http/encoding.hpp"
-#include "http/head.hpp"
 #include "http/memory.hpp"
 #include "http/streams.hpp"
 
@@ -147,8 +133,7 @@ private:
     }
 
     /// True after this multiple of the deadline, not counting the time in which the permit waits;
-    /// without a permit; once the client has left; or if the server stops. For one thread at a
-    /// time.
+    /// without a permit; once the client has left; or if the server stops. One thread at a time.
     bool is_over(double fraction) {
         if (!permit_.renew()) return true;
         const auto now = Clock::now();
@@ -226,8 +211,7 @@ std::string encoded(
 }
 
 /// RunControl of a streamed answer: one slot for each run, none while its lists are sent. It
-/// releases the slot while requests wait. A started answer is finished even if the server is about
-/// to stop.
+/// releases the slot while requests wait. A started answer is finished even if sweeps are stopped.
 class StreamPace : public RunControl {
 public:
     StreamPace(AdmissionControl& admission, std::string client, Writer& out)
@@ -235,7 +219,7 @@ public:
           client_(std::move(client)),
           out_(out) {}
     void begin() override {
-        slot_ = admission_.acquire_background(client_, {});
+        slot_ = admission_.acquire_background(client_);
         while (!slot_ && out_.connected() && !admission_.all_stopped()) {
             slot_ = admission_.acquire(client_);
             if (!slot_) std::this_thread::sleep_for(client_check_interval);  // the queue is full
@@ -291,6 +275,16 @@ Response stream_answer(api::Answer answer, const Request& request, AdmissionCont
         .compressible = true};
 }
 
+/// The request that read(json) makes of the body.
+template <class Read>
+auto read_body(const Request& r, const Service& service, Stopwatch& watch, const Read& read) {
+    Computing computing(r, service, watch);
+    auto request =
+        computing.read([&](const api::ReadLimits& limits) { return read(body_of(r, limits)); });
+    computing.lap("parse");
+    return request;
+}
+
 }  // namespace
 
 Response answer(Request& r, const Service& service, Stopwatch& watch) {
@@ -331,20 +325,6 @@ Response answer(Request& r, const Service& service, Stopwatch& watch) {
     computing.lap("encode");
     return response;
 }
-
-namespace {
-
-/// The request that read(json) makes of the body.
-template <class Read>
-auto read_body(const Request& r, const Service& service, Stopwatch& watch, const Read& read) {
-    Computing computing(r, service, watch);
-    auto request =
-        computing.read([&](const api::ReadLimits& limits) { return read(body_of(r, limits)); });
-    computing.lap("parse");
-    return request;
-}
-
-}  // namespace
 
 Response sweep(Request& r, const Service& service, Stopwatch& watch) {
     std::optional<api::Format> format;

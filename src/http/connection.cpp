@@ -2,13 +2,6 @@
 
 #include <sys/socket.h>
 
-#include <array>
-#include <cerrno>
-#include <new>
-#include <utility>
-
-#include "api/problem.hpp"
-
 namespace vines::http {
 
 namespace {
@@ -41,16 +34,9 @@ std::optional<std::size_t> receive(int socket, char* data, std::size_t size) {
     return 0;
 }
 
-void send_continue(int socket) {
-    // A client that waits for them has read the answers before: they fit into the socket's buffer.
-    static_cast<void>(
-        ::send(socket, continue_line.data(), continue_line.size(), MSG_DONTWAIT | MSG_NOSIGNAL));
-}
-
 }  // namespace
 
-Connection::Connection(
-    int socket, std::string peer, const RequestHandler& handler, MemoryBudget& memory)
+Connection::Connection(int socket, std::string peer, RequestHandler& handler, MemoryBudget& memory)
     : socket_(socket),
       peer_(std::move(peer)),
       owner_(owner_of(peer_)),
@@ -60,56 +46,47 @@ Connection::Connection(
 }
 
 Connection::~Connection() {
-    if (delivery_) delivery_->outbox->cancel();
+    if (delivery_) delivery_->outbox.cancel();
     memory_.count(held_, 0);
 }
 
-Connection::Progress Connection::advance() {
-    try {
-        const Progress progress = read_on();
-        if (progress == Progress::complete) exchange_->since = Clock::now();
-        return progress;
-    } catch (const std::bad_alloc&) {  // only this connection fails
-        bytes_ = {};
-        return Progress::ended;
-    }
-}
-
-Connection::Progress Connection::read_on() {
+Connection::Progress Connection::advance() try {
     std::array<char, 65536> piece;
-    std::size_t taken = 0;
-    for (;;) {
+    for (std::size_t taken = 0;;) {
         const Progress progress = read_request();
+        if (progress == Progress::complete) request_->since = Clock::now();
         if (progress != Progress::waits || taken >= max_read) return progress;
         if (half_closed_) return Progress::ended;
         const std::optional<std::size_t> size = receive(socket(), piece.data(), piece.size());
         if (!size) return Progress::waits;
         half_closed_ = *size == 0;
-        if (bytes_.empty() && !half_closed_ && !exchange_) wait_for_head(head_time);
+        if (bytes_.empty() && !half_closed_ && !request_) wait_for_head(head_time);
         bytes_.append(piece.data(), *size);
         hold(0);
-        if (exchange_ && bytes_.size() >= expected_) expect_more();
+        if (request_ && bytes_.size() >= expected_) expect_more();
         taken += *size;
     }
+} catch (const std::bad_alloc&) {  // only this connection fails
+    bytes_ = {};
+    return Progress::ended;
 }
 
 Connection::Progress Connection::read_request() {
     try {
-        if (!exchange_ && !bytes_.empty() && reader_.read(bytes_)) begin_body();
+        if (!request_ && !bytes_.empty() && reader_.read(bytes_)) begin_body();
     } catch (const api::Problem& problem) {
         refuse(problem_response(problem));
     }
-    if (!exchange_) return Progress::waits;
-    if (!exchange_->refused && exceeds_memory()) exchange_->refused = memory_refusal();
-    const bool whole = exchange_->refused || bytes_.size() >= body_size();
+    if (!request_) return Progress::waits;
+    // Large bodies only: the number of connections bounds the small ones.
+    if (!request_->refused && body_size() > small_body && memory_.is_full())
+        request_->refused = memory_refusal();
+    const bool whole = request_->refused || bytes_.size() >= body_size();
     return whole ? Progress::complete : Progress::waits;
 }
 
-/// Large bodies only: the number of connections bounds the small ones.
-bool Connection::exceeds_memory() const { return body_size() > small_body && memory_.is_full(); }
-
 Connection::Clock::time_point Connection::deadline(bool memory_is_scarce) const {
-    const bool is_large = exchange_ && !delivery_ && body_size() > small_body;
+    const bool is_large = request_ && !delivery_ && body_size() > small_body;
     return memory_is_scarce && is_large ? deadline_ - (body_time - scarce_body_time) : deadline_;
 }
 
@@ -118,19 +95,22 @@ void Connection::wait_for_head(Clock::duration time) {
     deadline_ = waiting_since_ + time;
 }
 
-void Connection::begin_exchange() {
-    exchange_.emplace();
-    exchange_->request.head = reader_.take();
-    exchange_->request.sender.address = peer_;
+void Connection::begin_request() {
+    request_.emplace();
+    request_->head = reader_.take();
+    request_->sender.address = peer_;
 }
 
 void Connection::begin_body() {
-    begin_exchange();
+    begin_request();
     bytes_.erase(0, reader_.size());
-    handler_.check_head(*exchange_, peer_);
-    if (exchange_->refused || bytes_.size() >= body_size()) return;
+    handler_.check_head(*request_, peer_);
+    if (request_->refused || bytes_.size() >= body_size()) return;
     expect_more();
-    if (exchange_->request.head.expects_continue) send_continue(socket());
+    // A client that waits for this has read the answers before: it fits into the socket's buffer.
+    if (request_->head.expects_continue)
+        static_cast<void>(::send(
+            socket(), continue_line.data(), continue_line.size(), MSG_DONTWAIT | MSG_NOSIGNAL));
 }
 
 void Connection::expect_more() {
@@ -139,31 +119,30 @@ void Connection::expect_more() {
 }
 
 void Connection::refuse(Response refusal) {
-    if (!exchange_) begin_exchange();
-    exchange_->refused = std::move(refusal);
-    exchange_->since = Clock::now();
+    if (!request_) begin_request();
+    request_->refused = std::move(refusal);
+    request_->since = Clock::now();
 }
 
-Exchange Connection::take() {
-    const std::size_t length = exchange_->refused ? 0 : body_size();
-    if (exchange_->refused) bytes_.clear();
+Request Connection::take() {
+    const std::size_t length = request_->refused ? 0 : body_size();
+    if (request_->refused) bytes_.clear();
     // Moves the large buffer out with the body.
     std::string rest = bytes_.substr(length);
     bytes_.resize(length);
-    exchange_->request.body = std::exchange(bytes_, std::move(rest));
-    Exchange exchange = *std::exchange(exchange_, {});
+    request_->body = std::exchange(bytes_, std::move(rest));
     reader_ = HeadReader();
     served_ = true;
-    return exchange;
+    return *std::exchange(request_, {});
 }
 
 void Connection::deliver(std::size_t max_bytes) {
-    const Outbox::State state = delivery_->outbox->send(max_bytes);
+    const Outbox::State state = outbox().send(max_bytes);
     if (state == Outbox::State::open) return;
-    const Delivery delivery = *std::exchange(delivery_, {});
-    delivery.ended(state);
+    const std::shared_ptr<Delivery> delivery = std::exchange(delivery_, {});
+    handler_.finish(delivery, state);
     aborted_ = state == Outbox::State::broken;
-    if (!delivery.keep_alive || aborted_) return begin_closing();
+    if (!delivery->keep_alive || aborted_) return begin_closing();
     wait_for_head(bytes_.empty() ? Clock::duration(idle_time) : head_time);
     hold(0);
 }

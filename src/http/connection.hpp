@@ -1,30 +1,26 @@
 // One client's connection. It turns the bytes that arrive into one complete request after another,
 // and sends the answers, without blocking.
-// Its time limits: 10 s for a head, 10 s for each further 64 KiB of a body, 60 s idle between
-// requests.
+// Time limits: 10 s for a head, 10 s for each further 64 KiB of a body, 60 s between requests.
 #pragma once
 
-#include <chrono>
-#include <functional>
-#include <limits>
 #include <memory>
-#include <optional>
-#include <string>
 
-#include "http/head.hpp"
+#include "http/log.hpp"
 #include "http/memory.hpp"
-#include "http/message.hpp"
 #include "http/outbox.hpp"
 #include "program/descriptor.hpp"
 
 namespace vines::http {
 
-/// An answer on its way to its client.
+/// A request that is answered, and its answer on the way to the client.
 struct Delivery {
-    std::shared_ptr<Outbox> outbox;
-    bool keep_alive = false;                        ///< the connection can be reused after it
-    bool is_streaming = false;                      ///< computed while it is sent
-    std::function<void(Outbox::State)> ended = {};  ///< called once: sent or broken
+    Delivery(Request received, int socket) : request(std::move(received)), outbox(socket) {}
+
+    Request request;
+    Outbox outbox;
+    Outcome outcome = {};
+    bool keep_alive = false;    ///< the connection can be reused after it
+    bool is_streaming = false;  ///< computed while it is sent
 };
 
 using Task = std::function<void()>;
@@ -36,10 +32,12 @@ public:
     virtual ~RequestHandler() = default;
     /// Decides by the head, before the body is read: sets the route and the sender, and refuses an
     /// unacceptable request. peer: the other end's address.
-    virtual void check_head(Exchange& exchange, const std::string& peer) const = 0;
+    virtual void check_head(Request& request, const std::string& peer) const = 0;
     /// Computes the answer and begins its delivery. Returns the rest of the work, which adds to the
     /// outbox, if the answer is computed while it is sent.
-    virtual Task answer(Connection& connection, Exchange exchange) = 0;
+    virtual Task answer(Connection& connection, Request request) = 0;
+    /// Called once for each delivery: sent or broken.
+    virtual void finish(const std::shared_ptr<Delivery>& delivery, Outbox::State state) = 0;
 };
 
 // Longest time between an answer and the next request.
@@ -52,7 +50,7 @@ public:
 
     /// Takes ownership of a non-blocking socket; the handler and the budget must outlive the
     /// connection. peer: the other end's address.
-    Connection(int socket, std::string peer, const RequestHandler& handler, MemoryBudget& memory);
+    Connection(int socket, std::string peer, RequestHandler& handler, MemoryBudget& memory);
     ~Connection();
     Connection(const Connection&) = delete;
     Connection& operator=(const Connection&) = delete;
@@ -65,11 +63,9 @@ public:
     /// Reads the bytes that have arrived, up to 256 KiB, without blocking.
     Progress advance();
     /// True if the event loop itself answers the complete request, however busy the workers are.
-    bool is_answered_on_loop() const {
-        return exchange_->refused || exchange_->route->on_event_loop;
-    }
+    bool is_answered_on_loop() const { return request_->refused || request_->route->on_event_loop; }
     /// Returns the complete request and removes its bytes from the buffer.
-    Exchange take();
+    Request take();
     /// Turns the incomplete request into a refused one, to be returned by take().
     void refuse(Response refusal);
 
@@ -77,22 +73,22 @@ public:
     /// while memory is scarce.
     Clock::time_point deadline(bool memory_is_scarce = false) const;
     /// True if no byte of a next request has arrived.
-    bool is_idle() const { return bytes_.empty() && !exchange_ && !delivery_ && !is_closing(); }
+    bool is_idle() const { return bytes_.empty() && !request_ && !delivery_ && !is_closing(); }
     /// True if idle after at least one answer.
     bool is_idle_keep_alive() const { return is_idle() && served_; }
     /// Start of the current wait for the client.
     Clock::time_point waiting_since() const { return waiting_since_; }
 
     /// To be called with an answer; deliver() then sends it.
-    void begin_delivery(Delivery delivery) { delivery_ = std::move(delivery); }
-    bool is_delivering() const { return delivery_.has_value(); }
+    void begin_delivery(std::shared_ptr<Delivery> delivery) { delivery_ = std::move(delivery); }
+    bool is_delivering() const { return delivery_ != nullptr; }
     bool is_streaming() const { return delivery_ && delivery_->is_streaming; }
     /// Sends what the socket takes of the answer. At its end the connection waits for the next
     /// request, or closes: with a reset if the answer is broken off, so that the client does not
     /// take the part for the whole.
     void deliver(std::size_t max_bytes = std::numeric_limits<std::size_t>::max());
     /// Outbox of the present answer; deliver() ends the delivery once it is cancelled.
-    Outbox& outbox() const { return *delivery_->outbox; }
+    Outbox& outbox() const { return delivery_->outbox; }
 
     /// Starts a lingering close: closes the sending side, and discards what the client still sends
     /// for up to 3 s or 64 MiB. Closing with unread bytes would reset the connection, and the
@@ -106,31 +102,29 @@ public:
     const std::string& peer() const { return peer_; }
     const std::string& owner() const { return owner_; }  ///< owner_of(peer())
     /// The client of the complete request, see Sender.
-    std::string client() const { return exchange_->request.sender.client(); }
+    std::string client() const { return request_->sender.client(); }
 
     /// Sets the bytes of answers held for the client; received bytes are added.
     void hold(std::size_t bytes) { memory_.count(held_, bytes + bytes_.capacity()); }
 
 private:
-    Progress read_on();
     Progress read_request();
-    bool exceeds_memory() const;
-    std::size_t body_size() const { return exchange_->request.head.content_length; }
+    std::size_t body_size() const { return request_->head.content_length; }
     void wait_for_head(Clock::duration time);
-    void begin_exchange();
+    void begin_request();
     void begin_body();
     void expect_more();
 
     const Descriptor socket_;
     const std::string peer_, owner_;
-    const RequestHandler& handler_;
+    RequestHandler& handler_;
     MemoryBudget& memory_;
     std::size_t held_ = 0;
     std::string bytes_;  // received, not yet taken
     HeadReader reader_;
-    std::optional<Exchange> exchange_;  // once the head is complete; bytes_ then holds its body
-    std::size_t expected_ = 0;          // size of the body that must be reached before the deadline
-    std::optional<Delivery> delivery_;
+    std::optional<Request> request_;  // once the head is complete; bytes_ then holds its body
+    std::size_t expected_ = 0;        // size of the body that must be reached before the deadline
+    std::shared_ptr<Delivery> delivery_;
     bool half_closed_ = false;  // the client has closed its sending side
     bool closing_ = false, aborted_ = false, served_ = false;
     std::size_t dropped_ = 0;

@@ -1,20 +1,11 @@
 #include "http/encoding.hpp"
 
 #include <fmt/chrono.h>
-#include <fmt/format.h>
 
-#include <algorithm>
-#include <cstdint>
 #include <cstring>
-#include <ctime>
-#include <iterator>
-#include <stdexcept>
-#include <utility>
 
-#include "api/problem.hpp"
 #include "api/schema/field.hpp"
 #include "http/connection.hpp"
-#include "http/head.hpp"
 
 namespace vines::http {
 
@@ -35,19 +26,13 @@ double weight_of(std::string_view type, std::string_view accept) {
     double weight = 0;
     int most = 0;
     while (!accept.empty()) {
-        const Preference preference = preference_of(next_part(accept, ','));
-        const int exact = exactness(preference.name, type);
+        const auto [range, its_weight] = preference_of(next_part(accept, ','));
+        const int exact = exactness(range, type);
         if (exact <= most) continue;
         most = exact;
-        weight = preference.weight;
+        weight = its_weight;
     }
     return weight;
-}
-
-[[noreturn]] void refuse_all(std::span<const api::FormatName> formats) {
-    std::vector<std::string> types;
-    for (const api::FormatName& name : formats) types.push_back(name.media_type);
-    throw api::Problem(406, "Accept lists none of this server's formats: " + api::joined(types));
 }
 
 }  // namespace
@@ -63,8 +48,10 @@ api::Format accepted_format(std::string_view accept, std::span<const api::Format
             best = &name;
         }
     }
-    if (!best) refuse_all(formats);
-    return best->format;
+    if (best) return best->format;
+    std::vector<std::string> types;
+    for (const api::FormatName& name : formats) types.push_back(name.media_type);
+    throw api::Problem(406, "Accept lists none of this server's formats: " + api::joined(types));
 }
 
 // --- Compression and ETags ---
@@ -121,10 +108,10 @@ bool accepts_gzip(std::string_view accept_encoding) {
     std::optional<double> by_name, by_star;
     double identity = 0;  // if not listed, anything is preferred to it
     while (!accept_encoding.empty()) {
-        const Preference coding = preference_of(next_part(accept_encoding, ','));
-        if (coding.name == "gzip" || coding.name == "x-gzip") by_name = coding.weight;
-        if (coding.name == "*") by_star = coding.weight;
-        if (coding.name == "identity") identity = coding.weight;
+        const auto [coding, its_weight] = preference_of(next_part(accept_encoding, ','));
+        if (coding == "gzip" || coding == "x-gzip") by_name = its_weight;
+        if (coding == "*") by_star = its_weight;
+        if (coding == "identity") identity = its_weight;
     }
     const double weight = by_name.value_or(by_star.value_or(0));
     return weight > 0 && weight >= identity;
@@ -237,23 +224,29 @@ std::string head_text(const Head& head, bool keep_alive, const Response& respons
     return text + "\r\n";
 }
 
-/// Sends the pieces of a stream as chunks (RFC 9112, 7.1), or in HTTP/1.0 as they are.
+/// Sends the pieces of a stream, compressed if that is announced, as chunks (RFC 9112, 7.1), or in
+/// HTTP/1.0 as they are.
 class PieceWriter : public Writer {
 public:
-    /// silent: see Response.
-    PieceWriter(Outbox& outbox, bool in_chunks, bool silent)
+    PieceWriter(const Head& head, const Response& response, Outbox& outbox)
         : outbox_(outbox),
-          in_chunks_(in_chunks),
-          silent_(silent) {}
+          in_chunks_(head.takes_chunks),
+          silent_(response.silent) {
+        if (response.compressible) gzip_.emplace();
+    }
     bool write(std::string_view text) override {
-        return text.empty() || send(text);  // an empty chunk ends the stream
+        return gzip_ ? send_some(gzip_->add(text)) : send_some(text);
     }
-    bool connected() override {
-        return !(silent_ ? outbox_.client_has_closed() : outbox_.is_broken());
+    bool connected() override { return !outbox_.is_lost(silent_); }
+    bool end() {
+        if (gzip_ && !send_some(gzip_->add({}, true))) return false;
+        return !in_chunks_ || send("");
     }
-    bool end() { return !in_chunks_ || send(""); }
 
 private:
+    bool send_some(std::string_view text) {
+        return text.empty() || send(text);  // an empty chunk ends the stream
+    }
     bool send(std::string_view text) {
         outbox_.add(
             in_chunks_ ? fmt::format("{:x}\r\n{}\r\n", text.size(), text) : std::string(text));
@@ -263,18 +256,7 @@ private:
 
     Outbox& outbox_;
     const bool in_chunks_, silent_;
-};
-
-class GzipWriter : public Writer {
-public:
-    explicit GzipWriter(Writer& out) : out_(out) {}
-    bool write(std::string_view text) override { return out_.write(gzip_.add(text)); }
-    bool connected() override { return out_.connected(); }
-    bool end() { return out_.write(gzip_.add({}, true)); }
-
-private:
-    Writer& out_;
-    Gzip gzip_;
+    std::optional<Gzip> gzip_;
 };
 
 }  // namespace
@@ -286,10 +268,8 @@ bool write(const Head& head, bool keep_alive, Response response, Outbox& outbox)
         outbox.add(std::move(response.body));
         return true;
     }
-    PieceWriter out(outbox, head.takes_chunks, response.silent);
-    if (!response.compressible) return response.stream(out) && out.end();
-    GzipWriter zipped(out);
-    return response.stream(zipped) && zipped.end() && out.end();
+    PieceWriter out(head, response, outbox);
+    return response.stream(out) && out.end();
 }
 
 }  // namespace vines::http

@@ -4,13 +4,7 @@
 
 #include <zlib.h>
 
-#include <cstddef>
-#include <functional>
-#include <optional>
 #include <span>
-#include <string>
-#include <string_view>
-#include <vector>
 
 #include "api/format/encode.hpp"
 #include "http/message.hpp"

@@ -1,23 +1,10 @@
 #include "http/event_loop.hpp"
 
-#include <fcntl.h>
 #include <netdb.h>
-#include <netinet/in.h>
 #include <netinet/tcp.h>
-#include <poll.h>
 #include <sys/epoll.h>
 #include <sys/eventfd.h>
 #include <sys/resource.h>
-#include <sys/socket.h>
-#include <unistd.h>
-
-#include <algorithm>
-#include <array>
-#include <cerrno>
-#include <limits>
-#include <utility>
-
-#include "http/message.hpp"
 
 namespace vines::http {
 
@@ -25,7 +12,6 @@ namespace {
 
 using namespace std::chrono_literals;
 
-// Interval between checks for timeouts.
 constexpr auto expiry_interval = 250ms;
 
 // Time for which a worker waits for a client's next request, in ms: cheaper than to return the
@@ -72,23 +58,23 @@ std::string numeric(const sockaddr* address, socklen_t size) {
 }  // namespace
 
 EventLoop::EventLoop(
-    int listening, const ConnectionLimits& limits, Networks proxies, RequestHandler& handler)
-    : listening_(listening),
-      handler_(handler),
+    Descriptor listening, const ConnectionLimits& limits, Networks proxies, RequestHandler& handler)
+    : handler_(handler),
       max_connections_(std::min(limits.connections, files_for_connections())),
       max_per_client_(limits.per_client),
       proxies_(std::move(proxies)),
+      listening_(std::move(listening)),
       poll_(::epoll_create1(EPOLL_CLOEXEC)),
       wake_(::eventfd(0, EFD_CLOEXEC | EFD_NONBLOCK)),
       memory_(limits.held_bytes),
       workers_(limits.workers, [this](Owned connection) { work(std::move(connection)); }) {
-    ::fcntl(listening_, F_SETFL, ::fcntl(listening_, F_GETFL) | O_NONBLOCK);
+    ::fcntl(listening_.number(), F_SETFL, ::fcntl(listening_.number(), F_GETFL) | O_NONBLOCK);
     change_events(EPOLL_CTL_ADD, wake_.number(), EPOLLIN);
     listen(true);
 }
 
 void EventLoop::run() {
-    while (!is_done()) {
+    while (!closing_ || count_ > 0 || with_workers_ > 0) {
         wait();
         collect_returned();
         if (Clock::now() - checked_ >= expiry_interval || stopping_) expire();
@@ -113,7 +99,7 @@ void EventLoop::wait() {
     for (int i = 0; i < n; ++i) {
         const epoll_event& event = events[static_cast<std::size_t>(i)];
         const int socket = event.data.fd;
-        if (socket == listening_) accept(max_accepted);
+        if (socket == listening_.number()) accept(max_accepted);
         else if (socket == wake_.number()) {
             std::uint64_t count = 0;
             static_cast<void>(!::read(wake_.number(), &count, sizeof count));
@@ -136,7 +122,7 @@ void EventLoop::wait_for(int operation, const Connection& connection) const {
 
 void EventLoop::listen(bool on) {
     if (on == listens_) return;
-    change_events(on ? EPOLL_CTL_ADD : EPOLL_CTL_DEL, listening_, EPOLLIN);
+    change_events(on ? EPOLL_CTL_ADD : EPOLL_CTL_DEL, listening_.number(), EPOLLIN);
     listens_ = on;
 }
 
@@ -153,10 +139,11 @@ void EventLoop::accept(int most) {
         sockaddr_storage address{};
         socklen_t size = sizeof address;
         auto* const peer = reinterpret_cast<sockaddr*>(&address);
-        const int socket = ::accept4(listening_, peer, &size, SOCK_NONBLOCK | SOCK_CLOEXEC);
+        const int socket =
+            ::accept4(listening_.number(), peer, &size, SOCK_NONBLOCK | SOCK_CLOEXEC);
         if (socket < 0 && (errno == EINTR || errno == ECONNABORTED)) continue;
         if (socket < 0 && (errno == EMFILE || errno == ENFILE)) {
-            pollfd pending{listening_, POLLIN, 0};  // it also fails if there is none
+            pollfd pending{listening_.number(), POLLIN, 0};  // it also fails if there is none
             if (::poll(&pending, 1, 0) == 0) return;
             if ((other = eviction_candidate())) {
                 close(other->socket());
@@ -168,7 +155,10 @@ void EventLoop::accept(int most) {
         if (socket < 0) return;
         auto connection =
             std::make_unique<Connection>(socket, numeric(peer, size), handler_, memory_);
-        if (is_at_limit(*connection) && !(other = eviction_candidate(connection->owner())))
+        // Behind a proxy are many clients.
+        if (open_[connection->owner()] >= max_per_client_ &&
+            !contain(proxies_, connection->peer()) &&
+            !(other = eviction_candidate(connection->owner())))
             continue;  // closes the new one
         if (other) close(other->socket());
         const int yes = 1;
@@ -197,21 +187,12 @@ Connection* EventLoop::eviction_candidate(const std::string& owner) const {
 }
 
 void EventLoop::watch(Owned connection) {
-    const int socket = connection->socket();
-    if (connections_.size() <= static_cast<std::size_t>(socket))
-        connections_.resize(static_cast<std::size_t>(socket) + 1);
-    connections_[static_cast<std::size_t>(socket)] = std::move(connection);
-    Connection& watched = *connections_[static_cast<std::size_t>(socket)];
+    const auto socket = static_cast<std::size_t>(connection->socket());
+    if (connections_.size() <= socket) connections_.resize(socket + 1);
+    Connection& watched = *(connections_[socket] = std::move(connection));
     ++count_;
     if (watched.is_delivering()) ++delivering_;
     wait_for(EPOLL_CTL_ADD, watched);
-}
-
-/// True if the client may open no more connections. Behind a proxy are many clients.
-bool EventLoop::is_at_limit(const Connection& connection) const {
-    if (contain(proxies_, connection.peer())) return false;
-    const auto open = open_.find(connection.owner());
-    return open != open_.end() && open->second >= max_per_client_;
 }
 
 EventLoop::Owned EventLoop::release(int socket) {
@@ -284,18 +265,16 @@ void EventLoop::deliver(Connection& connection) {
 }
 
 void EventLoop::collect_returned() {
-    std::vector<Owned> returned;
-    std::vector<int> ended;
+    std::vector<std::pair<int, Owned>> returned;
     {
         const std::lock_guard lock(mutex_);
         returned.swap(returned_);
-        ended.swap(ended_);
     }
-    for (Owned& connection : returned) {
-        watch(std::move(connection));
-        --with_workers_;
-    }
-    for (const int socket : ended) handle(socket);
+    for (auto& [socket, connection] : returned)
+        if (connection) {
+            watch(std::move(connection));
+            --with_workers_;
+        } else handle(socket);
 }
 
 void EventLoop::expire() {
@@ -304,7 +283,7 @@ void EventLoop::expire() {
         closing_ = true;
         accept(std::numeric_limits<int>::max());  // those already in the listen queue
         listen(false);
-        ::shutdown(listening_, SHUT_RDWR);
+        ::shutdown(listening_.number(), SHUT_RDWR);
         idle_until_ = now + drain_time;
     }
     expire_deliveries();
@@ -343,8 +322,6 @@ void EventLoop::expire_deliveries() {
         }
 }
 
-bool EventLoop::is_done() const { return closing_ && count_ == 0 && with_workers_ == 0; }
-
 void EventLoop::work(Owned connection) {
     const std::string client = connection->client();
     for (;;) {
@@ -353,7 +330,9 @@ void EventLoop::work(Owned connection) {
         connection->deliver();
         if (connection->is_delivering() || connection->is_closing()) break;
         Connection::Progress progress = connection->advance();
-        if (progress == Connection::Progress::waits && next_request_is_near(*connection))
+        pollfd next_one{connection->socket(), POLLIN, 0};
+        if (progress == Connection::Progress::waits && !workers_.jobs_wait() &&
+            ::poll(&next_one, 1, next_request_wait) > 0)
             progress = connection->advance();
         if (progress == Connection::Progress::ended) connection->begin_closing();
         if (progress != Connection::Progress::complete) break;
@@ -362,30 +341,22 @@ void EventLoop::work(Owned connection) {
         if (workers_.jobs_wait() || next != client)
             return workers_.put_back(next, std::move(connection));
     }
-    return_connection(std::move(connection));
+    const int socket = connection->socket();
+    hand_back(socket, std::move(connection));
 }
 
 void EventLoop::finish_stream(Owned connection, Task rest) {
     const int socket = connection->socket();
-    return_connection(std::move(connection));
+    hand_back(socket, std::move(connection));
     rest();
     rest = {};  // with a sweep's place, before the client learns of the end
-    {
-        const std::lock_guard lock(mutex_);
-        ended_.push_back(socket);
-    }
-    wake();
+    hand_back(socket, nullptr);
 }
 
-bool EventLoop::next_request_is_near(Connection& connection) {
-    pollfd state{connection.socket(), POLLIN, 0};
-    return !workers_.jobs_wait() && ::poll(&state, 1, next_request_wait) > 0;
-}
-
-void EventLoop::return_connection(Owned connection) {
+void EventLoop::hand_back(int socket, Owned connection) {
     {
         const std::lock_guard lock(mutex_);
-        returned_.push_back(std::move(connection));
+        returned_.emplace_back(socket, std::move(connection));
     }
     wake();
 }

@@ -1,23 +1,12 @@
-// The event loop: all connections of the service.
-// One thread waits with epoll for all clients, whatever their number, reads requests and answers
-// those that need no worker (health, refusals). A complete request goes with its connection to a
-// worker thread, which computes the answer and returns the connection, with what its socket has not
-// taken of the answer; the loop sends that.
+// The event loop: one thread waits with epoll for all clients, reads requests and answers those
+// that need no worker (health, refusals). A complete request goes with its connection to a worker
+// thread, which computes the answer and returns the connection; the loop sends what its socket has
+// not taken.
 #pragma once
-
-#include <atomic>
-#include <cstdint>
-#include <functional>
-#include <map>
-#include <memory>
-#include <mutex>
-#include <string>
-#include <vector>
 
 #include "http/connection.hpp"
 #include "http/metrics.hpp"
 #include "http/worker_pool.hpp"
-#include "program/descriptor.hpp"
 
 namespace vines::http {
 
@@ -34,7 +23,8 @@ public:
     /// listening: a listening socket, which becomes non-blocking. The handler must outlive the
     /// loop. Throws std::system_error if no worker thread can be started.
     EventLoop(
-        int listening, const ConnectionLimits& limits, Networks proxies, RequestHandler& handler);
+        Descriptor listening, const ConnectionLimits& limits, Networks proxies,
+        RequestHandler& handler);
 
     /// Runs until stop() has been called and all connections are closed.
     void run();
@@ -56,11 +46,9 @@ private:
     using Owned = std::unique_ptr<Connection>;
     using Clock = Connection::Clock;
 
-    // Called by the thread in run().
     void wait();
     void accept(int most);
     Connection* eviction_candidate(const std::string& owner = {}) const;
-    bool is_at_limit(const Connection& connection) const;
     void change_events(int operation, int socket, std::uint32_t events) const;
     void wait_for(int operation, const Connection& connection) const;
     void listen(bool on);
@@ -76,19 +64,16 @@ private:
     void collect_returned();
     void expire();
     void time_out(Connection& connection);
-    bool is_done() const;
-    // Called by workers.
+    // The others are called by the thread in run(), these by workers.
     void work(Owned connection);
-    bool next_request_is_near(Connection& connection);
-    void return_connection(Owned connection);
     void finish_stream(Owned connection, Task rest);
+    void hand_back(int socket, Owned connection);
     void wake() const;
 
-    const int listening_;
     RequestHandler& handler_;
     const std::size_t max_connections_, max_per_client_;
     const Networks proxies_;
-    const Descriptor poll_, wake_;
+    const Descriptor listening_, poll_, wake_;
     MemoryBudget memory_;
     std::vector<Owned> connections_;             // indexed by socket; used by run() only
     std::map<std::string, std::size_t> open_;    // connections by client, also those with workers
@@ -101,12 +86,12 @@ private:
     std::atomic<bool> stopping_ = false;
     bool listens_ = false, closing_ = false;
     Clock::time_point checked_ = Clock::now();
-    Clock::time_point idle_until_ =
-        Clock::time_point::max();  // connections without a complete request end then
+    // Connections without a complete request end then.
+    Clock::time_point idle_until_ = Clock::time_point::max();
     std::mutex mutex_;
-    std::vector<Owned> returned_;  // from workers
-    std::vector<int> ended_;       // sockets whose stream has ended
-    WorkerPool<Owned> workers_;    // destroyed first
+    /// From workers: connections by their sockets; null once the stream of one has ended.
+    std::vector<std::pair<int, Owned>> returned_;
+    WorkerPool<Owned> workers_;  // destroyed first
 };
 
 }  // namespace vines::http

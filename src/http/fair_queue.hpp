@@ -3,13 +3,10 @@
 #pragma once
 
 #include <algorithm>
-#include <cstddef>
-#include <iterator>
 #include <list>
 #include <map>
 #include <optional>
 #include <string>
-#include <utility>
 
 namespace vines::http {
 

@@ -2,17 +2,13 @@
 
 #include <fmt/format.h>
 
-#include <cstdint>
 #include <random>
 #include <regex>
-#include <tuple>
 
 #include "api/problem.hpp"
 #include "program/whole_number.hpp"
 
 namespace vines::http {
-
-// --- Parsing of heads ---
 
 namespace {
 
@@ -25,10 +21,6 @@ using api::Problem;
 /// True for a token (RFC 9110, 5.6.2).
 bool is_token(std::string_view text) {
     return !text.empty() && consists_of(text, "!#$%&'*+-.^_`|~");
-}
-
-bool is_printable(std::string_view text) {
-    return std::all_of(text.begin(), text.end(), [](char c) { return c > ' ' && c < 0x7f; });
 }
 
 /// True for HOST or HOST:PORT (RFC 3986, 3.2.2), or an empty text.
@@ -45,13 +37,7 @@ bool is_authority(std::string_view text) {
            port.find_first_not_of("0123456789", 1) == std::string_view::npos;
 }
 
-/// True if a header's value holds a control character; blanks and bytes above 127 are allowed.
-bool has_control(std::string_view text) {
-    return std::any_of(text.begin(), text.end(), [](char c) {
-        const auto byte = static_cast<unsigned char>(c);
-        return (byte < 0x20 && c != '\t') || byte == 0x7f;
-    });
-}
+bool is_control(char c) { return (static_cast<unsigned char>(c) < ' ' && c != '\t') || c == 0x7f; }
 
 /// Splits a target in absolute form, as sent to a proxy, into authority and path.
 std::pair<std::string, std::string> split_absolute(std::string_view target) {
@@ -80,33 +66,27 @@ std::vector<std::string> list_elements(const Head& head, std::string_view header
     return elements;
 }
 
-bool list_contains(const Head& head, std::string_view header, std::string_view word) {
-    const std::vector<std::string> elements = list_elements(head, header);
-    return std::find(elements.begin(), elements.end(), word) != elements.end();
+/// The trace-id of VERSION-TRACE-PARENT-FLAGS (2, 32, 16 and 2 digits; later versions can have more
+/// fields); empty if the header is invalid.
+std::string_view trace_of(std::string_view traceparent) {
+    constexpr std::size_t whole = 55;
+    static const std::regex form(
+        "(?!ff)[0-9a-f]{2}-(?!0{32})[0-9a-f]{32}-(?!0{16})[0-9a-f]{16}-[0-9a-f]{2}-?");
+    const std::string_view known = traceparent.substr(0, whole + 1);
+    if (!std::regex_match(known.begin(), known.end(), form)) return {};
+    if (known.starts_with("00") && known.size() > whole) return {};
+    return known.substr(3, 32);
 }
 
 }  // namespace
 
-std::string_view Head::path() const { return std::string_view(target).substr(0, target.find('?')); }
-
 std::string_view Head::query() const {
-    const std::size_t mark = target.find('?');
-    return mark == std::string::npos ? std::string_view()
-                                     : std::string_view(target).substr(mark + 1);
+    return std::string_view(target).substr(std::min(path().size() + 1, target.size()));
 }
 
 std::string_view Head::header(std::string_view name) const {
-    const auto found = std::find_if(headers.begin(), headers.end(), [name](const auto& header) {
-        return header.first == name;
-    });
+    const auto found = std::ranges::find(headers, name, &Header::first);
     return found == headers.end() ? std::string_view() : std::string_view(found->second);
-}
-
-std::size_t Head::count(std::string_view name) const {
-    const auto number = std::count_if(headers.begin(), headers.end(), [name](const auto& header) {
-        return header.first == name;
-    });
-    return static_cast<std::size_t>(number);
 }
 
 bool HeadReader::read(std::string_view bytes) {
@@ -123,20 +103,17 @@ bool HeadReader::read(std::string_view bytes) {
         if (end == std::string_view::npos) return false;
         if (end == read_ || bytes[end - 1] != '\r') malformed("a line must end with CR LF");
         const std::string_view line = bytes.substr(read_, end - 1 - read_);
+        const bool is_skipped = read_ == 0 && line.empty();  // before the request (RFC 9112, 2.2)
         read_ = searched_ = end + 1;
-        take_line(line);
+        if (is_skipped) continue;
+        if (version_.empty()) take_request_line(line);
+        else if (!line.empty()) take_header(line);
+        else {
+            finish();
+            complete_ = true;
+        }
     }
     return true;
-}
-
-void HeadReader::take_line(std::string_view line) {
-    const bool is_first = read_ == line.size() + 2;
-    if (version_.empty() && line.empty() && is_first)
-        return;  // empty line before the request (RFC 9112, 2.2)
-    if (version_.empty()) return take_request_line(line);
-    if (!line.empty()) return take_header(line);
-    finish();
-    complete_ = true;
 }
 
 void HeadReader::take_request_line(std::string_view line) {
@@ -152,7 +129,8 @@ void HeadReader::take_request_line(std::string_view line) {
         malformed("its first line must end with HTTP/1.1");
     if (version_ != "HTTP/1.1" && version_ != "HTTP/1.0")
         throw Problem(505, "this service supports HTTP/1.1 and HTTP/1.0");
-    if (target.empty() || !is_printable(target))
+    const auto is_printable = [](char c) { return c > ' ' && c < 0x7f; };
+    if (target.empty() || !std::ranges::all_of(target, is_printable))
         malformed("its target contains a blank or a control character");
     if (target.find('#') != std::string_view::npos)
         malformed("its target must not have a fragment (#...)");
@@ -170,14 +148,13 @@ void HeadReader::take_header(std::string_view line) {
     if (colon == std::string_view::npos || !is_token(name))
         malformed("a header must be NAME: VALUE, without a blank before the colon");
     const std::string_view value = trimmed(line.substr(colon + 1));
-    if (has_control(value)) malformed("a header's value contains a control character");
+    if (std::ranges::any_of(value, is_control))
+        malformed("a header's value contains a control character");
     if (head_.headers.size() >= max_headers)
         throw Problem(431, fmt::format("the request has more than {} headers", max_headers));
     std::string lower = lower_case(name);
     if (is_list_header(lower)) {
-        const auto before = std::find_if(
-            head_.headers.begin(), head_.headers.end(),
-            [&lower](const auto& header) { return header.first == lower; });
+        const auto before = std::ranges::find(head_.headers, lower, &Header::first);
         if (before != head_.headers.end()) {
             before->second.append(", ").append(value);
             return;
@@ -203,45 +180,21 @@ void HeadReader::finish() {
     }
     head_.content_length = length.value_or(0);
     head_.takes_chunks = !is_old;
-    const bool ends = list_contains(head_, "connection", "close");
-    head_.keep_alive = !ends && (!is_old || list_contains(head_, "connection", "keep-alive"));
+    const std::vector<std::string> options = list_elements(head_, "connection");
+    const auto lists = [&options](const char* word) { return std::ranges::count(options, word); };
+    head_.keep_alive = lists("close") == 0 && (!is_old || lists("keep-alive") > 0);
     if (head_.has("expect") && !is_old) {
-        const std::vector<std::string> expected = list_elements(head_, "expect");
-        const auto others = std::count_if(expected.begin(), expected.end(), [](const auto& one) {
-            return one != "100-continue";
-        });
-        if (others > 0 || expected.empty())
+        std::vector<std::string> expected = list_elements(head_, "expect");
+        if (std::erase(expected, "100-continue") == 0 || !expected.empty())
             throw Problem(417, "the only supported expectation is 100-continue");
         head_.expects_continue = true;
     }
 }
 
-// --- Request ids ---
-
-namespace {
-
-constexpr std::size_t max_id_length = 64;
-
-bool is_word(std::string_view text) {
-    return !text.empty() && text.size() <= max_id_length && consists_of(text, "._-");
-}
-
-/// The trace-id of VERSION-TRACE-PARENT-FLAGS (2, 32, 16 and 2 digits; later versions can have more
-/// fields); empty if the header is invalid.
-std::string_view trace_of(std::string_view traceparent) {
-    constexpr std::size_t whole = 55;
-    static const std::regex form(
-        "(?!ff)[0-9a-f]{2}-(?!0{32})[0-9a-f]{32}-(?!0{16})[0-9a-f]{16}-[0-9a-f]{2}-?");
-    const std::string_view known = traceparent.substr(0, whole + 1);
-    if (!std::regex_match(known.begin(), known.end(), form)) return {};
-    if (known.starts_with("00") && known.size() > whole) return {};
-    return known.substr(3, 32);
-}
-
-}  // namespace
-
 std::string request_id(const Head& head) {
-    if (const std::string_view given = head.header("x-request-id"); is_word(given))
+    constexpr std::size_t longest = 64;
+    const std::string_view given = head.header("x-request-id");
+    if (!given.empty() && given.size() <= longest && consists_of(given, "._-"))
         return std::string(given);
     if (const std::string_view trace = trace_of(head.header("traceparent")); !trace.empty())
         return std::string(trace);

@@ -4,32 +4,34 @@
 #pragma once
 
 #include <algorithm>
-#include <cstddef>
 #include <cstdlib>
 #include <string>
-#include <string_view>
-#include <utility>
 #include <vector>
 
 namespace vines::http {
+
+using Header = std::pair<std::string, std::string>;
 
 struct Head {
     std::string method = {};
     std::string target = {};  ///< path and query
     std::string host = {};    ///< authority: of Host, or of a target in absolute form
     /// Names in lower case, values without surrounding blanks.
-    std::vector<std::pair<std::string, std::string>> headers = {};
+    std::vector<Header> headers = {};
     std::size_t content_length = 0;
     bool keep_alive = true;         ///< the connection can be reused
     bool takes_chunks = true;       ///< an answer without a length can be sent in chunks
     bool expects_continue = false;  ///< the client waits for 100 before it sends the body
 
-    std::string_view path() const;   ///< of the target, not decoded
+    /// Of the target, not decoded.
+    std::string_view path() const { return std::string_view(target).substr(0, target.find('?')); }
     std::string_view query() const;  ///< after the "?"
     /// The value of a header by its name in lower case; empty if missing.
     std::string_view header(std::string_view name) const;
     bool has(std::string_view name) const { return count(name) > 0; }
-    std::size_t count(std::string_view name) const;
+    long count(std::string_view name) const {
+        return std::ranges::count(headers, name, &Header::first);
+    }
 };
 
 /// Incremental parser: reads each byte of a head once.
@@ -47,7 +49,6 @@ public:
     static constexpr std::size_t max_headers = 100;
 
 private:
-    void take_line(std::string_view line);
     void take_request_line(std::string_view line);
     void take_header(std::string_view line);
     void finish();
@@ -89,7 +90,7 @@ inline std::string lower_case(std::string_view text) {
 
 /// True if the text consists of ASCII letters, digits and the characters in `others`.
 inline bool consists_of(std::string_view text, std::string_view others) {
-    return std::all_of(text.begin(), text.end(), [others](char c) {
+    return std::ranges::all_of(text, [others](char c) {
         return (c >= '0' && c <= '9') || (lower_case(c) >= 'a' && lower_case(c) <= 'z') ||
                others.find(c) != std::string_view::npos;
     });
@@ -100,20 +101,17 @@ inline std::string media_type(std::string_view content_type) {
     return lower_case(next_part(content_type, ';'));
 }
 
-/// One element of an Accept or Accept-Encoding header, such as "gzip;q=0.5" (RFC 9110, 12.4.2). A
-/// weight of 0 refuses it, and so does a weight that is not a number.
-struct Preference {
-    std::string name;  ///< in lower case
+/// The name, in lower case, and the weight of one element of an Accept or Accept-Encoding header,
+/// such as "gzip;q=0.5" (RFC 9110, 12.4.2). A weight of 0 refuses it, and so does a weight that is
+/// not a number.
+inline std::pair<std::string, double> preference_of(std::string_view element) {
+    const std::string name = lower_case(next_part(element, ';'));
     double weight = 1;
-};
-inline Preference preference_of(std::string_view element) {
-    Preference preference{lower_case(next_part(element, ';'))};
     while (!element.empty()) {
         const std::string parameter = lower_case(next_part(element, ';'));
-        if (parameter.starts_with("q="))
-            preference.weight = std::strtod(parameter.c_str() + 2, nullptr);
+        if (parameter.starts_with("q=")) weight = std::strtod(parameter.c_str() + 2, nullptr);
     }
-    return preference;
+    return {name, weight};
 }
 
 }  // namespace vines::http

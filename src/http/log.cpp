@@ -1,20 +1,9 @@
 #include "http/log.hpp"
 
-#include <fmt/format.h>
-#include <poll.h>
 #include <spdlog/sinks/base_sink.h>
 #include <spdlog/spdlog.h>
-#include <unistd.h>
-
-#include <atomic>
-#include <memory>
-#include <mutex>
-#include <nlohmann/json.hpp>
-#include <string_view>
-#include <utility>
 
 #include "api/json_text.hpp"
-#include "api/problem.hpp"
 #include "program/process.hpp"
 
 namespace vines::http {
@@ -29,36 +18,26 @@ constexpr const char* json_pattern = R"({"time":"%Y-%m-%dT%H:%M:%SZ","level":"%l
 constexpr const char* text_pattern = "%Y-%m-%dT%H:%M:%SZ %-7l%v";
 
 /// The fields of a line.
-class Line {
-public:
-    void add(std::string_view name, std::string_view text) {
-        if (api::needs_no_escape(text)) return put(name, text, "\"");
+struct Line {
+    void add(std::string_view name, std::string_view value) {
+        if (api::needs_no_escape(value)) return put(name, value, "\"");
         // A path can contain any bytes: invalid UTF-8 is replaced.
-        using Json = nlohmann::json;
-        put(name, printable(Json(text).dump(-1, ' ', false, Json::error_handler_t::replace)));
+        constexpr auto replace = nlohmann::json::error_handler_t::replace;
+        put(name, printable(nlohmann::json(value).dump(-1, ' ', false, replace)));
     }
     void add(std::string_view name, double ms) { put(name, fmt::format("{:.3f}", ms)); }
     void add(std::string_view name, std::size_t number) { put(name, std::to_string(number)); }
-    void add_true(std::string_view name) { put(name, "true"); }
-    const std::string& text() const { return text_; }
-
-private:
     void put(std::string_view name, std::string_view value, std::string_view quote = "") {
         const bool is_text = format == LogFormat::text;
         const std::string_view before = is_text ? " " : ",\"", between = is_text ? "=" : "\":";
         for (const std::string_view part : {before, name, between, quote, value, quote})
-            text_ += part;
+            text += part;
     }
 
-    std::string text_;
+    std::string text = {};
 };
 
 using Level = spdlog::level::level_enum;
-
-Level level_of(int status) {
-    if (status < 400) return Level::info;
-    return status < 500 || status == 503 ? Level::warn : Level::err;
-}
 
 /// Never throws: a line that cannot be written must not make a request fail.
 template <class Add>
@@ -66,7 +45,7 @@ void log(Level level, Add add) {
     try {
         Line line;
         add(line);
-        spdlog::log(level, line.text());
+        spdlog::log(level, line.text);
     } catch (...) {}
 }
 
@@ -80,13 +59,12 @@ protected:
             ++dropped_total;
             return;
         }
-        if (dropped_ > 0) {
+        if (const std::size_t lines = std::exchange(dropped_, 0)) {
             Line line;
             line.add("what", "lines were dropped");
-            line.add("lines", dropped_);
-            write({message.logger_name, Level::warn, line.text()});
+            line.add("lines", lines);
+            write({message.logger_name, Level::warn, line.text});
         }
-        dropped_ = 0;
         write(message);
     }
     void flush_() override {}
@@ -120,22 +98,25 @@ void start_log(LogFormat chosen) {
 }
 
 void log_request(const Request& request, const Outcome& outcome) {
+    constexpr std::array probes{"/livez", "/readyz", "/healthz", "/metrics"};
     const std::string_view path = request.head.path();
-    const bool probe =
-        path == "/livez" || path == "/readyz" || path == "/healthz" || path == "/metrics";
-    if (probe && outcome.status == 200) return;
-    log(level_of(outcome.status), [&](Line& line) {
-        line.add("method", api::shortened(request.head.method));
-        line.add("path", api::shortened(path));
-        line.add("status", static_cast<std::size_t>(outcome.status));
-        line.add("ms", outcome.ms);
-        line.add("bytes", outcome.bytes);
-        line.add("client", request.sender.address);
-        if (!request.sender.key.empty()) line.add("key", request.sender.key);
-        line.add("request_id", request.id);
-        for (const auto& [name, ms] : outcome.timing) line.add(name + "_ms", ms);
-        if (outcome.left) line.add_true("client_left");
-    });
+    if (outcome.status == 200 && std::ranges::count(probes, path) > 0) return;
+    const bool failed = outcome.status >= 500 && outcome.status != 503;
+    log(failed                 ? Level::err
+        : outcome.status < 400 ? Level::info
+                               : Level::warn,
+        [&](Line& line) {
+            line.add("method", api::shortened(request.head.method));
+            line.add("path", api::shortened(path));
+            line.add("status", static_cast<std::size_t>(outcome.status));
+            line.add("ms", outcome.ms);
+            line.add("bytes", outcome.bytes);
+            line.add("client", request.sender.address);
+            if (!request.sender.key.empty()) line.add("key", request.sender.key);
+            line.add("request_id", request.id);
+            for (const auto& [name, ms] : outcome.timing) line.add(name + "_ms", ms);
+            if (outcome.left) line.put("client_left", "true");
+        });
 }
 
 void log_unanswered(const Request& request, double ms) {

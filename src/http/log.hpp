@@ -1,9 +1,6 @@
 // The service's log: one line of JSON (or text) per request on stderr.
 #pragma once
 
-#include <string>
-#include <string_view>
-
 #include "http/message.hpp"
 
 namespace vines::http {

@@ -3,15 +3,9 @@
 
 #include <chrono>
 #include <functional>
-#include <optional>
-#include <string>
-#include <string_view>
-#include <utility>
-#include <vector>
 
 #include "api/problem.hpp"
 #include "http/client.hpp"
-#include "http/head.hpp"
 
 namespace vines::http {
 
@@ -20,6 +14,10 @@ inline constexpr auto client_check_interval = std::chrono::milliseconds(50);
 
 /// Duration of each phase by name, ms.
 using Timing = std::vector<std::pair<std::string, double>>;
+
+inline double in_ms(std::chrono::steady_clock::duration time) {
+    return std::chrono::duration<double, std::milli>(time).count();
+}
 
 /// Measures the phases of a request's work.
 class Stopwatch {
@@ -37,22 +35,9 @@ public:
     Timing take() { return std::move(laps_); }
 
 private:
-    static double in_ms(Clock::duration time) {
-        return std::chrono::duration<double, std::milli>(time).count();
-    }
-
     Clock::time_point last_ = Clock::now();
     Clock::duration queued_{};
     Timing laps_;
-};
-
-struct Request {
-    Head head = {};
-    std::string body = {};  ///< a route frees a large one once it is read
-    Sender sender = {};
-    std::string id = {};  ///< see request_id()
-    /// Returns true once the client has left.
-    std::function<bool()> left = [] { return false; };
 };
 
 /// Destination of an answer that is sent in pieces.
@@ -72,7 +57,7 @@ struct Response {
         0;                   ///< size of the uncompressed body; 0: body is not compressed
     bool immutable = false;  ///< the content of this path never changes
     std::string tag = {};    ///< header ETag; empty: computed from the body
-    std::vector<std::pair<std::string, std::string>> headers = {};
+    std::vector<Header> headers = {};
     /// Writes the answer instead of a body; false closes the connection with a reset.
     std::function<bool(Writer&)> stream = {};
     std::size_t held = 0;       ///< bytes a stream holds until its end, approximately
@@ -85,6 +70,8 @@ struct Response {
     bool own_limit = false;  ///< refused for what the client itself holds
     Timing timing = {};      ///< header Server-Timing
 };
+
+struct Request;
 
 /// The function that answers a method and path.
 struct Route {
@@ -99,11 +86,16 @@ struct Route {
     bool is_public = false;          ///< needs no API key
 };
 
-/// A request from its complete head on; nothing is read after a refused request.
-struct Exchange {
-    Request request = {};
-    const Route* route = nullptr;  ///< can be null if refused
-    std::optional<Response> refused = {};
+/// A request from its complete head on.
+struct Request {
+    Head head = {};
+    std::string body = {};  ///< a route frees a large one once it is read
+    Sender sender = {};
+    std::string id = {};  ///< see request_id()
+    /// Returns true once the client has left.
+    std::function<bool()> left = [] { return false; };
+    const Route* route = nullptr;                      ///< can be null if refused
+    std::optional<Response> refused = {};              ///< its connection is then read no further
     std::chrono::steady_clock::time_point since = {};  ///< time at which the request was complete
 };
 
@@ -115,8 +107,11 @@ inline Response problem_response(const api::Problem& problem) {
     if (problem.status == 503) response.headers.emplace_back("Retry-After", "1");
     return response;
 }
-inline Response problem_response(int status, const std::string& detail) {
-    return problem_response(api::Problem(status, detail));
+inline Response problem_response(
+    int status, const std::string& detail, std::vector<Header> headers = {}) {
+    Response response = problem_response(api::Problem(status, detail));
+    response.headers = std::move(headers);
+    return response;
 }
 
 /// 503: the memory limit is reached.

@@ -7,18 +7,10 @@
 #include <sys/resource.h>
 #include <unistd.h>
 
-#include <algorithm>
-#include <array>
 #include <filesystem>
 #include <fstream>
-#include <iterator>
-#include <mutex>
 #include <sstream>
-#include <string>
-#include <system_error>
 #include <unordered_map>
-#include <utility>
-#include <vector>
 
 #include "api/version.hpp"
 
@@ -37,28 +29,11 @@ const prometheus::Histogram::BucketBoundaries durations = {
 /// Unsupported methods share one label, so that clients cannot create new series.
 std::string method_label(const std::string& method) {
     constexpr std::array known{"GET", "HEAD", "POST"};
-    return std::find(known.begin(), known.end(), method) != known.end() ? method : "other";
+    return std::ranges::count(known, method) > 0 ? method : "other";
 }
 
 // In the order of SweepEnd.
 constexpr std::array sweep_ends{"complete", "client_left", "deadline", "stopping", "failed"};
-
-/// A metric without labels, at its present value.
-MetricFamily sampled(
-    const char* name, const char* help, auto value, MetricType type = MetricType::Gauge) {
-    ClientMetric metric;
-    (type == MetricType::Counter ? metric.counter.value : metric.gauge.value) =
-        static_cast<double>(value);
-    return {name, help, type, {std::move(metric)}};
-}
-
-MetricFamily build_info() {
-    MetricFamily family =
-        sampled("vines_build_info", "The build that serves, by its labels; always 1.", 1);
-    family.metric[0].label = {
-        {"version", api::version()}, {"commit", api::commit()}, {"compiler", api::compiler()}};
-    return family;
-}
 
 /// Boot time of the system, seconds since 1970; 0 if unknown.
 double boot_time() {
@@ -80,32 +55,6 @@ std::vector<double> process_status() {
     std::copy(std::istream_iterator<double>(numbers), {}, std::back_inserter(fields));
     fields.resize(25);
     return fields;
-}
-
-/// Adds the resource use of this process, by the names of Prometheus' client libraries.
-void add_process(std::vector<MetricFamily>& all) {
-    const std::vector<double> status = process_status();
-    const auto ticks = static_cast<double>(::sysconf(_SC_CLK_TCK));
-    const auto page_size = static_cast<double>(::sysconf(_SC_PAGESIZE));
-    std::error_code ignored;
-    // Without the descriptor of this directory.
-    const auto files =
-        std::distance(std::filesystem::directory_iterator("/proc/self/fd", ignored), {}) - 1;
-    rlimit limit{};
-    ::getrlimit(RLIMIT_NOFILE, &limit);
-    all.insert(
-        all.end(),
-        {sampled(
-             "process_cpu_seconds_total", "User and system time.",
-             (status[14] + status[15]) / ticks, MetricType::Counter),
-         sampled(
-             "process_start_time_seconds", "Start of the process, since 1970.",
-             boot_time() + status[22] / ticks),
-         sampled("process_resident_memory_bytes", "Memory in use.", status[24] * page_size),
-         sampled("process_virtual_memory_bytes", "Memory that is mapped.", status[23]),
-         sampled("process_open_fds", "Open file descriptors.", files),
-         sampled("process_max_fds", "File descriptors that may be open.", limit.rlim_cur),
-         sampled("process_threads", "Threads.", status[20])});
 }
 
 /// Members of a metric family by one key: a look-up by labels takes as long as a small request.
@@ -170,24 +119,6 @@ struct Metrics::Implementation {
     prometheus::Counter& impacts = counter(
         "vines_impacts_total",
         "Impacts computed by simulations and in the measured part of ended sweeps.");
-
-    void add_load(std::vector<MetricFamily>& all) const {
-        const AdmissionLoad load = admission.load();
-        const ConnectionLoad now = connections();
-        all.insert(
-            all.end(), {sampled("vines_compute_running", "Computations running.", load.running),
-                        sampled(
-                            "vines_compute_queue_depth", "Requests that wait for a compute slot.",
-                            load.waiting),
-                        sampled("vines_sweeps_running", "Sweeps running.", load.sweeps),
-                        sampled("vines_http_connections", "Open connections.", now.open),
-                        sampled(
-                            "vines_http_requests_in_flight",
-                            "Requests received and not yet answered.", now.in_flight),
-                        sampled(
-                            "vines_http_held_bytes", "Bytes of requests and answers in memory.",
-                            now.held_bytes)});
-    }
 };
 
 Metrics::Metrics(const AdmissionControl& admission)
@@ -232,12 +163,46 @@ void Metrics::watch_connections(std::function<ConnectionLoad()> connections) {
 
 std::string Metrics::text() const {
     std::vector<MetricFamily> all = implementation_->registry.Collect();
-    implementation_->add_load(all);
-    all.push_back(sampled(
-        "vines_log_lines_dropped_total", "Log lines dropped because stderr was full.",
-        log_lines_dropped(), MetricType::Counter));
-    add_process(all);
-    all.push_back(build_info());
+    // Adds a metric without labels, at its present value.
+    const auto add = [&all](
+                         const char* name, const char* help, auto value,
+                         MetricType type = MetricType::Gauge) {
+        ClientMetric metric;
+        (type == MetricType::Counter ? metric.counter.value : metric.gauge.value) =
+            static_cast<double>(value);
+        all.push_back({name, help, type, {std::move(metric)}});
+    };
+    const AdmissionLoad load = implementation_->admission.load();
+    add("vines_compute_running", "Computations running.", load.running);
+    add("vines_compute_queue_depth", "Requests that wait for a compute slot.", load.waiting);
+    add("vines_sweeps_running", "Sweeps running.", load.sweeps);
+    const ConnectionLoad now = implementation_->connections();
+    add("vines_http_connections", "Open connections.", now.open);
+    add("vines_http_requests_in_flight", "Requests received and not yet answered.", now.in_flight);
+    add("vines_http_held_bytes", "Bytes of requests and answers in memory.", now.held_bytes);
+    add("vines_log_lines_dropped_total", "Log lines dropped because stderr was full.",
+        log_lines_dropped(), MetricType::Counter);
+    // The resource use of this process, by the names of Prometheus' client libraries.
+    const std::vector<double> status = process_status();
+    const auto ticks = static_cast<double>(::sysconf(_SC_CLK_TCK));
+    const auto page_size = static_cast<double>(::sysconf(_SC_PAGESIZE));
+    add("process_cpu_seconds_total", "User and system time.", (status[14] + status[15]) / ticks,
+        MetricType::Counter);
+    add("process_start_time_seconds", "Start of the process, since 1970.",
+        boot_time() + status[22] / ticks);
+    add("process_resident_memory_bytes", "Memory in use.", status[24] * page_size);
+    add("process_virtual_memory_bytes", "Memory that is mapped.", status[23]);
+    std::error_code ignored;
+    const std::filesystem::directory_iterator files("/proc/self/fd", ignored);
+    // Without the descriptor of this directory.
+    add("process_open_fds", "Open file descriptors.", std::distance(files, {}) - 1);
+    rlimit limit{};
+    ::getrlimit(RLIMIT_NOFILE, &limit);
+    add("process_max_fds", "File descriptors that may be open.", limit.rlim_cur);
+    add("process_threads", "Threads.", status[20]);
+    add("vines_build_info", "The build that serves, by its labels; always 1.", 1);
+    all.back().metric[0].label = {
+        {"version", api::version()}, {"commit", api::commit()}, {"compiler", api::compiler()}};
     return prometheus::TextSerializer().Serialize(all);
 }
 

@@ -1,10 +1,6 @@
 // The service's metrics, in Prometheus' text format.
 #pragma once
 
-#include <functional>
-#include <memory>
-#include <string>
-
 #include "http/admission_control.hpp"
 #include "http/log.hpp"
 

@@ -4,11 +4,8 @@
 #include <poll.h>
 #include <sys/ioctl.h>
 #include <sys/socket.h>
-#include <sys/uio.h>
 
-#include <algorithm>
 #include <array>
-#include <cerrno>
 #include <utility>
 
 namespace vines::http {
@@ -106,7 +103,8 @@ Outbox::State Outbox::send(std::size_t max_bytes) {
         } else if (errno != EINTR) broken_ = true;
     }
     if (broken_ || unsent_ <= capacity) changed_.notify_all();
-    return state();
+    if (broken_) return State::broken;
+    return ended_ && unsent_ == 0 ? State::sent : State::open;
 }
 
 void Outbox::cancel() {
@@ -118,7 +116,9 @@ void Outbox::cancel() {
 bool Outbox::client_is_slow(Clock::time_point now, bool scarce) {
     const std::lock_guard lock(mutex_);
     const auto wait = waited_ + (blocked_ ? now - blocked_since_ : Clock::duration(0));
-    const auto bytes = static_cast<double>(acknowledged());
+    // What the client's system has received: bytes in the socket's buffer are not read yet.
+    const std::size_t all = before_ + sent_;
+    const auto bytes = static_cast<double>(all - std::min(all, queued()));
     const std::chrono::duration<double> waited = wait - std::exchange(counted_wait_, wait);
     const double read = bytes - std::exchange(counted_bytes_, bytes);
     for (Lag* lag : {&usual_, &while_scarce_}) {
@@ -129,12 +129,6 @@ bool Outbox::client_is_slow(Clock::time_point now, bool scarce) {
     if (!scarce) while_scarce_.time = {};
     const Lag& lag = scarce ? while_scarce_ : usual_;
     return lag.time > lag.allowed;
-}
-
-/// Bytes that the client's system has received: those in the socket's buffer are not read yet.
-std::size_t Outbox::acknowledged() const {
-    const std::size_t all = before_ + sent_;
-    return all - std::min(all, queued());
 }
 
 /// Bytes in the socket's buffer that the client has not acknowledged.
@@ -148,25 +142,15 @@ bool Outbox::can_send_more() const {
     return unsent_ > 0 && !blocked_ && !broken_;
 }
 
-bool Outbox::is_broken() const {
-    const std::lock_guard lock(mutex_);
-    return broken_;
-}
-
-bool Outbox::client_has_closed() const {
+bool Outbox::is_lost(bool by_closing) const {
     const std::lock_guard lock(mutex_);
     pollfd state{socket_, POLLRDHUP, 0};
-    return broken_ || ::poll(&state, 1, 0) > 0;
+    return broken_ || (by_closing && ::poll(&state, 1, 0) > 0);
 }
 
 std::size_t Outbox::sent() const {
     const std::lock_guard lock(mutex_);
     return sent_;
-}
-
-Outbox::State Outbox::state() const {
-    if (broken_) return State::broken;
-    return ended_ && unsent_ == 0 ? State::sent : State::open;
 }
 
 void Outbox::drop_sent(std::size_t bytes) {

@@ -3,9 +3,7 @@
 // when the socket takes more. Neither blocks on the socket.
 #pragma once
 
-#include <chrono>
 #include <condition_variable>
-#include <cstddef>
 #include <deque>
 #include <limits>
 #include <mutex>
@@ -49,15 +47,14 @@ public:
     /// be called regularly.
     bool client_is_slow(Clock::time_point now, bool scarce);
 
-    bool is_broken() const;
-    bool client_has_closed() const;  ///< its sending side, or all
-    std::size_t sent() const;        ///< bytes that the socket has taken
+    /// True if the rest of the answer cannot be sent; by_closing: also if the client has closed its
+    /// sending side.
+    bool is_lost(bool by_closing) const;
+    std::size_t sent() const;  ///< bytes that the socket has taken
 
 private:
-    State state() const;
     void drop_sent(std::size_t bytes);
     std::size_t queued() const;
-    std::size_t acknowledged() const;
     void probe();
 
     const int socket_;

@@ -1,16 +1,11 @@
 #include "http/routes.hpp"
 
-#include <functional>
-#include <memory>
-#include <mutex>
-
 #include "api/json_text.hpp"
 #include "api/openapi/openapi.hpp"
 #include "api/presets.hpp"
 #include "api/schema/tables.hpp"
 #include "api/version.hpp"
 #include "http/encoding.hpp"
-#include "http/message.hpp"
 
 namespace vines::http {
 

@@ -1,10 +1,7 @@
 // All routes of the service.
 #pragma once
 
-#include <vector>
-
 #include "api/simulate.hpp"
-#include "http/admission_control.hpp"
 #include "http/metrics.hpp"
 #include "http/page.hpp"
 

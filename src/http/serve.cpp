@@ -4,28 +4,9 @@
 // Requests are still accepted for --drain seconds. Then the server stops: requests in progress have
 // 10 s to finish; after that computations end with the results they have, and 5 s later the process
 // ends, with code 3 if requests are left unanswered. A second signal ends it immediately.
-#include <fmt/format.h>
-#include <unistd.h>
-
-#include <cctype>
-#include <chrono>
-#include <csignal>
-#include <cstdlib>
-#include <memory>
-#include <optional>
-#include <stdexcept>
-#include <thread>
-#include <type_traits>
-#include <utility>
-#include <vector>
-
 #include "api/version.hpp"
-#include "http/admission_control.hpp"
-#include "http/log.hpp"
-#include "http/memory.hpp"
 #include "http/routes.hpp"
 #include "http/server.hpp"
-#include "program/process.hpp"
 #include "program/subcommand.hpp"
 
 #include <httplib.h>  // after Eigen's headers, which one of its macros breaks
@@ -55,115 +36,102 @@ std::string variable_of(std::string option) {
     return option;
 }
 
-/// Adds options to a command. Each takes its value from the flag, else from the environment
-/// variable, else its default.
-struct Options {
-    template <class Value>
-    CLI::Option* add(const std::string& name, Value& value, const char* help) const {
-        return command.add_option(name, value, help)->envname(variable_of(name));
-    }
-    /// An option with a number from `least` to `most`.
-    template <class Value>
-    CLI::Option* number(
-        const std::string& name, Value& value, std::type_identity_t<Value> least,
-        std::type_identity_t<Value> most, const char* help) const {
-        return add(name, value, help)->check(number_between(least, most))->capture_default_str();
-    }
+/// Adds an option with a number from `least` to `most`.
+template <class Value>
+CLI::Option* number(
+    CLI::App& command, const std::string& name, Value& value, std::type_identity_t<Value> least,
+    std::type_identity_t<Value> most, const char* help) {
+    return command.add_option(name, value, help)
+        ->check(number_between(least, most))
+        ->capture_default_str();
+}
 
-    CLI::App& command;
-};
-
-void add_connection_options(const Options& c, ServerOptions& o) {
-    c.add("--host", o.access.host, "address to listen on")->capture_default_str();
-    c.number("--port", o.port, 0, 65535, "port to listen on, 0 for any free one");
-    c.number("--threads", o.limits.workers, 1, 4096, "worker threads: requests answered at once");
-    c.number(
-        "--connections", o.limits.connections, 1, 1000000,
+void add_connection_options(CLI::App& c, ServerOptions& o) {
+    c.add_option("--host", o.access.host, "address to listen on")->capture_default_str();
+    number(c, "--port", o.port, 0, 65535, "port to listen on, 0 for any free one");
+    number(c, "--threads", o.limits.workers, 1, 4096, "worker threads: requests answered at once");
+    number(
+        c, "--connections", o.limits.connections, 1, 1000000,
         "connections open at once; beyond that the connection that has been idle longest is "
         "closed");
-    c.number(
-        "--client-connections", o.limits.per_client, 1, 1000000,
+    number(
+        c, "--client-connections", o.limits.per_client, 1, 1000000,
         "connections of one address, except of a trusted proxy; beyond that one of its own is "
         "closed");
 }
 
-void add_access_options(const Options& c, AccessOptions& o, std::string& key_file) {
-    c.add(
+void add_access_options(CLI::App& c, AccessOptions& o, std::string& key_file) {
+    c.add_option(
         "--allow-host", o.hosts,
         "host name with a dot that requests can use, in addition to this machine's; *: any "
         "(repeatable)");
-    c.add(
+    c.add_option(
          "--cors-origin", o.origins,
          "origin of a page that may use this service; *: any (repeatable)")
         ->check([](const std::string& text) { return text == "*" ? "" : origin_error(text); });
-    c.command
-        .add_option_function<std::vector<std::string>>(
-            "--trust-proxy",
-            [&o](const std::vector<std::string>& texts) {
-                for (const std::string& text : texts) o.proxies.push_back(*Network::read(text));
-            },
-            "address or network (10.0.0.0/8) of a proxy whose X-Forwarded-For names the client "
-            "(repeatable)")
-        ->envname(variable_of("--trust-proxy"))
+    c.add_option_function<std::vector<std::string>>(
+         "--trust-proxy",
+         [&o](const std::vector<std::string>& texts) {
+             for (const std::string& text : texts) o.proxies.push_back(*Network::read(text));
+         },
+         "address or network (10.0.0.0/8) of a proxy whose X-Forwarded-For names the client "
+         "(repeatable)")
         ->type_name("ADDRESS")
         ->check([](const std::string& text) {
             return Network::read(text) ? "" : text + " is not an address or ADDRESS/BITS";
         });
-    c.add(
+    c.add_option(
          "--api-key-file", key_file,
          "file with one API key per line; requests then need a key, except for health and the "
          "page; SIGHUP reloads it")
         ->type_name("FILE");
 }
 
-void add_compute_options(const Options& c, ServeOptions& o) {
-    c.number("--compute-threads", o.compute.running, 1, 1024, "computations at once")
+void add_limits(CLI::App& c, ServeOptions& o) {
+    number(c, "--compute-threads", o.compute.running, 1, 1024, "computations at once")
         ->default_str("the cores");
-    c.number(
-        "--compute-queue", o.compute.waiting, 0, 100000,
+    number(
+        c, "--compute-queue", o.compute.waiting, 0, 100000,
         "computations that wait; beyond that: 503");
-    c.number(
-        "--sweeps", o.compute.sweeps, 0, 1000,
+    number(
+        c, "--sweeps", o.compute.sweeps, 0, 1000,
         "sweeps at once, which share the free computing slots; beyond that: 503");
-    c.number(
-        "--sweep-points", o.routes.sweep_points, 1, 10000000,
+    number(
+        c, "--sweep-points", o.routes.sweep_points, 1, 10000000,
         "maximum number of points of one sweep");
-    c.number(
-        "--drain", o.drain, 0, 3600,
+    number(
+        c, "--drain", o.drain, 0, 3600,
         "seconds after SIGTERM during which /readyz answers 503 and requests are still accepted, "
         "so that a proxy notices");
-    c.number(
-        "--sweep-deadline", o.routes.sweep_deadline, 0.001, 31536000,
+    number(
+        c, "--sweep-deadline", o.routes.sweep_deadline, 0.001, 31536000,
         "seconds of one sweep; then its stream ends, and the missing points can be requested");
-    c.number(
-        "--deadline", o.routes.deadline, 0.001, 86400,
+    number(
+        c, "--deadline", o.routes.deadline, 0.001, 86400,
         "seconds of computing for one request; then it ends with the results so far");
-}
-
-void add_size_options(const Options& c, ServeOptions& o) {
-    c.number(
-        "--payload-limit", o.server.access.payload_limit, 1, 1 << 30,
+    number(
+        c, "--payload-limit", o.server.access.payload_limit, 1, 1 << 30,
         "largest request body, bytes");
-    c.number(
-        "--memory-limit", o.server.limits.held_bytes, 1, std::size_t{1} << 50,
+    number(
+        c, "--memory-limit", o.server.limits.held_bytes, 1, std::size_t{1} << 50,
         "requests and answers held at once, bytes; beyond that: 503");
-    c.number(
-        "--record-limit", o.routes.record_limit, 1, 1 << 30,
+    number(
+        c, "--record-limit", o.routes.record_limit, 1, 1 << 30,
         "largest record sent to /v1/identify, bytes");
-    c.number(
-        "--answer-limit", o.routes.answer_limit, 1, std::size_t{1} << 40,
+    number(
+        c, "--answer-limit", o.routes.answer_limit, 1, std::size_t{1} << 40,
         "largest JSON answer, bytes; a larger one is thinned, or refused if that is impossible");
 }
 
-void add_log_and_page_options(const Options& c, std::string& log_format, PageOptions& page) {
-    c.add("--log-format", log_format, "format of the log on stderr: json or text")
+void add_log_and_page_options(CLI::App& c, std::string& log_format, PageOptions& page) {
+    c.add_option("--log-format", log_format, "format of the log on stderr: json or text")
         ->capture_default_str()
         ->check(CLI::IsMember({"json", "text"}));
-    c.add(
+    c.add_option(
          "--embed-origin", page.embed_origins,
          "origin of a page that may show this one in a frame (repeatable)")
         ->check(origin_error);
-    c.add(
+    c.add_option(
          "--web-dir", page.web_dir,
          "serve the page from this folder instead of the program, for development")
         ->check(CLI::ExistingDirectory);
@@ -187,19 +155,17 @@ std::size_t report_unanswered(Server& server) {
     return number;
 }
 
-void reload(ApiKeys& keys) {
-    try {
-        log_event(fmt::format("API keys reloaded: {}", keys.reload()));
-    } catch (const std::runtime_error& e) {
-        log_warning(fmt::format("API keys unchanged: {}", e.what()));
-    }
-}
-
 /// Waits for a signal to stop; SIGHUP reloads the keys, if there are any.
 int wait_for_stop(ApiKeys* keys) {
-    int signal = wait_for_end_signal();
-    for (; keys && signal == SIGHUP; signal = wait_for_end_signal()) reload(*keys);
-    return signal;
+    for (;;) {
+        const int signal = wait_for_end_signal();
+        if (!keys || signal != SIGHUP) return signal;
+        try {
+            log_event(fmt::format("API keys reloaded: {}", keys->reload()));
+        } catch (const std::runtime_error& e) {
+            log_warning(fmt::format("API keys unchanged: {}", e.what()));
+        }
+    }
 }
 
 /// Waits for a signal, then shuts down as described above.
@@ -222,26 +188,7 @@ int wait_for_stop(ApiKeys* keys) {
     end(report_unanswered(server) == 0 ? 0 : exit_unanswered);
 }
 
-/// Prints the address to stdout, where a script can wait for it.
-void print_greeting(const std::string& greeting) {
-    try {
-        print(greeting);
-    } catch (const BrokenPipe&) {
-    } catch (const std::runtime_error& e) {
-        print_message(e.what());
-        end(1);
-    }
-}
-
-/// Blocks the signals that end the service, and SIGHUP even under nohup if it reloads keys. Ignores
-/// others that would end it without a shutdown.
-void prepare_signals(bool reloads) {
-    if (reloads) std::signal(SIGHUP, SIG_DFL);
-    block_end_signals();
-    for (const int other : {SIGUSR1, SIGUSR2, SIGALRM}) std::signal(other, SIG_IGN);
-}
-
-int serve(const ServeOptions& options) {
+int serve(ServeOptions options) {
     configure_malloc(options.compute.running);
     AdmissionControl admission(options.compute);
     Metrics metrics(admission);
@@ -250,19 +197,27 @@ int serve(const ServeOptions& options) {
     try {
         // Read before signals are blocked: a disk can be slow and a folder large.
         if (!options.key_file.empty()) keys = std::make_shared<ApiKeys>(options.key_file);
-        ServerOptions chosen = options.server;
-        chosen.access.keys = keys;
+        options.server.access.keys = keys;
         std::vector<Route> routes = make_routes(options.routes, admission, metrics);
-        prepare_signals(keys != nullptr);
+        if (keys) std::signal(SIGHUP, SIG_DFL);  // it reloads them, also under nohup
+        block_end_signals();
+        // Others would end the service without a shutdown.
+        for (const int other : {SIGUSR1, SIGUSR2, SIGALRM}) std::signal(other, SIG_IGN);
         start_log(options.log == "text" ? LogFormat::text : LogFormat::json);
-        server.emplace(std::move(chosen), std::move(routes), metrics);
+        server.emplace(options.server, std::move(routes), metrics);
     } catch (const std::runtime_error& e) {
         print_message(e.what());
         end(2);
     }
     const std::string address =
         fmt::format("{}:{}", in_url(options.server.access.host), server->port());
-    print_greeting(fmt::format("vines {} listens on http://{}\n", api::version(), address));
+    try {  // a script can wait for the address
+        print(fmt::format("vines {} listens on http://{}\n", api::version(), address));
+    } catch (const BrokenPipe&) {
+    } catch (const std::runtime_error& e) {
+        print_message(e.what());
+        end(1);
+    }
     log_event(fmt::format("vines {} listens on {}", api::version(), address));
 
     std::thread([&] { stop_on_signal(options.drain, keys.get(), admission, *server); }).detach();
@@ -276,12 +231,14 @@ int serve(const ServeOptions& options) {
 Command add_serve(CLI::App& app) {
     const auto options = std::make_shared<ServeOptions>();
     CLI::App* command = app.add_subcommand("serve", "the HTTP service and its page");
-    const Options to{*command};
-    add_connection_options(to, options->server);
-    add_access_options(to, options->server.access, options->key_file);
-    add_compute_options(to, *options);
-    add_size_options(to, *options);
-    add_log_and_page_options(to, options->log, options->routes.page);
+    add_connection_options(*command, options->server);
+    add_access_options(*command, options->server.access, options->key_file);
+    add_limits(*command, *options);
+    add_log_and_page_options(*command, options->log, options->routes.page);
+    // An option takes its value from the flag, else from the environment variable, else its
+    // default.
+    for (CLI::Option* option : command->get_options())
+        if (option != command->get_help_ptr()) option->envname(variable_of(option->get_name()));
     add_examples(
         *command,
         "vines serve\n"
@@ -289,19 +246,6 @@ Command add_serve(CLI::App& app) {
         "VINES_PORT=9000 vines serve --deadline 60 --log-format text");
     return {command, [options] { return serve(*options); }};
 }
-
-namespace {
-
-/// True if GET /healthz is answered with 200 within 2 s.
-bool is_healthy(const std::string& host, int port) {
-    httplib::Client client(host, port);
-    client.set_connection_timeout(2);  // s
-    client.set_read_timeout(2);
-    const auto result = client.Get("/healthz");
-    return result && result->status == 200;
-}
-
-}  // namespace
 
 Command add_healthcheck(CLI::App& app) {
     const auto target = std::make_shared<ServerOptions>();
@@ -313,7 +257,13 @@ Command add_healthcheck(CLI::App& app) {
         ->envname("VINES_PORT")
         ->capture_default_str();
     add_examples(*command, "vines healthcheck --port 8080 && echo well");
-    return {command, [target] { return is_healthy(target->access.host, target->port) ? 0 : 1; }};
+    return {command, [target] {
+                httplib::Client client(target->access.host, target->port);
+                client.set_connection_timeout(2);  // s
+                client.set_read_timeout(2);
+                const auto result = client.Get("/healthz");
+                return result && result->status == 200 ? 0 : 1;
+            }};
 }
 
 }  // namespace vines::http

@@ -7,16 +7,10 @@
 //    event loop sends the rest. At its end the answer is logged and counted.
 #pragma once
 
-#include <atomic>
-#include <memory>
-#include <mutex>
 #include <set>
-#include <vector>
 
 #include "http/access.hpp"
 #include "http/event_loop.hpp"
-#include "http/message.hpp"
-#include "http/metrics.hpp"
 
 namespace vines::http {
 
@@ -31,9 +25,8 @@ public:
     /// Binds; throws std::runtime_error with the reason if that fails. The metrics must outlive the
     /// server.
     Server(ServerOptions options, std::vector<Route> routes, Metrics& metrics);
-    ~Server() override;
 
-    int port() const;
+    int port() const { return port_; }
     /// Serves until stop() is called and the requests then in progress are answered.
     void run() { event_loop_.run(); }
     /// From now on each answer is the last one on its connection. From any thread.
@@ -45,24 +38,21 @@ public:
     std::size_t log_unanswered();
 
 private:
-    class Listener;
-    struct Work;
-
-    void check_head(Exchange& exchange, const std::string& peer) const override;
-    Task answer(Connection& connection, Exchange exchange) override;
-    Response answer_to(Exchange& exchange) const;
+    void check_head(Request& request, const std::string& peer) const override;
+    Task answer(Connection& connection, Request received) override;
+    void finish(const std::shared_ptr<Delivery>& delivery, Outbox::State state) override;
+    Response answer_to(Request& request) const;
     Response completed(const Request& request, Response response) const;
-    void finish(const std::shared_ptr<Work>& work, Outbox::State state);
 
     const ServerOptions options_;
     const std::vector<Route> routes_;
     Metrics& metrics_;
-    const std::unique_ptr<Listener> listener_;
+    int port_;
     std::atomic<bool> closing_ = false;
-    /// Requests that the end of the process would leave unanswered. Other threads than the one that
-    /// answers read only what stays constant while the request is in the set.
+    /// Those that the end of the process would leave unfinished. Other threads than the one that
+    /// answers read only what stays constant while the delivery is in the set.
     std::mutex mutex_;
-    std::set<std::shared_ptr<const Work>> works_;
+    std::set<std::shared_ptr<const Delivery>> deliveries_;
     EventLoop event_loop_;  // destroyed first: it still answers
 };
 

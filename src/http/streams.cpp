@@ -1,18 +1,8 @@
 #include "http/streams.hpp"
 
-#include <fmt/format.h>
-
-#include <atomic>
-#include <chrono>
-#include <condition_variable>
-#include <exception>
 #include <future>
-#include <memory>
-#include <mutex>
-#include <utility>
 
 #include "api/json_text.hpp"
-#include "http/log.hpp"
 
 namespace vines::http {
 
@@ -30,15 +20,17 @@ constexpr auto time_slice = std::chrono::milliseconds(20);
 class LineQueue {
 public:
     void push(const std::string& text) {
-        change([&] {
-            text_ += text;
-            size_ = text_.size();
-            ++count_;
-        });
+        const std::lock_guard lock(mutex_);
+        text_ += text;
+        size_ = text_.size();
+        ++count_;
+        changed_.notify_all();
     }
     /// To be called after the last line.
     void finish() {
-        change([this] { finished_ = true; });
+        const std::lock_guard lock(mutex_);
+        finished_ = true;
+        changed_.notify_all();
     }
 
     struct Taken {
@@ -50,11 +42,9 @@ public:
     Taken take(std::chrono::milliseconds at_most) {
         std::unique_lock lock(mutex_);
         changed_.wait_for(lock, at_most, [this] { return !text_.empty() || finished_; });
-        Taken taken{std::exchange(text_, {}), count_, finished_};
         size_ = 0;
-        lock.unlock();
         changed_.notify_all();
-        return taken;
+        return {std::exchange(text_, {}), count_, finished_};
     }
 
     /// True while the queue is full; producers should wait.
@@ -66,15 +56,6 @@ public:
     }
 
 private:
-    template <class Change>
-    void change(Change make) {
-        {
-            const std::lock_guard lock(mutex_);
-            make();
-        }
-        changed_.notify_all();
-    }
-
     static constexpr std::size_t capacity_ = 1 << 20;  // bytes
 
     std::mutex mutex_;
@@ -121,66 +102,64 @@ public:
         SweepEnd end;
         std::string last;
         try {
-            const std::size_t done = send_lines();
-            end = is_complete_            ? SweepEnd::complete
+            const auto [is_complete, done] = send_lines();
+            end = is_complete             ? SweepEnd::complete
                   : is_late(Clock::now()) ? SweepEnd::deadline
                                           : SweepEnd::stopping;
-            last = !is_complete_    ? line_of_end(end, done)
-                   : work_.complete ? work_.complete(done)
-                                    : "";
+            last = last_line(end, done);
         } catch (...) {
             log_failure(work_.path, id_);
             end = SweepEnd::failed;
-            last = line_of_end(end, lines_.take({}).count);
+            last = last_line(end, lines_.take({}).count);
         }
         return connected_ && out_.write(last) ? end : SweepEnd::client_left;
     }
 
     // Called by the threads that compute.
     void begin() override {
-        slot() = admission_.acquire_background(client_, stop_.get_token());
-        acquired_at() = Clock::now();
+        held().slot = admission_.acquire_background(client_, stop_.get_token());
+        held().since = Clock::now();
     }
-    void end() override { slot().reset(); }
+    void end() override { held().slot.reset(); }
     bool stop_or_yield() override {
         const Clock::time_point now = Clock::now();
-        const bool is_long = admission_.background_waits() && now - acquired_at() > time_slice;
+        const bool is_long = admission_.background_waits() && now - held().since > time_slice;
         const bool is_full = lines_.is_full();
-        if (slot() && (admission_.foreground_waits() || is_long || is_full)) {
+        if (held().slot && (admission_.foreground_waits() || is_long || is_full)) {
             end();
             while (lines_.is_full() && !stops(Clock::now()))
                 lines_.wait_while_full(client_check_interval);
             begin();
         }
-        return stops(now) || !slot();
+        return stops(now) || !held().slot;
     }
 
 private:
     /// The slot of the calling thread. thread_local, because a thread of the sweep holds no slot
     /// before its first point and after its last, and so never two.
-    static AdmissionControl::Slot& slot() {
-        thread_local AdmissionControl::Slot slot;
-        return slot;
-    }
-    static Clock::time_point& acquired_at() {
-        thread_local Clock::time_point time;
-        return time;
+    struct Held {
+        AdmissionControl::Slot slot;
+        Clock::time_point since;
+    };
+    static Held& held() {
+        thread_local Held held;
+        return held;
     }
     bool is_late(Clock::time_point now) const { return now - started_ > deadline_; }
     bool stops(Clock::time_point now) const {
         return stop_.stop_requested() || admission_.sweeps_stopped() || is_late(now);
     }
 
-    /// Starts the computation, and sends its lines. Returns their number.
-    std::size_t send_lines() {
+    /// Starts the computation, and sends its lines. Returns whether it is complete, and their
+    /// number.
+    std::pair<bool, std::size_t> send_lines() {
         auto computing = std::async(std::launch::async, [this] {
             const std::shared_ptr<void> at_end(nullptr, [this](void*) { lines_.finish(); });
             return work_.compute(*this, [this](const std::string& text) { lines_.push(text); });
         });
         try {
             const std::size_t done = send_computed_lines();
-            is_complete_ = computing.get();
-            return done;
+            return {computing.get(), done};
         } catch (...) {
             stop_.request_stop();  // the destructor of `computing` waits for its end
             throw;
@@ -210,8 +189,9 @@ private:
         return taken.count;
     }
 
-    /// The last line of an incomplete stream; a table has none.
-    std::string line_of_end(SweepEnd end, std::size_t done) const {
+    /// The last line of a stream, or the end of a table; an incomplete table has none.
+    std::string last_line(SweepEnd end, std::size_t done) const {
+        if (end == SweepEnd::complete) return work_.complete ? work_.complete(done) : "";
         if (!work_.how_to_go_on) return "";
         if (end == SweepEnd::failed)
             return api::error_line(500, "the server failed; the reason is in its log", done);
@@ -232,18 +212,8 @@ private:
     Writer& out_;
     LineQueue lines_;
     std::stop_source stop_;
-    bool connected_ = true, is_complete_ = false;
+    bool connected_ = true;
 };
-
-Response sweep_refusal(const AdmissionControl& admission) {
-    if (admission.sweeps_stopped()) return stopping_refusal();
-    const bool own_limit = admission.sweeps_left();
-    Response response = problem_response(api::Problem::unavailable(
-        "sweeps", own_limit ? "all sweeps but one are yours; wait for the end of one"
-                            : "the maximum number of sweeps is running; try again later"));
-    response.own_limit = own_limit;
-    return response;
-}
 
 /// Sends a computation, which counts as a sweep. The response can be copied: the sweep's slot is
 /// released with the last copy, whether it was sent or not.
@@ -252,7 +222,15 @@ Response stream_lines(LineWork lines, const Request& asked, const Service& servi
     const auto work = std::make_shared<const LineWork>(std::move(lines));
     const std::string client = asked.sender.client();
     const AdmissionControl::SweepSlot sweep_slot = admission.acquire_sweep(client);
-    if (!sweep_slot) return sweep_refusal(admission);
+    if (!sweep_slot) {
+        if (admission.sweeps_stopped()) return stopping_refusal();
+        const bool own_limit = admission.sweeps_left();
+        Response response = problem_response(api::Problem::unavailable(
+            "sweeps", own_limit ? "all sweeps but one are yours; wait for the end of one"
+                                : "the maximum number of sweeps is running; try again later"));
+        response.own_limit = own_limit;
+        return response;
+    }
     return {
         .content_type = api::sweep_format_names[0].media_type,
         .headers = {{"Cache-Control", "no-store"}, {"X-Accel-Buffering", "no"}},

@@ -5,15 +5,14 @@
 #include "api/continuation.hpp"
 #include "api/design.hpp"
 #include "api/format/sweep_table.hpp"
-#include "api/sweep.hpp"
 #include "http/routes.hpp"
 
 namespace vines::http {
 
-/// A sweep as a stream of NDJSON lines, or as a table. It ends after the sweep deadline: a stream
-/// of lines with the points it has, a table without its end and with a reset connection. Problem
-/// 413 for a table beyond the answer limit; 503 if the maximum number of sweeps is running. The
-/// admission control and the metrics of the service must outlive the response.
+/// A sweep as a stream of NDJSON lines, or as a table. It ends after the sweep deadline: lines with
+/// the points so far, a table with a reset connection. Problem 413 for a table beyond the answer
+/// limit; 503 if the maximum number of sweeps is running. The admission control and the metrics of
+/// the service must outlive the response.
 Response stream_sweep(
     api::SweepRequest request, api::Format format, const Request& asked, const Service& service);
 

@@ -4,15 +4,10 @@
 
 #include <semaphore.h>
 
-#include <cerrno>
 #include <functional>
-#include <map>
 #include <mutex>
-#include <optional>
-#include <string>
 #include <system_error>
 #include <thread>
-#include <utility>
 #include <vector>
 
 #include "http/fair_queue.hpp"
@@ -49,7 +44,11 @@ public:
         std::optional<Job> refused;
         {
             const std::lock_guard lock(mutex_);
-            if (jobs_.size() >= free_ && threads_.size() < max_threads_) try_to_start_one();
+            if (jobs_.size() >= free_ && threads_.size() < max_threads_) {
+                try {
+                    start_one();
+                } catch (const std::system_error&) {}  // the existing threads do the work
+            }
             if (jobs_.size() >= free_ + max_threads_) {
                 const bool could_begin = may_begin()(client) && !may_begin()(jobs_.last_client());
                 if (!could_begin && !jobs_.precedes_last(client)) return job;
@@ -76,12 +75,6 @@ private:
         threads_.emplace_back([this] { run(); });
         ++free_;
     }
-    void try_to_start_one() {
-        try {
-            start_one();
-        } catch (const std::system_error&) {  // the existing threads do the work
-        }
-    }
 
     /// Whether a client has fewer than its share of threads.
     auto may_begin() const {
@@ -101,7 +94,7 @@ private:
             });
             if (!job) {
                 lock.unlock();
-                wait_for_job();
+                while (::sem_wait(&wake_) != 0 && errno == EINTR) {}
                 lock.lock();
                 continue;
             }
@@ -115,10 +108,6 @@ private:
             ++free_;
         }
         ::sem_post(&wake_);  // for the next thread
-    }
-
-    void wait_for_job() {
-        while (::sem_wait(&wake_) != 0 && errno == EINTR) {}
     }
 
     const std::size_t max_threads_;

@@ -7,11 +7,8 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
-#include <cerrno>
 #include <cstring>
-#include <stdexcept>
 #include <string>
-#include <string_view>
 #include <utility>
 
 namespace vines {

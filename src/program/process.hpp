@@ -1,16 +1,7 @@
 // The process: its standard streams, the signals that end it, its cores.
 #pragma once
 
-#include <fcntl.h>
-#include <fmt/format.h>
-#include <unistd.h>
-
-#include <algorithm>
 #include <csignal>
-#include <cstdio>
-#include <iterator>
-#include <string>
-#include <string_view>
 #include <thread>
 
 #include "program/descriptor.hpp"

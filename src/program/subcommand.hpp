@@ -4,9 +4,6 @@
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
-#include <functional>
-#include <string>
-#include <vector>
 
 namespace vines {
 

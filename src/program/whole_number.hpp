@@ -2,7 +2,6 @@
 #pragma once
 
 #include <charconv>
-#include <cstddef>
 #include <limits>
 #include <optional>
 #include <string_view>

@@ -4,14 +4,11 @@ import {execFileSync, spawnSync} from "node:child_process";
 import {mkdtemp, rm, symlink, writeFile} from "node:fs/promises";
 import {tmpdir} from "node:os";
 import {join} from "node:path";
-import {after, before, test} from "node:test";
+import {after, test} from "node:test";
 import {program, startService} from "../service.mjs";
-import {exchange, until} from "./raw.mjs";
+import {exchange, get, send, serviceFor, until} from "./raw.mjs";
 
-let folder;
-before(async () => {
-  folder = await mkdtemp(join(tmpdir(), "vines-keys-"));
-});
+const folder = await mkdtemp(join(tmpdir(), "vines-keys-"));
 after(() => rm(folder, {recursive: true}));
 
 const keyFile = async (text) => {
@@ -19,14 +16,18 @@ const keyFile = async (text) => {
   await writeFile(path, text);
   return path;
 };
+/** Runs a service that does not start, to its end. */
+const serve = (...args) =>
+  spawnSync(program, ["serve", ...args], {encoding: "utf8", timeout: 5000, killSignal: "SIGKILL"});
+
+const cors = ["--cors-origin", "https://lab.example.org"];
 const keys = ["first-key-0123456789", "second.key~with+all/of=them=="];
 
 test("with --api-key-file everything except health and the page requires one of its keys", async (t) => {
-  const service = await startService([
+  const service = await serviceFor(t, [
     "--api-key-file",
     await keyFile(`# of the laboratory\n\n${keys[0]}\r\n  ${keys[1]}  \n`),
   ]);
-  t.after(() => service.stop());
   const status = async (path, authorization, options = {}) => {
     const headers = authorization === undefined ? {} : {Authorization: authorization};
     const answer = await fetch(service.url + path, {headers, ...options});
@@ -58,16 +59,8 @@ test("with --api-key-file everything except health and the page requires one of 
     "Bearer # of the laboratory",
     `Bearer ${keys[0]}, Bearer ${keys[1]}`,
   ];
-  const twice = await exchange(
-    service.url,
-    [
-      "GET /v1/presets HTTP/1.1",
-      "Host: localhost",
-      `Authorization: Bearer ${keys[0]}`,
-      "Authorization: Bearer x",
-      "\r\n",
-    ].join("\r\n"),
-  );
+  const both = `Authorization: Bearer ${keys[0]}\r\nAuthorization: Bearer x\r\n`;
+  const twice = await exchange(service.url, get("/v1/presets", both));
   assert.match(twice, /^HTTP\/1.1 401/, "two headers are no valid key");
   for (const shown of wrong) assert.equal(await status("/v1/presets", shown), 401, shown);
   const post = {method: "POST", body: "{}"};
@@ -86,8 +79,7 @@ test("with --api-key-file everything except health and the page requires one of 
 });
 
 test("SIGHUP reloads the keys, unless the file has none, and does not end the service", async (t) => {
-  const service = await startService(["--api-key-file", await keyFile(keys[0])]);
-  t.after(() => service.stop());
+  const service = await serviceFor(t, ["--api-key-file", await keyFile(keys[0])]);
   const accepts = async (key) =>
     (await fetch(`${service.url}/metrics`, {headers: {Authorization: `Bearer ${key}`}})).ok;
   const reload = async (text) => {
@@ -112,10 +104,7 @@ test("the server does not start with a key file that has no valid key", async ()
   ];
   for (const [text, message] of cases) {
     const path = await keyFile(text);
-    const {status, stderr} = spawnSync(program, ["serve", "--port", "0", "--api-key-file", path], {
-      encoding: "utf8",
-      timeout: 5000,
-    });
+    const {status, stderr} = serve("--port", "0", "--api-key-file", path);
     assert.equal(status, 2, text);
     assert.match(stderr, message);
     assert.doesNotMatch(stderr, /short|blanks in it/, "the message does not show a key");
@@ -134,11 +123,7 @@ test("a key file that is missing, not a regular file or far too large is refused
     [at("large"), /large: it has more than 1048576 bytes/],
   ];
   for (const [path, message] of cases) {
-    const {status, stderr} = spawnSync(program, ["serve", "--port", "0", "--api-key-file", path], {
-      encoding: "utf8",
-      timeout: 5000,
-      killSignal: "SIGKILL",
-    });
+    const {status, stderr} = serve("--port", "0", "--api-key-file", path);
     assert.equal(status, 2, path);
     assert.match(stderr, message);
     assert.match(stderr, /^vines: .*\n$/, "one line");
@@ -150,69 +135,42 @@ test("a key file that is missing, not a regular file or far too large is refused
 });
 
 test("a page of an allowed origin may use the service and read its headers; others may not", async (t) => {
-  const service = await startService(["--cors-origin", "https://lab.example.org"]);
-  t.after(() => service.stop());
-  const ask = (origin, options = {}) =>
-    exchange(
-      service.url,
-      [
-        `${options.method ?? "GET"} /v1/manifold HTTP/1.1`,
-        "Host: localhost",
-        `Origin: ${origin}`,
-        "Sec-Fetch-Site: cross-site",
-        ...(options.headers ?? []),
-        "Connection: close",
-        "\r\n",
-      ].join("\r\n"),
-    );
+  const service = await serviceFor(t, cors);
+  const ask = (origin, more = "", method = "GET") => {
+    const headers = `Origin: ${origin}\r\nSec-Fetch-Site: cross-site\r\nConnection: close\r\n`;
+    return exchange(service.url, get("/v1/manifold", headers + more).replace("GET", method));
+  };
   const allowed = await ask("https://lab.example.org");
   assert.match(allowed, /^HTTP\/1.1 200/);
   assert.match(allowed, /^Access-Control-Allow-Origin: https:\/\/lab\.example\.org\r$/m);
   assert.match(allowed, /^Access-Control-Expose-Headers: .*X-Request-ID/m);
   assert.match(allowed, /^Vary: Origin\r$/m);
   const tag = /^ETag: (.*)\r$/m.exec(allowed)[1];
-  const known = await ask("https://lab.example.org", {headers: [`If-None-Match: ${tag}`]});
+  const known = await ask("https://lab.example.org", `If-None-Match: ${tag}\r\n`);
   assert.match(known, /^HTTP\/1.1 304(.|\s)*^Access-Control-Allow-Origin: https/m);
-  const preflight = {
-    method: "OPTIONS",
-    headers: [
-      "Access-Control-Request-Method: POST",
-      "Access-Control-Request-Headers: content-type",
-    ],
-  };
-  const leave = await ask("https://lab.example.org", preflight);
+  const asked =
+    "Access-Control-Request-Method: POST\r\nAccess-Control-Request-Headers: content-type\r\n";
+  const preflight = (origin) => ask(origin, asked, "OPTIONS");
+  const leave = await preflight("https://lab.example.org");
   assert.match(leave, /^HTTP\/1.1 200/);
   assert.match(leave, /^Access-Control-Allow-Methods: GET, HEAD, POST\r$/m);
   assert.match(leave, /^Access-Control-Allow-Headers: Authorization, Content-Type/m);
   for (const other of ["https://lab.example.org.evil.net", "http://lab.example.org", "null"])
-    for (const request of [await ask(other), await ask(other, preflight)]) {
+    for (const request of [await ask(other), await preflight(other)]) {
       assert.match(request, /^HTTP\/1.1 403/, other);
       assert.doesNotMatch(request, /Access-Control/);
     }
 });
 
 test("a preflight with a body is refused, like every request with a body that is not a POST", async (t) => {
-  const service = await startService(["--cors-origin", "https://lab.example.org"]);
-  t.after(() => service.stop());
-  const head = [
-    "OPTIONS /v1/simulate HTTP/1.1",
-    "Host: localhost",
-    "Origin: https://lab.example.org",
-    "Access-Control-Request-Method: POST",
-    "Content-Length: 999999999999",
-    "\r\n",
-  ];
-  assert.match(await exchange(service.url, head.join("\r\n")), /^HTTP\/1.1 400/);
+  const service = await serviceFor(t, cors);
+  const headers = "Origin: https://lab.example.org\r\nAccess-Control-Request-Method: POST\r\n";
+  const head = get("/v1/simulate", `${headers}Content-Length: 999999999999\r\n`);
+  assert.match(await exchange(service.url, head.replace("GET", "OPTIONS")), /^HTTP\/1.1 400/);
 });
 
 test("a refusal for lack of memory carries the CORS headers, too", async (t) => {
-  const service = await startService([
-    "--cors-origin",
-    "https://lab.example.org",
-    "--memory-limit",
-    "1",
-  ]);
-  t.after(() => service.stop());
+  const service = await serviceFor(t, [...cors, "--memory-limit", "1"]);
   const answer = await fetch(`${service.url}/v1/simulate?preset=fig3&tau_end=3000`, {
     headers: {Origin: "https://lab.example.org"},
   });
@@ -222,24 +180,16 @@ test("a refusal for lack of memory carries the CORS headers, too", async (t) => 
 });
 
 test("--cors-origin * lets every page use the service", async (t) => {
-  const service = await startService(["--cors-origin", "*"]);
-  t.after(() => service.stop());
-  const answer = await fetch(`${service.url}/v1/manifold`, {
-    method: "POST",
-    body: "{}",
-    headers: {Origin: "https://any.example.net"},
-  });
+  const service = await serviceFor(t, ["--cors-origin", "*"]);
+  const headers = {Origin: "https://any.example.net"};
+  const answer = await send(service.url, "/v1/manifold", "{}", {headers});
   assert.equal(answer.status, 200);
   assert.equal(answer.headers.get("access-control-allow-origin"), "https://any.example.net");
 });
 
 test("an origin is a scheme, a host and optionally a port; any other value is refused", () => {
   // The missing key file ends the program after the check of its flags.
-  const start = (flag, origin) =>
-    spawnSync(program, ["serve", "--api-key-file", "/nowhere", flag, origin], {
-      encoding: "utf8",
-      timeout: 5000,
-    });
+  const start = (flag, origin) => serve("--api-key-file", "/nowhere", flag, origin);
   for (const flag of ["--cors-origin", "--embed-origin"]) {
     for (const origin of [
       "lab.example.org",
@@ -286,13 +236,7 @@ test("an origin is a scheme, a host and optionally a port; any other value is re
 });
 
 test("a preflight of an allowed origin needs no key", async (t) => {
-  const service = await startService([
-    "--cors-origin",
-    "https://lab.example.org",
-    "--api-key-file",
-    await keyFile(`${keys[0]}\n`),
-  ]);
-  t.after(() => service.stop());
+  const service = await serviceFor(t, [...cors, "--api-key-file", await keyFile(`${keys[0]}\n`)]);
   const from = {Origin: "https://lab.example.org"};
   const leave = await fetch(`${service.url}/v1/simulate`, {
     method: "OPTIONS",

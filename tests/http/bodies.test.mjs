@@ -3,7 +3,7 @@
 import assert from "node:assert/strict";
 import {test} from "node:test";
 import {startService} from "../service.mjs";
-import {memory, until} from "./raw.mjs";
+import {memory, metric, serviceFor, until} from "./raw.mjs";
 
 const record = 64 << 20; // --record-limit
 const payload = 1 << 20; // --payload-limit
@@ -123,8 +123,7 @@ async function answered(url, {path, body, type}, name) {
 
 /** The peak of a fresh server that receives these kinds of bodies at once, MB. */
 async function peak(t, names, threads) {
-  const one = await startService(["--compute-threads", String(threads), "--deadline", "1"]);
-  t.after(() => one.stop());
+  const one = await serviceFor(t, ["--compute-threads", String(threads), "--deadline", "1"]);
   const bodies = names.map((name) => kinds[name]());
   await Promise.all(bodies.map((body, k) => answered(one.url, body, names[k])));
   assert.equal((await fetch(`${one.url}/readyz`)).status, 200);
@@ -158,8 +157,7 @@ test("eight bodies at once, whatever they contain, take at most 700 MB", async (
   }
 });
 
-const running = async (url) =>
-  Number(/^vines_compute_running (\d+)/m.exec(await (await fetch(`${url}/metrics`)).text())[1]);
+const running = (url) => metric(url, "vines_compute_running");
 
 test("a large body waits without a slot, until its deadline, its client leaves or the server stops", async () => {
   const one = await startService(["--compute-threads", "2", "--deadline", "1"]);

@@ -5,24 +5,35 @@ import {execFileSync, spawn} from "node:child_process";
 import {chmod, copyFile, mkdir, mkdtemp, rename, rm, symlink, writeFile} from "node:fs/promises";
 import {tmpdir} from "node:os";
 import {join} from "node:path";
-import {after, before, test} from "node:test";
+import {after, test} from "node:test";
 import {program, startService} from "../service.mjs";
-import {computed, connect, exchange, memory, sleep, statuses, until} from "./raw.mjs";
+import {
+  computed,
+  connect,
+  connectAll,
+  exchange,
+  get,
+  linesOf,
+  memory,
+  metric,
+  post,
+  send,
+  serviceFor,
+  sleep,
+  statuses,
+  textOf,
+  until,
+} from "./raw.mjs";
 
 const long = Boolean(process.env.LONG);
 // A program with sanitizers is several times slower and keeps freed memory for a while.
 const slower = process.env.SANITIZED ? 6 : 1;
 const watched = process.env.SANITIZED ? 300 : 0; // MB
 
-let service;
-before(async () => {
-  service = await startService();
-});
+const service = await startService();
 after(() => service.stop());
 
-const get = (path, more = "") => `GET ${path} HTTP/1.1\r\nHost: localhost\r\n${more}\r\n`;
-const post = (body, more = "") =>
-  `POST /v1/simulate HTTP/1.1\r\nHost: localhost\r\nContent-Length: ${body.length}\r\n${more}\r\n${body}`;
+const simulation = (body, more) => post("/v1/simulate", body, more);
 const small = '{"tau_end": 20, "include": ["impacts"]}';
 // One of the longest possible runs: one or two seconds.
 const longest = JSON.stringify({
@@ -35,17 +46,10 @@ const longest = JSON.stringify({
 /** Duration of a request to /livez, ms. */
 async function health(url = service.url) {
   const began = performance.now();
-  const answer = await fetch(`${url}/livez`);
-  await answer.text(); // otherwise the next request would need another connection
-  assert.equal(answer.status, 200);
+  await textOf(await fetch(`${url}/livez`));
   return performance.now() - began;
 }
 
-/** The current value of a metric without labels. */
-async function metric(url, name) {
-  const text = await (await fetch(`${url}/metrics`)).text();
-  return Number(new RegExp(`^${name} (\\S+)`, "m").exec(text)[1]);
-}
 const running = (url) => metric(url, "vines_compute_running");
 const queued = (url) => metric(url, "vines_compute_queue_depth");
 
@@ -77,18 +81,18 @@ test("bursts of pipelined small and large requests are all answered", async () =
 
 test("a request can arrive byte by byte, and another one after it in the same packet", async () => {
   const {socket, text, ended} = await connect(service.url);
-  for (const byte of post(small)) {
+  for (const byte of simulation(small)) {
     socket.write(byte);
     await sleep(0);
   }
-  socket.write(post(small) + get("/healthz", "Connection: close\r\n"));
+  socket.write(simulation(small) + get("/healthz", "Connection: close\r\n"));
   await ended;
   assert.deepEqual(statuses(text()), [200, 200, 200]);
 });
 
 test("a client that closes its sending side still gets its answer", async () => {
   const {socket, text, ended} = await connect(service.url, {allowHalfOpen: true});
-  socket.end(post('{"tau_end": 50000, "include": ["impacts"]}'));
+  socket.end(simulation('{"tau_end": 50000, "include": ["impacts"]}'));
   await ended;
   assert.deepEqual(statuses(text()), [200]);
   assert.match(text(), /\}\n?$/);
@@ -134,16 +138,16 @@ test("an ambiguous or malformed head is refused", async () => {
       "a:1:2",
     ].map((host) => [get("/").replace("localhost", host), 400]),
     ["GET http://a@localhost/ HTTP/1.1\r\nHost: localhost\r\n\r\n", 400],
-    [post(small, "Content-Type: Multipart/Form-Data\r\n"), 415],
+    [simulation(small, "Content-Type: Multipart/Form-Data\r\n"), 415],
     ["BREW / HTTP/1.1\r\nHost: localhost\r\n\r\n", 405],
     [`${get("/", "Content-Length: 3\r\n")}abc`, 400],
-    [post(small, "Content-Length: 3\r\n"), 400],
-    [post(small).replace(/Length: \d+/, "Length: +3"), 400],
-    [post(small).replace(/Length: \d+/, "Length: 3, 3"), 400],
-    [post(small).replace(/Length: \d+/, "Length: 99999999999999999999"), 400],
-    [post(small, "Transfer-Encoding: chunked\r\n"), 400],
-    [post(small).replace(/Content-Length: \d+/, "Transfer-Encoding: chunked"), 411],
-    [post(small).replace(/Content-Length: \d+/, "Transfer-Encoding : chunked"), 400],
+    [simulation(small, "Content-Length: 3\r\n"), 400],
+    [simulation(small).replace(/Length: \d+/, "Length: +3"), 400],
+    [simulation(small).replace(/Length: \d+/, "Length: 3, 3"), 400],
+    [simulation(small).replace(/Length: \d+/, "Length: 99999999999999999999"), 400],
+    [simulation(small, "Transfer-Encoding: chunked\r\n"), 400],
+    [simulation(small).replace(/Content-Length: \d+/, "Transfer-Encoding: chunked"), 411],
+    [simulation(small).replace(/Content-Length: \d+/, "Transfer-Encoding : chunked"), 400],
     ["\r\n\r\nGET / HTTP/1.1\r\nHost: localhost\r\n\r\n", 400],
   ];
   for (const [bytes, status] of cases) {
@@ -161,22 +165,18 @@ test("an ambiguous or malformed head is refused", async () => {
 
 /** Requests followed by bytes that must never be read as the next request. */
 const inner = "GET /v1/presets HTTP/1.1\r\nHost: localhost\r\n\r\n";
+const withBody = (method, more = "") => {
+  return (pad) => {
+    const length = `Content-Length: ${pad + inner.length}\r\n`;
+    return get("/healthz", more + length).replace("GET", method) + "x".repeat(pad) + inner;
+  };
+};
 const shapes = {
-  "a GET with a body": (pad) =>
-    get("/healthz", `Content-Length: ${pad + inner.length}\r\n`) + "x".repeat(pad) + inner,
-  "a HEAD with a body": (pad) =>
-    get("/healthz", `Content-Length: ${pad + inner.length}\r\n`).replace("GET", "HEAD") +
-    "x".repeat(pad) +
-    inner,
+  "a GET with a body": withBody("GET"),
+  "a HEAD with a body": withBody("HEAD"),
   "a long target": (pad) => get(`/${"a".repeat(4096 + pad)}`) + inner,
-  "a range": (pad) =>
-    get("/healthz", `Range: items=1\r\nContent-Length: ${pad + inner.length}\r\n`) +
-    "x".repeat(pad) +
-    inner,
-  "an unknown method": (pad) =>
-    get("/healthz", `Content-Length: ${pad + inner.length}\r\n`).replace("GET", "BREW") +
-    "x".repeat(pad) +
-    inner,
+  "a range": withBody("GET", "Range: items=1\r\n"),
+  "an unknown method": withBody("BREW"),
   "chunks after a blank": (pad) => {
     const more = `Transfer-Encoding : chunked\r\nX: ${"x".repeat(pad)}\r\n`;
     const head = get("/v1/simulate", more).replace("GET", "POST");
@@ -194,8 +194,8 @@ test("bytes after a refused request are not read as a request, at any offset", a
     }
 });
 
-/** Starts the shipped proxy in front of the services; resolves to {url, stop}. */
-async function startProxy(replicas) {
+/** Starts the shipped proxy in front of the services, until the end of the test; resolves to its URL. */
+async function startProxy(t, replicas) {
   const port = 20000 + Math.floor(Math.random() * 20000);
   const environment = {VINES_BIND: `127.0.0.1:${port}`};
   replicas.forEach(({url}, i) => {
@@ -205,23 +205,19 @@ async function startProxy(replicas) {
   const env = {...process.env, ...environment};
   const child = spawn("haproxy", ["-db", "-f", config], {env, stdio: "ignore"});
   process.once("exit", () => child.kill("SIGKILL"));
+  t.after(() => child.kill("SIGKILL"));
   const url = `http://127.0.0.1:${port}`;
   await until(async () => (await fetch(`${url}/readyz`).catch(() => null))?.status === 200, 10000);
-  return {url, stop: () => child.kill("SIGKILL")};
+  return url;
 }
 
 test("neither are they behind the proxy, where another client would get the answer", async (t) => {
-  const replicas = await Promise.all([startService(), startService(), startService()]);
-  const proxy = await startProxy(replicas);
-  t.after(() => {
-    proxy.stop();
-    for (const replica of replicas) replica.stop();
-  });
+  const proxy = await startProxy(t, await Promise.all([1, 2, 3].map(() => serviceFor(t))));
   const step = long ? 1 : 20;
-  const health = async () => (await fetch(`${proxy.url}/healthz`)).text();
+  const health = async () => (await fetch(`${proxy}/healthz`)).text();
   for (const [name, bytes] of Object.entries(shapes))
     for (let pad = 4096 - 40 - 80; pad <= 4096 + 40; pad += step) {
-      const hostile = exchange(proxy.url, bytes(pad), 300);
+      const hostile = exchange(proxy, bytes(pad), 300);
       const [text, ...others] = await Promise.all([hostile, health(), health(), health()]);
       // After a long target the bytes are this client's own next request.
       if (name !== "a long target") assert.doesNotMatch(text, /"fig3"/, `${name}, ${pad}`);
@@ -230,9 +226,8 @@ test("neither are they behind the proxy, where another client would get the answ
 });
 
 test("the proxy does not pass on /metrics, however the path is written", async (t) => {
-  const proxy = await startProxy([service, service, service]);
-  t.after(() => proxy.stop());
-  const {host} = new URL(proxy.url);
+  const proxy = await startProxy(t, [service, service, service]);
+  const {host} = new URL(proxy);
   for (const target of [
     "/metrics",
     "/metrics?a=b",
@@ -242,7 +237,7 @@ test("the proxy does not pass on /metrics, however the path is written", async (
   ])
     for (const method of ["GET", "HEAD"]) {
       const request = `${method} ${target} HTTP/1.1\r\nHost: ${host}\r\nConnection: close\r\n\r\n`;
-      const text = await exchange(proxy.url, request);
+      const text = await exchange(proxy, request);
       assert.match(text, /^HTTP\/1\.1 404 /, target);
       assert.doesNotMatch(text, /vines_/, target);
     }
@@ -279,11 +274,7 @@ test("a target in absolute form and HTTP/1.0 are supported", async () => {
   assert.match(await exchange(service.url, kept + sweep), /^Connection: close\r$/im);
   const twice = get("/version", "Connection: keep-alive\r\nConnection: close\r\n");
   assert.match(await exchange(service.url, `\r\n${twice}`), /^Connection: close\r$/im);
-  const lines = streamed
-    .slice(streamed.indexOf("\r\n\r\n") + 4)
-    .trim()
-    .split("\n")
-    .map(JSON.parse);
+  const lines = linesOf(streamed.slice(streamed.indexOf("\r\n\r\n")));
   assert.equal(lines.at(-1).type, "done");
 });
 
@@ -314,7 +305,7 @@ test("requests to another host name, or from a page of another site, are refused
   const long = await exchange(service.url, to(`${"e".repeat(8000)}.example`));
   assert.deepEqual(statuses(long), [421]);
   assert.ok(long.length < 1500, "a long name is shortened");
-  const from = (headers) => post(small, `${headers}Connection: close\r\n`);
+  const from = (headers) => simulation(small, `${headers}Connection: close\r\n`);
   assert.equal(await status(from("Origin: http://localhost\r\n")), 200);
   assert.equal(await status(from("Sec-Fetch-Site: same-origin\r\n")), 200);
   for (const headers of [
@@ -337,8 +328,7 @@ test("requests to another host name, or from a page of another site, are refused
     assert.deepEqual(statuses(shown), [200]);
     assert.match(shown, /frame-ancestors 'none'\r$/m, "the browser does not show it");
   }
-  const open = await startService(["--host", "0.0.0.0", "--allow-host", "vines.example.org"]);
-  t.after(() => open.stop());
+  const open = await serviceFor(t, ["--host", "0.0.0.0", "--allow-host", "vines.example.org"]);
   const local = open.url.replace("0.0.0.0", "127.0.0.1");
   for (const [host, expected] of [
     ["192.0.2.1:8080", 200],
@@ -357,25 +347,16 @@ test("an IPv6 address is written in brackets", async (t) => {
 });
 
 test("clients that send half a head, half a body or nothing delay no other client", async (t) => {
-  const one = await startService(["--threads", "4"]);
-  t.after(() => one.stop());
+  const one = await serviceFor(t, ["--threads", "4"]);
   const halves = [
     "",
     "GET /version HT",
     "GET /version HTTP/1.1\r\nHost: x\r\nX-",
-    post(small).slice(0, -3),
+    simulation(small).slice(0, -3),
   ];
-  const kept = await Promise.all(
-    Array.from({length: long ? 2000 : 600}, async (_, i) => {
-      const connection = await connect(one.url);
-      connection.socket.write(halves[i % halves.length] || "");
-      return connection;
-    }),
-  );
+  const kept = await connectAll(one.url, long ? 2000 : 600, (i) => halves[i % halves.length]);
   for (let i = 0; i < 20; ++i) await health(one.url);
-  const answer = await fetch(`${one.url}/v1/simulate`, {method: "POST", body: small});
-  assert.equal(answer.status, 200);
-  await answer.text();
+  await textOf(await send(one.url, "/v1/simulate", small));
   // The server refuses or closes each of them in time.
   if (long) await Promise.all(kept.map(({ended}) => ended));
   for (const {socket} of kept) socket.destroy();
@@ -386,46 +367,36 @@ const separate = "Connection: close\r\n";
 async function serves(url) {
   for (let i = 0; i < 5; ++i)
     assert.deepEqual(statuses(await exchange(url, get("/livez", separate))), [200]);
-  assert.deepEqual(statuses(await exchange(url, post(small, separate))), [200]);
+  assert.deepEqual(statuses(await exchange(url, simulation(small, separate))), [200]);
 }
 
 test("beyond the maximum number of connections idle ones are closed", async (t) => {
-  const one = await startService(["--connections", "50"]);
-  t.after(() => one.stop());
-  const idle = await Promise.all(Array.from({length: 200}, () => connect(one.url)));
+  const one = await serviceFor(t, ["--connections", "50"]);
+  const idle = await connectAll(one.url, 200);
   await serves(one.url);
   for (const {socket} of idle) socket.destroy();
 });
 
 test("without free file descriptors idle connections are closed, too", async (t) => {
-  const one = await startService();
-  t.after(() => one.stop());
+  const one = await serviceFor(t);
   execFileSync("prlimit", [`--pid=${one.pid}`, "--nofile=40:40"]);
-  const idle = await Promise.all(Array.from({length: 100}, () => connect(one.url)));
+  const idle = await connectAll(one.url, 100);
   await serves(one.url);
   for (const {socket} of idle) socket.destroy();
 });
 
 test("a flood of connections closes its own, not those of other clients", async (t) => {
-  const one = await startService(["--connections", "100"]);
-  t.after(() => one.stop());
+  const one = await serviceFor(t, ["--connections", "100"]);
   let closed = 0;
-  const flood = await Promise.all(
-    Array.from({length: 150}, async () => {
-      const connection = await connect(one.url);
-      connection.socket.write("G");
-      connection.ended.then(() => ++closed);
-      return connection;
-    }),
-  );
+  const flood = await connectAll(one.url, 150, () => "G");
+  for (const {ended} of flood) ended.then(() => ++closed);
   await until(() => closed >= 50); // the server has accepted all of them
   for (let i = 0; i < 20; ++i) {
     const text = await exchange(one.url, get("/livez", "Connection: close\r\n"));
     assert.deepEqual(statuses(text), [200], `call ${i}`);
   }
   for (const {socket} of flood) socket.destroy();
-  const single = await startService(["--connections", "1"]);
-  t.after(() => single.stop());
+  const single = await serviceFor(t, ["--connections", "1"]);
   for (let i = 0; i < 5; ++i) {
     const {socket, text} = await connect(single.url); // closes the idle connection before it
     socket.write(get("/livez"));
@@ -437,8 +408,7 @@ test("a flood of connections closes its own, not those of other clients", async 
 test("the idle timeout starts at the end of an answer", {skip: !long}, async () => {
   const {socket, text} = await connect(service.url);
   const body = '{"axes":[{"parameter":"b","from":0.02,"to":0.03,"count":150}],"cycles":1000000}';
-  const length = `Content-Length: ${body.length}`;
-  socket.write(`POST /v1/sweep HTTP/1.1\r\nHost: localhost\r\n${length}\r\n\r\n${body}GET /ver`);
+  socket.write(`${post("/v1/sweep", body)}GET /ver`);
   await until(() => /"type":"done"/.test(text()), 120000);
   await sleep(500);
   socket.write("sion HTTP/1.1\r\nHost: localhost\r\n\r\n");
@@ -469,21 +439,12 @@ test("an endless head uses no memory", async () => {
 });
 
 test("a run ends when its client leaves, whether it is running or queued", async (t) => {
-  const one = await startService(["--compute-threads", "1"]);
-  t.after(() => one.stop());
-  const gone = await Promise.all(
-    Array.from({length: 6}, async () => {
-      const connection = await connect(one.url);
-      connection.socket.write(post(longest));
-      return connection;
-    }),
-  );
+  const one = await serviceFor(t, ["--compute-threads", "1"]);
+  const gone = await connectAll(one.url, 6, () => simulation(longest));
   await until(async () => (await queued(one.url)) === 5);
   const began = await computed(one.pid);
   for (const {socket} of gone) socket.destroy();
-  const answer = await fetch(`${one.url}/v1/simulate`, {method: "POST", body: small});
-  assert.equal(answer.status, 200);
-  await answer.text();
+  await textOf(await send(one.url, "/v1/simulate", small));
   const seconds = (await computed(one.pid)) - began;
   assert.ok(seconds < 1 * slower, `${seconds} s, about ten if all runs were completed`);
 });
@@ -495,10 +456,9 @@ const endless = JSON.stringify({
 });
 
 test("a run ends when its client leaves, also with HTTP/1.0 or after the client closed its sending side", async (t) => {
-  const one = await startService(["--compute-threads", "1"]);
-  t.after(() => one.stop());
+  const one = await serviceFor(t, ["--compute-threads", "1"]);
   for (const version of ["1.0", "1.1"]) {
-    const request = post(endless).replace("HTTP/1.1", `HTTP/${version}`);
+    const request = simulation(endless).replace("HTTP/1.1", `HTTP/${version}`);
     const {socket} = await connect(one.url);
     socket.write(request);
     await until(async () => (await running(one.url)) === 1);
@@ -514,7 +474,7 @@ test("a run ends when its client leaves, also with HTTP/1.0 or after the client 
 
 test("a client that has closed its sending side gets the same bytes, also after it was probed", async () => {
   const run = '{"tau_end": 3000000, "max_impacts": 2000000, "include": ["regime"]}';
-  const request = post(run, "X-Request-ID: half\r\n");
+  const request = simulation(run, "X-Request-ID: half\r\n");
   for (const version of ["1.0", "1.1"]) {
     const bytes = request.replace("HTTP/1.1", `HTTP/${version}`);
     const {socket, text, ended} = await connect(service.url, {allowHalfOpen: true});
@@ -538,19 +498,13 @@ test("a client that has closed its sending side gets the same bytes, also after 
 });
 
 test("requests that wait for a compute slot get it in the order of arrival", async (t) => {
-  const one = await startService(["--compute-threads", "1", "--compute-queue", "30"]);
-  t.after(() => one.stop());
+  const one = await serviceFor(t, ["--compute-threads", "1", "--compute-queue", "30"]);
   const body = '{"damping": "closed_form", "tau_end": 200000, "include": ["regime"]}';
   const order = [];
   const all = [];
   for (let i = 0; i < 16; ++i) {
-    all.push(
-      fetch(`${one.url}/v1/simulate`, {method: "POST", body}).then(async (answer) => {
-        assert.equal(answer.status, 200);
-        await answer.text();
-        order.push(i);
-      }),
-    );
+    const answered = send(one.url, "/v1/simulate", body).then(textOf);
+    all.push(answered.then(() => order.push(i)));
     // A request that finds no slot tries to compute before it enters the queue.
     await until(async () => (await queued(one.url)) + (await running(one.url)) + order.length > i);
   }
@@ -571,7 +525,7 @@ test("a stop under load loses no request; each connection closes after an answer
       if (!socket) return; // the server no longer listens
       for (let n = 1; ; ++n) {
         if (!socket.writable || /^Connection: close\r$/im.test(text())) break;
-        socket.write(post(body));
+        socket.write(simulation(body));
         await Promise.race([
           until(() => statuses(text()).length === n, 20000).catch(() => {}),
           ended,
@@ -597,13 +551,8 @@ test("a stop under load loses no request; each connection closes after an answer
 
 test("an incomplete request at a stop is answered with 503 while its client still sends", async () => {
   const one = await startService();
-  const halves = await Promise.all(
-    [post(small).slice(0, -3), "GET /version HTTP/1.1\r\nHost: x\r\nX-"].map(async (bytes) => {
-      const connection = await connect(one.url);
-      connection.socket.write(bytes);
-      return connection;
-    }),
-  );
+  const parts = [simulation(small).slice(0, -3), "GET /version HTTP/1.1\r\nHost: x\r\nX-"];
+  const halves = await connectAll(one.url, 2, (i) => parts[i]);
   const idle = await connect(one.url);
   await health(one.url); // the halves were read before this answer
   const ended = one.stop();
@@ -620,29 +569,23 @@ test("an incomplete request at a stop is answered with 503 while its client stil
   assert.equal(await ended, 0);
 });
 
-/** A service with its log, and a client that requests a large answer and does not read it. */
-async function heldByItsClient() {
-  const child = spawn(program, ["serve", "--port", "0"]);
-  let log = "";
-  child.stderr.on("data", (data) => {
-    log += data;
-  });
-  const ended = new Promise((resolve) => child.on("close", resolve));
-  const url = await new Promise((resolve) =>
-    child.stdout.once("data", (data) => resolve(/http:\S+/.exec(data)[0])),
-  );
-  const {socket, text} = await connect(url);
+/** A service, and a client that requests a large answer and does not read it. */
+async function heldByItsClient(t) {
+  const one = await startService();
+  const {socket, text} = await connect(one.url);
+  t.after(() => socket.destroy());
   const large =
     '{"damping": "closed_form", "tau_end": 8000, "max_points": 300000, "samples_per_cycle": 200}';
-  socket.write(post(large, "X-Request-ID: unread\r\n"));
+  socket.write(simulation(large, "X-Request-ID: unread\r\n"));
   await until(() => text().length > 0);
   socket.pause();
-  return {child, socket, ended, lines: () => log.trim().split("\n").map(JSON.parse)};
+  return one;
 }
 
 /** Checks the last two lines of the log: the unanswered request and the end. */
-function assertUnanswered(lines) {
-  const [request, last] = lines.slice(-2);
+async function assertUnanswered(log) {
+  await until(() => log().endsWith("\n") && log().includes("unanswered requests"));
+  const [request, last] = linesOf(log()).slice(-2);
   assert.deepEqual(
     [request.level, request.method, request.path, request.request_id],
     ["warning", "POST", "/v1/simulate", "unread"],
@@ -653,21 +596,18 @@ function assertUnanswered(lines) {
 }
 
 test("a stop forced by a second signal logs the unanswered requests", async (t) => {
-  const {child, socket, ended, lines} = await heldByItsClient();
-  t.after(() => socket.destroy());
-  child.kill("SIGTERM");
-  await until(() => lines().some(({what}) => what === "stopping"));
-  child.kill("SIGTERM");
+  const {stop, log} = await heldByItsClient(t);
+  const ended = stop();
+  await until(() => log().includes('"what":"stopping"'));
+  stop();
   assert.equal(await ended, 128 + 15);
-  assertUnanswered(lines());
+  await assertUnanswered(log);
 });
 
 test("so does a stop forced by its time limit, with exit code 3", {skip: !long}, async (t) => {
-  const {child, socket, ended, lines} = await heldByItsClient();
-  t.after(() => socket.destroy());
-  child.kill("SIGTERM");
-  assert.equal(await ended, 3);
-  assertUnanswered(lines());
+  const {stop, log} = await heldByItsClient(t);
+  assert.equal(await stop(), 3);
+  await assertUnanswered(log);
 });
 
 test("a second signal ends the service at once", async () => {
@@ -687,7 +627,7 @@ test("at a stop computations that take too long end with the results so far", {
 }, async () => {
   const one = await startService(["--compute-threads", "1", "--compute-queue", "30"]);
   const answers = Array.from({length: 20}, async () => {
-    const answer = await fetch(`${one.url}/v1/simulate`, {method: "POST", body: longest});
+    const answer = await send(one.url, "/v1/simulate", longest);
     return (await answer.json()).status.reason;
   });
   await until(async () => (await queued(one.url)) === 19);
@@ -700,7 +640,6 @@ test("at a stop computations that take too long end with the results so far", {
 });
 
 const listed = (count, make) => Array.from({length: count}, (_, i) => make(i)).join(",");
-const simulateAt = (url, body) => fetch(`${url}/v1/simulate`, {method: "POST", body});
 
 test("the time to read a body is proportional to its size, and its faults are reported briefly", async () => {
   const sweep = (starts) => `{"axes":[{"parameter":"b","values":[0.02]}],"starts":[${starts}]}`;
@@ -720,7 +659,7 @@ test("the time to read a body is proportional to its size, and its faults are re
   ];
   for (const [path, body] of bodies) {
     const began = await computed(service.pid);
-    const answer = await fetch(service.url + path, {method: "POST", body});
+    const answer = await send(service.url, path, body);
     const text = await answer.text();
     const what = `${path} ${body.slice(0, 40)}`;
     assert.ok(answer.status === 400 || answer.status === 422, what);
@@ -735,13 +674,10 @@ test("the time to read a body is proportional to its size, and its faults are re
 });
 
 test("reading a large body stops when its client leaves", async (t) => {
-  const one = await startService(["--compute-threads", "1"]);
-  t.after(() => one.stop());
+  const one = await serviceFor(t, ["--compute-threads", "1"]);
   const body = `{"q":[${"0,".repeat(15_000_000)}0]}`;
   const {socket} = await connect(one.url);
-  socket.write(
-    `POST /v1/identify HTTP/1.1\r\nHost: localhost\r\nContent-Length: ${body.length}\r\n\r\n${body}`,
-  );
+  socket.write(post("/v1/identify", body));
   await until(async () => (await running(one.url)) === 1);
   const began = await computed(one.pid);
   socket.destroy();
@@ -750,30 +686,23 @@ test("reading a large body stops when its client leaves", async (t) => {
 });
 
 test("the memory for requests is limited over all clients", async (t) => {
-  const one = await startService(["--memory-limit", "40000000", "--connections", "500"]);
-  t.after(() => one.stop());
+  const one = await serviceFor(t, ["--memory-limit", "40000000", "--connections", "500"]);
   const before = await memory(one.pid);
   const record = Buffer.alloc(15000000, "1,2\n");
   const head = `POST /v1/identify HTTP/1.1\r\nHost: localhost\r\nContent-Type: text/csv\r\nContent-Length: ${record.length + 1}\r\n\r\n`;
-  const halves = await Promise.all(
-    Array.from({length: 12}, async () => {
-      const connection = await connect(one.url);
-      connection.socket.write(head);
-      connection.socket.write(record);
-      return connection;
-    }),
-  );
+  const half = Buffer.concat([Buffer.from(head), record]);
+  const halves = await connectAll(one.url, 12, () => half);
   const slow = [];
   const refused = () => halves.filter(({text}) => statuses(text())[0] === 503).length;
   await until(() => refused() >= 8);
   assert.ok((await memory(one.pid)) - before < 120 + watched);
   await health(one.url);
   for (const {socket} of halves) socket.destroy();
+  await until(async () => (await metric(one.url, "vines_http_held_bytes")) < 1e6);
   // A large body no longer counts once it is answered, even if more bytes follow it.
   for (let i = 0; i < 6; ++i) {
     const connection = await connect(one.url);
-    connection.socket.write(head);
-    connection.socket.write(Buffer.concat([record, Buffer.from("xG")]));
+    connection.socket.write(Buffer.concat([half, Buffer.from("xG")]));
     await until(() => statuses(connection.text()).length === 1);
     assert.equal(statuses(connection.text())[0], 422);
     slow.push(connection);
@@ -783,15 +712,14 @@ test("the memory for requests is limited over all clients", async (t) => {
 });
 
 test("the memory for unread answers is limited over all clients", async (t) => {
-  const one = await startService(["--memory-limit", "40000000"]);
-  t.after(() => one.stop());
+  const one = await serviceFor(t, ["--memory-limit", "40000000"]);
   // Answers of 8 MB: five are held, the next one is refused.
   const large =
     '{"damping": "closed_form", "tau_end": 2000, "max_points": 100000, "samples_per_cycle": 200}';
   const slow = [];
   for (let i = 0; i < 6; ++i) {
     const connection = await connect(one.url);
-    connection.socket.write(post(large));
+    connection.socket.write(simulation(large));
     await until(() => connection.text().length > 0);
     connection.socket.pause();
     slow.push(connection);
@@ -804,10 +732,10 @@ test("the memory for unread answers is limited over all clients", async (t) => {
     slow[0].socket.resume();
     assert.ok((await slow[0].ended).length < 6e6);
   }
-  assert.equal((await simulateAt(one.url, small)).status, 200, "a small answer");
+  assert.equal((await send(one.url, "/v1/simulate", small)).status, 200, "a small answer");
   for (const {socket} of slow) socket.destroy();
   await until(async () => {
-    const answer = await simulateAt(one.url, large);
+    const answer = await send(one.url, "/v1/simulate", large);
     // Read to the end: a stop waits for clients that are still reading.
     await answer.arrayBuffer();
     return answer.status === 200;
@@ -815,21 +743,18 @@ test("the memory for unread answers is limited over all clients", async (t) => {
 });
 
 test("a sweep pauses while its client does not read, and then continues", async (t) => {
-  const one = await startService();
-  t.after(() => one.stop());
+  const one = await serviceFor(t);
   const body = JSON.stringify({
     axes: [{parameter: "b", from: 0.005, to: 0.03, count: 3000}],
     section: "impact",
     cycles: 400,
     base: {damping: "closed_form"},
   });
-  const whole = await (await fetch(`${one.url}/v1/sweep`, {method: "POST", body})).text();
+  const whole = await textOf(await send(one.url, "/v1/sweep", body));
   const {socket, text, ended} = await connect(one.url);
   const before = await memory(one.pid);
   socket.pause();
-  socket.write(
-    `POST /v1/sweep HTTP/1.1\r\nHost: localhost\r\nConnection: close\r\nContent-Length: ${body.length}\r\n\r\n${body}`,
-  );
+  socket.write(post("/v1/sweep", body, separate));
   // A paused sweep holds no compute slot, poll after poll.
   let paused = 0;
   await until(async () => {
@@ -839,7 +764,7 @@ test("a sweep pauses while its client does not read, and then continues", async 
     return paused === 20;
   });
   assert.ok((await memory(one.pid)) - before < 15 + watched, "its lines are not kept");
-  assert.equal((await simulateAt(one.url, small)).status, 200);
+  assert.equal((await send(one.url, "/v1/simulate", small)).status, 200);
   socket.resume();
   await ended;
   const points = (lines) => lines.match(/^\{"type":"point".*$/gm).length;
@@ -849,12 +774,9 @@ test("a sweep pauses while its client does not read, and then continues", async 
 });
 
 test("a sweep that takes too long ends with its points so far; the rest can be requested", async (t) => {
-  const one = await startService(["--sweep-deadline", String(2 * slower)]);
-  t.after(() => one.stop());
+  const one = await serviceFor(t, ["--sweep-deadline", String(2 * slower)]);
   const body = {axes: [{parameter: "b", from: 0.02, to: 0.04, count: 5000}], cycles: 20000};
-  const answer = await fetch(`${one.url}/v1/sweep`, {method: "POST", body: JSON.stringify(body)});
-  const lines = (await answer.text()).trim().split("\n").map(JSON.parse);
-  const last = lines.at(-1);
+  const last = linesOf(await textOf(await send(one.url, "/v1/sweep", body))).at(-1);
   assert.equal(last.type, "error");
   assert.equal(last.status, 503);
   assert.match(last.detail, /request the missing indices again/);
@@ -862,8 +784,7 @@ test("a sweep that takes too long ends with its points so far; the rest can be r
 });
 
 test("an answer that the client has already is not computed again", async (t) => {
-  const one = await startService(["--compute-threads", "1"]);
-  t.after(() => one.stop());
+  const one = await serviceFor(t, ["--compute-threads", "1"]);
   const url = `${one.url}/v1/simulate?b=0.03&tau_end=3000000&max_impacts=2000000&include=regime`;
   const first = await fetch(url);
   await first.text();
@@ -873,9 +794,7 @@ test("an answer that the client has already is not computed again", async (t) =>
   assert.equal(again.status, 304);
   assert.equal(again.headers.get("etag"), tag);
   assert.ok((await computed(one.pid)) - began < 0.1 * slower, "no computation");
-  const other = await fetch(`${url}&G=0.021`, {headers: {"If-None-Match": tag}});
-  assert.equal(other.status, 200);
-  await other.text();
+  await textOf(await fetch(`${url}&G=0.021`, {headers: {"If-None-Match": tag}}));
   const manifold = await fetch(`${service.url}/v1/manifold`);
   await manifold.text();
   const known = await fetch(`${service.url}/v1/manifold`, {
@@ -886,11 +805,13 @@ test("an answer that the client has already is not computed again", async (t) =>
   assert.doesNotMatch(known.headers.get("server-timing"), /solve/);
 });
 
+/** The address that a started service prints. */
+const urlOf = (child) =>
+  new Promise((resolve) => child.stdout.once("data", (data) => resolve(/http:\S+/.exec(data)[0])));
+
 test("a log that is not read blocks no request, and reports the dropped lines", async () => {
   const child = spawn(program, ["serve", "--port", "0"], {stdio: ["ignore", "pipe", "pipe"]});
-  const url = await new Promise((resolve) =>
-    child.stdout.once("data", (data) => resolve(/http:\S+/.exec(data)[0])),
-  );
+  const url = await urlOf(child);
   const path = `/v1/simulate?${"b".repeat(300)}`;
   for (let i = 0; i < 40; ++i)
     await Promise.all(
@@ -909,7 +830,7 @@ test("a log that is not read blocks no request, and reports the dropped lines", 
   });
   child.kill("SIGTERM");
   await new Promise((resolve) => child.on("exit", resolve));
-  const lines = log.trim().split("\n").map(JSON.parse);
+  const lines = linesOf(log);
   const gaps = lines.filter(({what}) => what === "lines were dropped");
   const dropped = gaps.reduce((sum, gap) => sum + gap.lines, 0);
   assert.ok(dropped > 0);
@@ -928,21 +849,16 @@ test("the service works with fewer threads if the system allows no more", {
   const command = `ulimit -u 12; exec "${copy}" serve --port 0 --compute-threads 8`;
   const as = ["--reuid=65533", "--regid=65533", "--clear-groups", "bash", "-c", command];
   const child = spawn("setpriv", as, {stdio: ["ignore", "pipe", "ignore"], cwd: "/"});
-  const url = await new Promise((resolve) =>
-    child.stdout.once("data", (data) => resolve(/http:\S+/.exec(data)[0])),
-  );
-  const body = JSON.stringify({
-    axes: [{parameter: "b", from: 0.02, to: 0.03, count: 200}],
-    cycles: 500,
-  });
+  const url = await urlOf(child);
+  const body = {axes: [{parameter: "b", from: 0.02, to: 0.03, count: 200}], cycles: 500};
   const ends = await Promise.all(
     Array.from({length: 3}, async () => {
-      const answer = await fetch(`${url}/v1/sweep`, {method: "POST", body});
-      return JSON.parse((await answer.text()).trim().split("\n").at(-1)).type;
+      const text = await textOf(await send(url, "/v1/sweep", body));
+      return linesOf(text).at(-1).type;
     }),
   );
   assert.ok(ends.includes("done") && ends.every((type) => type === "done" || type === "error"));
-  assert.equal((await simulateAt(url, small)).status, 200);
+  assert.equal((await send(url, "/v1/simulate", small)).status, 200);
   child.kill("SIGTERM");
   assert.equal(await new Promise((resolve) => child.on("exit", resolve)), 0);
   await rm(folder, {recursive: true});
@@ -985,17 +901,9 @@ test("--web-dir serves only files of its folder", async (t) => {
 });
 
 test("a request has an id, in its answer, its problem document and the log, and reports its durations", async (t) => {
-  const child = spawn(program, ["serve", "--port", "0", "--log-format", "json"]);
-  t.after(() => child.kill("SIGKILL"));
-  let log = "";
-  child.stderr.on("data", (data) => {
-    log += data;
-  });
-  const url = await new Promise((resolve) =>
-    child.stdout.once("data", (data) => resolve(/http:\S+/.exec(data)[0])),
-  );
+  const {url, log, stop} = await serviceFor(t, ["--log-format", "json"]);
   const named = async (headers, body = small) => {
-    const answer = await fetch(`${url}/v1/simulate`, {method: "POST", body, headers});
+    const answer = await send(url, "/v1/simulate", body, {headers});
     return {answer, id: answer.headers.get("x-request-id"), json: await answer.json()};
   };
   assert.equal((await named({"X-Request-ID": "run-17.b"})).id, "run-17.b");
@@ -1022,10 +930,9 @@ test("a request has an id, in its answer, its problem document and the log, and 
   const wrong = await named({"X-Request-ID": "mine"}, '{"b": -1}');
   assert.equal(wrong.json.request_id, "mine");
   await health(url);
-  await until(() => /"request_id":"mine"/.test(log));
-  child.kill("SIGTERM");
-  await new Promise((resolve) => child.on("exit", resolve));
-  const lines = log.trim().split("\n").map(JSON.parse);
+  await until(() => /"request_id":"mine"/.test(log()));
+  await stop();
+  const lines = linesOf(log());
   assert.match(lines[0].what, /^vines \S+ listens on 127\.0\.0\.1:\d+$/);
   assert.deepEqual(
     lines.slice(-2).map(({what}) => what),

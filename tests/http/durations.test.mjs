@@ -3,8 +3,7 @@ import assert from "node:assert/strict";
 import {execFile} from "node:child_process";
 import {test} from "node:test";
 import {promisify} from "node:util";
-import {startService} from "../service.mjs";
-import {computed, memory, sleep} from "./raw.mjs";
+import {computed, memory, send, serviceFor, sleep, textOf} from "./raw.mjs";
 
 const long = Boolean(process.env.LONG);
 // A program with sanitizers is several times slower and keeps freed memory for a while.
@@ -18,8 +17,7 @@ async function probed(url, ms) {
 }
 
 test("under overload each answer is 200 or 503 with Retry-After, and health is faster than a queued request", async (t) => {
-  const one = await startService(["--compute-threads", "1", "--compute-queue", "8"]);
-  t.after(() => one.stop());
+  const one = await serviceFor(t, ["--compute-threads", "1", "--compute-queue", "8"]);
   const body = '{"damping": "closed_form", "tau_end": 60000, "include": ["regime"]}';
   const ms = long ? 60000 : 4000;
   const end = performance.now() + ms;
@@ -28,7 +26,7 @@ test("under overload each answer is 200 or 503 with Retry-After, and health is f
   const client = async () => {
     while (performance.now() < end) {
       const began = performance.now();
-      const answer = await fetch(`${one.url}/v1/simulate`, {method: "POST", body});
+      const answer = await send(one.url, "/v1/simulate", body);
       await answer.text();
       counts[answer.status] = (counts[answer.status] ?? 0) + 1;
       if (answer.status === 200) durations.push(performance.now() - began);
@@ -52,12 +50,11 @@ test("under overload each answer is 200 or 503 with Retry-After, and health is f
     slowest < Math.max(median, 50 * slower),
     `/livez: ${slowest.toFixed(1)} ms, a computed request: ${median.toFixed(1)} ms`,
   );
-  assert.equal((await fetch(`${one.url}/v1/simulate`, {method: "POST", body})).status, 200);
+  await textOf(await send(one.url, "/v1/simulate", body));
 });
 
 test("a large body is read within the deadline, in a few times its size, and its memory is released", async (t) => {
-  const one = await startService(["--deadline", "1"]);
-  t.after(() => one.stop());
+  const one = await serviceFor(t, ["--deadline", "1"]);
   const size = 60_000_000;
   const list = (entry) => `{"q":[${entry.repeat(size / entry.length)}0]}`;
   const query = "/v1/identify?preset=fig20&b=0.015";
@@ -71,11 +68,7 @@ test("a large body is read within the deadline, in a few times its size, and its
   const before = await memory(one.pid);
   for (const [path, body, type] of bodies) {
     const began = await computed(one.pid);
-    const {status} = await fetch(one.url + path, {
-      method: "POST",
-      headers: {"Content-Type": type},
-      body,
-    });
+    const {status} = await send(one.url, path, body, {headers: {"Content-Type": type}});
     const what = body.slice(0, 20);
     assert.ok(status === 413 || status === 422, `${what}: ${status}`);
     const seconds = (await computed(one.pid)) - began;

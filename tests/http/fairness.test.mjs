@@ -6,33 +6,25 @@ import {tmpdir} from "node:os";
 import {join} from "node:path";
 import {test} from "node:test";
 import {startService} from "../service.mjs";
-import {connect, statuses, until} from "./raw.mjs";
+import {connect, connectAll, get, post, send, statuses, textOf, until} from "./raw.mjs";
 
-const post = (path, body, more) =>
-  `POST ${path} HTTP/1.1\r\nHost: localhost\r\n${more}\r\nContent-Length: ${body.length}\r\n\r\n${body}`;
-const from = (address) => `X-Forwarded-For: 198.51.100.7, ${address}`;
+const from = (address) => `X-Forwarded-For: 198.51.100.7, ${address}\r\n`;
 const run = '{"tau_end": 20000, "include": ["exponents"]}';
 const streamed = '{"tau_end": 200000, "include": ["impacts"], "max_impacts": 200000}';
 const trust = ["--trust-proxy", "127.0.0.1"];
+const other = {headers: {"X-Forwarded-For": "192.0.2.2"}};
 
 const small = '{"tau_end": 20}';
-
-const simulate = (url, headers, body = run) =>
-  fetch(`${url}/v1/simulate`, {method: "POST", body, headers});
 
 /** A service, and the connections of one client that sends the same request again and again. */
 async function withGreedy(t, args, connections, body, header = from("192.0.2.1")) {
   const one = await startService(args);
-  const sockets = [];
+  const requests = post("/v1/simulate", body, header).repeat(20);
+  const sockets = await connectAll(one.url, connections, () => requests);
   t.after(async () => {
     for (const {socket} of sockets) socket.destroy();
     await one.stop();
   });
-  for (let i = 0; i < connections; ++i) {
-    const connection = await connect(one.url);
-    connection.socket.write(post("/v1/simulate", body, header).repeat(20));
-    sockets.push(connection);
-  }
   await until(() => sockets.some(({text}) => statuses(text()).length > 0));
   return one;
 }
@@ -40,18 +32,14 @@ async function withGreedy(t, args, connections, body, header = from("192.0.2.1")
 test("requests of another client are all answered while one client fills the queue", async (t) => {
   const one = await withGreedy(t, [...trust, "--compute-queue", "8"], 60, run);
   for (let i = 0; i < 5; ++i) {
-    const answer = await simulate(one.url, {"X-Forwarded-For": "192.0.2.2"});
-    await answer.text();
-    assert.equal(answer.status, 200);
+    await textOf(await send(one.url, "/v1/simulate", run, other));
   }
 });
 
 test("so are they, however many, while it has more streams than there are threads", async (t) => {
   const one = await withGreedy(t, [...trust, "--threads", "8"], 40, streamed);
   for (let i = 0; i < 100; ++i) {
-    const answer = await simulate(one.url, {"X-Forwarded-For": "192.0.2.2"}, small);
-    await answer.text();
-    assert.equal(answer.status, 200);
+    await textOf(await send(one.url, "/v1/simulate", small, other));
   }
 });
 
@@ -65,11 +53,10 @@ test("an API key is a client, wherever its requests come from; the log names it,
     ["--compute-queue", "8", "--api-key-file", keys],
     60,
     run,
-    `Authorization: Bearer ${greedy}`,
+    `Authorization: Bearer ${greedy}\r\n`,
   );
-  const answer = await simulate(one.url, {Authorization: `Bearer ${modest}`});
-  await answer.text();
-  assert.equal(answer.status, 200);
+  const headers = {Authorization: `Bearer ${modest}`};
+  await textOf(await send(one.url, "/v1/simulate", run, {headers}));
   // printf %s KEY | sha256sum | cut -c1-8
   await until(() => one.log().includes('"key":"53525422"'));
   assert.ok(!one.log().includes(greedy) && !one.log().includes(modest));
@@ -87,12 +74,12 @@ test("one client has a limited number of connections; beyond it its own idle one
   for (let i = 0; i < 4; ++i) {
     const connection = await connect(one.url);
     connection.ended.then(() => ++ended);
-    connection.socket.write("GET /livez HTTP/1.1\r\nHost: localhost\r\n\r\n");
+    connection.socket.write(get("/livez"));
     own.push(connection);
     await until(() => statuses(connection.text()).length === 1);
   }
   await until(() => ended === 1);
-  other.socket.write("GET /livez HTTP/1.1\r\nHost: localhost\r\n\r\n");
+  other.socket.write(get("/livez"));
   await until(() => statuses(other.text()).length === 1);
   assert.equal(ended, 1);
 });

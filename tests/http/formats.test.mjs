@@ -1,14 +1,11 @@
 // Answers and sweeps as CSV, CBOR or NumPy arrays, and the selection of fields.
 import assert from "node:assert/strict";
 import {execFileSync} from "node:child_process";
-import {after, before, test} from "node:test";
+import {after, test} from "node:test";
 import {startService} from "../service.mjs";
-import {computed} from "./raw.mjs";
+import {computed, linesOf, send, serviceFor} from "./raw.mjs";
 
-let service;
-before(async () => {
-  service = await startService();
-});
+const service = await startService();
 after(() => service.stop());
 
 const get = (query, accept, headers = {}) =>
@@ -196,12 +193,8 @@ test("fields select parts, nothing else is computed, and unknown names give warn
 });
 
 test("a POST has format and fields in its body; the manifold and an identification support them, too", async () => {
-  const post = (path, body) =>
-    fetch(service.url + path, {
-      method: "POST",
-      headers: {"Content-Type": "application/json"},
-      body: JSON.stringify(body),
-    });
+  const headers = {"Content-Type": "application/json"};
+  const post = (path, body) => send(service.url, path, body, {headers});
   const run = await post("/v1/simulate", {b: 0.022, fields: ["impacts.tau"], format: "csv"});
   assert.match(await run.text(), /^tau\n18/);
   const manifold = await fetch(`${service.url}/v1/manifold?fields=manifold.fold`);
@@ -229,8 +222,7 @@ test("a POST has format and fields in its body; the manifold and an identificati
 });
 
 test("fields are limited in number and in work", async () => {
-  const post = (fields) =>
-    fetch(`${service.url}/v1/simulate`, {method: "POST", body: JSON.stringify(fields)});
+  const post = (fields) => send(service.url, "/v1/simulate", fields);
   const windows = Array.from({length: 1000}, (_, k) => [k, k + 1]);
   const began = await computed(service.pid);
   for (const [fields, pointer] of [
@@ -258,10 +250,8 @@ test("invalid UTF-8 is refused, and shortened texts stay valid UTF-8", async () 
   const answer = await fetch(`${service.url}/v1/simulate?fields=%ff`);
   assert.equal(answer.status, 400);
   assert.match((await answer.json()).detail, /not in UTF-8/);
-  const ask = (fields, format) => {
-    const body = JSON.stringify({preset: "fig3", tau_end: 50, fields, format});
-    return fetch(`${service.url}/v1/simulate`, {method: "POST", body});
-  };
+  const ask = (fields, format) =>
+    send(service.url, "/v1/simulate", {preset: "fig3", tau_end: 50, fields, format});
   for (const format of ["json", "cbor", "npz"]) {
     const answer = await ask([`a${"\u00e9".repeat(99)}`], format);
     assert.equal(answer.status, 200, format);
@@ -273,8 +263,7 @@ test("invalid UTF-8 is refused, and shortened texts stay valid UTF-8", async () 
 
 test("touches are computed if fields name them", async () => {
   const system = {G: 0, lambda: 0, x0: 0.02, y0: 0, b: 0.02, tau_end: 30, fields: ["touches"]};
-  const body = JSON.stringify(system);
-  const answer = await fetch(`${service.url}/v1/simulate`, {method: "POST", body});
+  const answer = await send(service.url, "/v1/simulate", system);
   assert.ok((await answer.json()).touches.tau.length > 0);
 });
 
@@ -312,14 +301,10 @@ const swept = {
   cycles: 50,
 };
 const sweep = (fields, headers = {}, at = service) =>
-  fetch(`${at.url}/v1/sweep`, {
-    method: "POST",
-    headers,
-    body: JSON.stringify({...swept, ...fields}),
-  });
+  send(at.url, "/v1/sweep", {...swept, ...fields}, {headers});
 /** The start and the points of a sweep as lines, in the order of the index. */
 const sweepLines = async (fields) => {
-  const lines = (await (await sweep(fields)).text()).trimEnd().split("\n").map(JSON.parse);
+  const lines = linesOf(await (await sweep(fields)).text());
   const points = lines.filter(({type}) => type === "point").sort((a, b) => a.index - b.index);
   const warning = lines.find(({type}) => type === "warning")?.message;
   return {start: lines[0], points, warning};
@@ -412,8 +397,8 @@ test("Accept selects the format of a sweep; lines answer a request for JSON, too
   assert.deepEqual(unknown.errors[0].range, ["ndjson", "csv", "cbor", "npz"]);
 });
 
-test("a sweep that ends early as a table has a broken connection; one that is too large is refused", async () => {
-  const limited = await startService(["--sweep-deadline", "0.3", "--answer-limit", "1500000"]);
+test("a sweep that ends early as a table has a broken connection; one that is too large is refused", async (t) => {
+  const limited = await serviceFor(t, ["--sweep-deadline", "0.3", "--answer-limit", "1500000"]);
   for (const format of ["csv", "cbor", "npz"]) {
     const received = async () => (await sweep({format, cycles: 1e6}, {}, limited)).arrayBuffer();
     await assert.rejects(received, TypeError, format);
@@ -425,5 +410,4 @@ test("a sweep that ends early as a table has a broken connection; one that is to
     large.detail,
     /^a table of 5000 points as npz has about \d+ bytes, more than 1500000/,
   );
-  await limited.stop();
 });

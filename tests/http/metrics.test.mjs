@@ -3,8 +3,7 @@ import assert from "node:assert/strict";
 import {spawnSync} from "node:child_process";
 import {existsSync} from "node:fs";
 import {test} from "node:test";
-import {startService} from "../service.mjs";
-import {exchange, until} from "./raw.mjs";
+import {exchange, send, serviceFor, until} from "./raw.mjs";
 
 const setUp = new URL("../../build/tools/promtool", import.meta.url).pathname;
 const promtool = existsSync(setUp) ? setUp : "promtool"; // installed by scripts/setup, or Debian's
@@ -21,14 +20,11 @@ async function metrics(url) {
   );
 }
 
-const post = (url, path, body) => fetch(url + path, {method: "POST", body: JSON.stringify(body)});
-
 // Runs until its deadline, or until its client leaves.
 const endless = {b: 0.0005, R: 1, tau_end: 1e7, max_impacts: 2e6, include: ["regime"]};
 
 test("requests are counted by route, method and status, durations by route; promtool finds no fault", async (t) => {
-  const service = await startService();
-  t.after(() => service.stop());
+  const service = await serviceFor(t);
   const {url} = service;
   const answers = [
     await fetch(`${url}/v1/simulate?b=0.022&include=regime`),
@@ -71,22 +67,17 @@ test("requests are counted by route, method and status, durations by route; prom
 });
 
 test("impacts, sweeps, their runs and the outcome of each sweep are counted", async (t) => {
-  const service = await startService();
-  t.after(() => service.stop());
+  const service = await serviceFor(t);
   const {url} = service;
   const fields = {b: 0.022, damping: "closed_form", tau_end: 1709, include: ["impacts"]};
-  const {impacts} = await (await post(url, "/v1/simulate", fields)).json();
+  const {impacts} = await (await send(url, "/v1/simulate", fields)).json();
   assert.equal((await metrics(url)).get("vines_impacts_total"), impacts.tau.length);
   const axes = [{parameter: "b", from: 0.01, to: 0.02, count: 7}];
-  const lines = await (await post(url, "/v1/sweep", {axes, transient_cycles: 50})).text();
+  const lines = await (await send(url, "/v1/sweep", {axes, transient_cycles: 50})).text();
   assert.match(lines, /"type":"done"/);
   const long = {axes: [{...axes[0], count: 20000}], cycles: 5000};
   const leaving = new AbortController();
-  const stream = await fetch(`${url}/v1/sweep`, {
-    method: "POST",
-    body: JSON.stringify(long),
-    signal: leaving.signal,
-  });
+  const stream = await send(url, "/v1/sweep", long, {signal: leaving.signal});
   await stream.body.getReader().read();
   assert.equal((await metrics(url)).get("vines_sweeps_running"), 1);
   leaving.abort();
@@ -101,13 +92,11 @@ test("impacts, sweeps, their runs and the outcome of each sweep are counted", as
 });
 
 test("a client that leaves the queue is not counted as refused", async (t) => {
-  const one = await startService(["--compute-threads", "1"]);
-  t.after(() => one.stop());
+  const one = await serviceFor(t, ["--compute-threads", "1"]);
   const leaving = new AbortController();
   const {signal} = leaving;
-  const body = JSON.stringify(endless);
   const requested = [1, 2, 3].map(() =>
-    fetch(`${one.url}/v1/simulate`, {method: "POST", body, signal}).catch(() => {}),
+    send(one.url, "/v1/simulate", endless, {signal}).catch(() => {}),
   );
   await until(async () => (await metrics(one.url)).get("vines_compute_queue_depth") === 2);
   leaving.abort();
@@ -119,21 +108,16 @@ test("a client that leaves the queue is not counted as refused", async (t) => {
 });
 
 test("waiting, running and refused requests are shown as they occur", async (t) => {
-  const one = await startService(["--compute-threads", "1", "--compute-queue", "1"]);
-  t.after(() => one.stop());
+  const one = await serviceFor(t, ["--compute-threads", "1", "--compute-queue", "1"]);
   const leaving = new AbortController();
   const load = (name) => metrics(one.url).then((all) => all.get(name));
-  const begin = () =>
-    fetch(`${one.url}/v1/simulate`, {
-      method: "POST",
-      body: JSON.stringify(endless),
-      signal: leaving.signal,
-    }).catch(() => {});
+  const {signal} = leaving;
+  const begin = () => send(one.url, "/v1/simulate", endless, {signal}).catch(() => {});
   const running = [begin()];
   await until(async () => (await load("vines_compute_running")) === 1);
   running.push(begin());
   await until(async () => (await load("vines_compute_queue_depth")) === 1);
-  const refused = await post(one.url, "/v1/simulate", {b: 0.022});
+  const refused = await send(one.url, "/v1/simulate", {b: 0.022});
   assert.equal(refused.status, 503);
   assert.equal((await refused.json()).lacking, "computing");
   // An answer is counted after it has been sent.

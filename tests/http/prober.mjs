@@ -3,11 +3,11 @@
 // its own probes.
 // Usage: node prober.mjs URL DURATION
 import net from "node:net";
-import {sleep} from "./raw.mjs";
+import {get, sleep} from "./raw.mjs";
 
 const [url, ms] = process.argv.slice(2);
 const {hostname, port} = new URL(url);
-const request = "GET /livez HTTP/1.1\r\nHost: localhost\r\nConnection: close\r\n\r\n";
+const request = get("/livez", "Connection: close\r\n");
 
 /** Time until the response is complete, ms. */
 const probe = () =>

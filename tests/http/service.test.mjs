@@ -1,26 +1,30 @@
 // The running service, over real sockets: routes, sweeps, limits, options.
 import assert from "node:assert/strict";
-import {spawn} from "node:child_process";
+import {execFile} from "node:child_process";
 import {mkdtemp, readFile, rm, writeFile} from "node:fs/promises";
 import {request as httpRequest} from "node:http";
 import {tmpdir} from "node:os";
 import {join} from "node:path";
-import {after, before, test} from "node:test";
+import {after, test} from "node:test";
 import {gunzipSync} from "node:zlib";
 import {program, startService} from "../service.mjs";
-import {computed, connect, exchange, until} from "./raw.mjs";
+import {
+  computed,
+  connect,
+  exchange,
+  linesOf,
+  metric,
+  send,
+  serviceFor,
+  textOf,
+  until,
+} from "./raw.mjs";
 
-let service;
-let host;
-let port;
-before(async () => {
-  service = await startService();
-  ({hostname: host, port} = new URL(service.url));
-});
+const service = await startService();
+const {port} = new URL(service.url);
 after(() => service.stop());
 
-const post = (body, headers = {}) =>
-  fetch(`${service.url}/v1/simulate`, {method: "POST", body, headers});
+const post = (body, headers = {}) => send(service.url, "/v1/simulate", body, {headers});
 
 /** Sends raw bytes; returns everything received until the server closes or the time is over. */
 const raw = (text, milliseconds = 15000) => exchange(service.url, text, milliseconds);
@@ -28,12 +32,10 @@ const raw = (text, milliseconds = 15000) => exchange(service.url, text, millisec
 /** Runs the program to its end: [exit code, its output]. */
 const run = (args, env = {}) =>
   new Promise((resolve) => {
-    const child = spawn(program, args, {env: {...process.env, ...env}});
-    let out = "";
-    let errors = "";
-    child.stdout.on("data", (d) => (out += d));
-    child.stderr.on("data", (d) => (errors += d));
-    child.on("close", (code) => resolve([code, out + errors]));
+    const options = {env: {...process.env, ...env}, maxBuffer: 1 << 28};
+    execFile(program, args, options, (failed, out, errors) =>
+      resolve([failed?.code ?? 0, out + errors]),
+    );
   });
 
 const getJson = async (path) => (await fetch(`${service.url}${path}`)).json();
@@ -82,7 +84,7 @@ test("presets, parameters, health and version answer", async () => {
   assert.match((await getJson("/version")).version, /^\d+\.\d+\.\d+$/);
 });
 
-test("a measurement can be sent as CSV with its fields in the query, and can be larger than other bodies", async () => {
+test("a measurement can be sent as CSV with its fields in the query, and can be larger than other bodies", async (t) => {
   const line = (k) => {
     const wave = Math.sin(k * 0.0256);
     const x = (1e-3 * wave).toExponential(7);
@@ -91,28 +93,26 @@ test("a measurement can be sent as CSV with its fields in the query, and can be 
   const csv = (n) =>
     `time_s,displacement_m,acceleration_m_s2\n${Array.from({length: n}, (_, k) => line(k)).join("")}`;
   const headers = {"Content-Type": "text/csv"};
-  const send = (body, query = "preset=fig15", url = service.url) =>
-    fetch(`${url}/v1/identify?${query}`, {method: "POST", body, headers});
-  const quiet = await problem(await send(csv(60000)), 422); // 2 MB
+  const identify = (body, query = "preset=fig15", url = service.url) =>
+    send(url, `/v1/identify?${query}`, body, {headers});
+  const quiet = await problem(await identify(csv(60000)), 422); // 2 MB
   assert.match(quiet.detail, /no impacts found in the record/);
-  const noNumber = await problem(await send(csv(200).replace("0.000488", "oops")), 422);
+  const noNumber = await problem(await identify(csv(200).replace("0.000488", "oops")), 422);
   assert.equal(noNumber.detail, 'line 3, column time_s: "oops" is not a number');
   headers["Content-Type"] = "Text/CSV ; header=present";
   assert.deepEqual(
-    (await problem(await send(csv(200).replace("0.000488", "oops")), 422)).detail,
+    (await problem(await identify(csv(200).replace("0.000488", "oops")), 422)).detail,
     noNumber.detail,
   );
-  const unknown = await problem(await send(csv(200), "preset=fig15&q=1"), 422);
+  const unknown = await problem(await identify(csv(200), "preset=fig15&q=1"), 422);
   assert.equal(unknown.errors[0].pointer, "/q");
-  const small = await startService(["--record-limit", "10000", "--payload-limit", "10000"]);
-  await problem(await send(csv(2000), "preset=fig15", small.url), 413);
-  await small.stop();
+  const small = await serviceFor(t, ["--record-limit", "10000", "--payload-limit", "10000"]);
+  await problem(await identify(csv(2000), "preset=fig15", small.url), 413);
 });
 
 test("the manifold is a separate route, by GET and POST", async () => {
   const got = await getJson("/v1/manifold?b=0.015&points=10");
-  const body = '{"b":0.015,"points":10}';
-  const posted = await fetch(`${service.url}/v1/manifold`, {method: "POST", body});
+  const posted = await send(service.url, "/v1/manifold", {b: 0.015, points: 10});
   assert.deepEqual(got, await posted.json());
   assert.equal(got.manifold.stable.C.length, 10);
   await problem(await fetch(`${service.url}/v1/manifold?R_plus=0.5&R_minus=0.6`), 422);
@@ -126,17 +126,12 @@ const sweep = {
 };
 const longSweep = {...sweep, axes: [{...sweep.axes[0], count: 20000}], cycles: 2000};
 const postSweep = (request, options = {}, url = service.url) =>
-  fetch(`${url}/v1/sweep`, {method: "POST", body: JSON.stringify(request), ...options});
-const linesOf = async (response) =>
-  (await response.text())
-    .trim()
-    .split("\n")
-    .map((line) => JSON.parse(line));
+  send(url, "/v1/sweep", request, options);
 
 test("a sweep is a stream of lines: start, points, progress, done; missing points can be requested alone", async () => {
   const response = await postSweep(sweep);
   assert.equal(response.headers.get("content-type"), "application/x-ndjson");
-  const lines = await linesOf(response);
+  const lines = linesOf(await response.text());
   assert.equal(lines[0].type, "start");
   assert.equal(lines[0].points, 30);
   assert.deepEqual(lines.at(-1), {type: "done", points: 30});
@@ -147,7 +142,7 @@ test("a sweep is a stream of lines: start, points, progress, done; missing point
   const indices = points.map((p) => p.index);
   assert.deepEqual(indices, [...Array(30).keys()]);
   assert.ok(lines.some((l) => l.type === "progress" && l.done === 30 && l.of === 30));
-  const missing = pointsOf(await linesOf(await postSweep({...sweep, indices: [3, 17]})));
+  const missing = pointsOf(linesOf(await textOf(await postSweep({...sweep, indices: [3, 17]}))));
   for (const point of missing) assert.deepEqual(point, points[point.index]);
   assert.equal(missing.length, 2);
   const outside = {...sweep, axes: [{parameter: "b", from: -1, to: 0.03, count: 3}]};
@@ -155,8 +150,8 @@ test("a sweep is a stream of lines: start, points, progress, done; missing point
   assert.equal(faults.errors[0].pointer, "/axes/0");
 });
 
-test("points arrive while the sweep runs, and it stops when its client leaves", async () => {
-  const one = await startService(["--sweeps", "1"]);
+test("points arrive while the sweep runs, and it stops when its client leaves", async (t) => {
+  const one = await serviceFor(t, ["--sweeps", "1"]);
   const leaving = new AbortController();
   const reader = (await postSweep(longSweep, {signal: leaving.signal}, one.url)).body.getReader();
   for (let text = ""; !text.includes('"point"'); )
@@ -169,15 +164,14 @@ test("points arrive while the sweep runs, and it stops when its client leaves", 
     next = await postSweep(sweep, {}, one.url);
     return next.status !== 503;
   });
-  assert.equal((await linesOf(next)).at(-1).type, "done");
-  await one.stop();
+  assert.equal(linesOf(await next.text()).at(-1).type, "done");
 });
 
 test("the last line of a design is its result, after the progress", async () => {
   const base = {m1: 2, f0: 8, damping_ratio: 0.01};
   const search = {b_count: 2, f_count: 2, R: 0.2, starts: "one", cycles: 20, transient_cycles: 0};
-  const body = JSON.stringify({base, m2: 0.04, f: [7.9, 8.1], acceleration: 5, ...search});
-  const lines = await linesOf(await fetch(`${service.url}/v1/design`, {method: "POST", body}));
+  const request = {base, m2: 0.04, f: [7.9, 8.1], acceleration: 5, ...search};
+  const lines = linesOf(await textOf(await send(service.url, "/v1/design", request)));
   assert.equal(lines.at(-1).type, "done");
   assert.ok(lines.at(-1).complete);
 });
@@ -187,15 +181,14 @@ test("a sweep takes 201 x 201 starts", async () => {
   const starts = values.flatMap((x0) => values.map((y_dot0) => ({x0, y_dot0, y0: 0})));
   const axes = [{parameter: "b", values: [0.0065]}];
   const answer = await postSweep({axes, starts, indices: [0, 40400], cycles: 10});
-  assert.equal(answer.status, 200);
-  const lines = await linesOf(answer);
+  const lines = linesOf(await textOf(answer));
   assert.equal(lines[0].points, 40401);
   const computed = lines.filter(({type}) => type === "point").map(({start}) => start);
   assert.deepEqual(new Set(computed), new Set([0, 40400]));
 });
 
-test("a simulation is answered during a sweep's point when one thread computes both", async () => {
-  const one = await startService(["--compute-threads", "1"]);
+test("a simulation is answered during a sweep's point when one thread computes both", async (t) => {
+  const one = await serviceFor(t, ["--compute-threads", "1"]);
   const leaving = new AbortController();
   // One run of several seconds, which writes its line at its end.
   const request = {
@@ -226,7 +219,6 @@ test("a simulation is answered during a sweep's point when one thread computes b
   assert.doesNotMatch(text, /"point"/);
   leaving.abort();
   await reading;
-  await one.stop();
 });
 
 test("a stopping service reports it in a sweep's stream and on /readyz, and accepts requests until the drain is over", async () => {
@@ -301,7 +293,7 @@ test("errors are problem documents with field, value and range", async () => {
   await problem(await post("{"), 400);
   await problem(await fetch(`${service.url}/nothing`), 404);
   await problem(await fetch(`${service.url}/v1/simulate?b=x`), 422);
-  await problem(await fetch(`${service.url}/v1/simulate?b=1`, {method: "POST", body: "{}"}), 400);
+  await problem(await send(service.url, "/v1/simulate?b=1", "{}"), 400);
   const wrong = await fetch(`${service.url}/v1/presets`, {method: "DELETE"});
   assert.equal(wrong.headers.get("allow"), "GET, HEAD");
   await problem(wrong, 405);
@@ -343,22 +335,25 @@ test("malformed requests get an answer and do not harm the service", async () =>
   assert.equal((await fetch(`${service.url}/healthz`)).status, 200);
 });
 
+/** The headers and bytes of an answer, which fetch would uncompress. */
+const received = (path, coding, body) =>
+  new Promise((resolve) => {
+    const options = {method: body ? "POST" : "GET", headers: {"Accept-Encoding": coding}};
+    const request = httpRequest(service.url + path, options, async (response) => {
+      const pieces = [];
+      for await (const piece of response) pieces.push(piece);
+      resolve({headers: response.headers, bytes: Buffer.concat(pieces)});
+    });
+    request.end(body);
+  });
+
 test("an answer with very many impacts is streamed, with the same bytes", async () => {
   const body = '{"b":0.015,"tau_end":1e6,"max_impacts":40000,"include":["impacts"]}';
   const file = join(await mkdtemp(join(tmpdir(), "vines-")), "request.json");
   await writeFile(file, body);
   const [, whole] = await run(["simulate", file]);
   for (const coding of ["identity", "br, gzip"]) {
-    const {headers, bytes} = await new Promise((resolve) => {
-      const options = {method: "POST", host, port, path: "/v1/simulate"};
-      const sent = {"Accept-Encoding": coding, "Content-Length": body.length};
-      const request = httpRequest({...options, headers: sent}, async (response) => {
-        const pieces = [];
-        for await (const piece of response) pieces.push(piece);
-        resolve({headers: response.headers, bytes: Buffer.concat(pieces)});
-      });
-      request.end(body);
-    });
+    const {headers, bytes} = await received("/v1/simulate", coding, body);
     assert.equal(headers["transfer-encoding"], "chunked");
     assert.match(headers.vary, /Accept\b.*Accept-Encoding|Accept-Encoding.*Accept\b/);
     assert.equal(headers["content-encoding"], coding === "identity" ? undefined : "gzip");
@@ -373,45 +368,27 @@ test("an answer with very many impacts is streamed, with the same bytes", async 
   assert.equal(await got.text(), whole);
 });
 
-test("a streamed answer ends when its client leaves", async () => {
-  const streaming = await startService(["--answer-limit", "2000000000"]);
+test("a streamed answer ends when its client leaves", async (t) => {
+  const streaming = await serviceFor(t, ["--answer-limit", "2000000000"]);
   const body = '{"b":0.015,"tau_end":1e7,"max_impacts":2000000,"include":["impacts"]}';
   const leave = new AbortController();
-  const response = await fetch(`${streaming.url}/v1/simulate`, {
-    method: "POST",
-    body,
-    signal: leave.signal,
-  });
+  const response = await send(streaming.url, "/v1/simulate", body, {signal: leave.signal});
   await response.body.getReader().read();
   const before = await computed(streaming.pid);
   leave.abort();
-  await until(async () => {
-    const text = await (await fetch(`${streaming.url}/metrics`)).text();
-    return /^vines_http_requests_in_flight 0$/m.test(text);
-  });
+  await until(async () => (await metric(streaming.url, "vines_http_requests_in_flight")) === 0);
   assert.ok((await computed(streaming.pid)) < before + 1.5);
-  await streaming.stop();
 });
 
 test("large answers are compressed by gzip on request, small ones are not", async () => {
-  const headers = {"Accept-Encoding": "br, gzip"};
-  const get = (path) =>
-    new Promise((resolve) => {
-      const request = httpRequest(`${service.url}${path}`, {headers}, (response) => {
-        const parts = [];
-        response.on("data", (d) => parts.push(d));
-        response.on("end", () => resolve([response.headers, Buffer.concat(parts)]));
-      });
-      request.end();
-    });
-  const [received, bytes] = await get("/v1/simulate");
-  assert.equal(received["content-encoding"], "gzip");
+  const {headers, bytes} = await received("/v1/simulate", "br, gzip");
+  assert.equal(headers["content-encoding"], "gzip");
   assert.ok(JSON.parse(gunzipSync(bytes)).series.tau.length > 1000);
   // Longer than one piece of the compression (1 MiB).
   const long = "/v1/simulate?include=series&tau_end=20000&max_points=100000";
-  const plain = await fetch(`${service.url}${long}`, {headers: {"Accept-Encoding": "identity"}});
-  assert.equal(gunzipSync((await get(long))[1]).toString(), await plain.text());
-  assert.equal((await get("/version"))[0]["content-encoding"], undefined);
+  const plain = await received(long, "identity");
+  assert.ok(gunzipSync((await received(long, "br, gzip")).bytes).equals(plain.bytes));
+  assert.equal((await received("/version", "br, gzip")).headers["content-encoding"], undefined);
 });
 
 test("four hundred simultaneous clients are all answered", async () => {
@@ -429,9 +406,9 @@ const long = JSON.stringify({
   include: ["exponents", "regime"],
 });
 
-test("the queue for computing is limited: beyond it 503 with Retry-After", async () => {
+test("the queue for computing is limited: beyond it 503 with Retry-After", async (t) => {
   // The first request computes until the deadline, the second waits, the others are refused.
-  const small = await startService([
+  const small = await serviceFor(t, [
     "--compute-threads",
     "1",
     "--compute-queue",
@@ -440,50 +417,44 @@ test("the queue for computing is limited: beyond it 503 with Retry-After", async
     "2",
   ]);
   const answers = await Promise.all(
-    Array.from({length: 6}, () => fetch(`${small.url}/v1/simulate`, {method: "POST", body: long})),
+    Array.from({length: 6}, () => send(small.url, "/v1/simulate", long)),
   );
   const refused = answers.filter((a) => a.status === 503);
   assert.ok(refused.length >= 3, `${refused.length} refused`);
   assert.equal(refused[0].headers.get("retry-after"), "1");
-  await small.stop();
 });
 
-test("a request that computes too long ends with the results so far", async () => {
-  const hasty = await startService(["--deadline", "0.5"]);
-  const response = await fetch(`${hasty.url}/v1/simulate`, {method: "POST", body: long});
+test("a request that computes too long ends with the results so far", async (t) => {
+  const hasty = await serviceFor(t, ["--deadline", "0.5"]);
+  const response = await send(hasty.url, "/v1/simulate", long);
   const answer = await response.json();
   assert.equal(answer.status.reason, "deadline");
   assert.ok(answer.status.tau > 0 && answer.status.tau < 1e7);
   assert.ok((await computed(hasty.pid)) < 2);
-  await hasty.stop();
 });
 
-test("an identification that takes too long reports the stage it reached", async () => {
+test("an identification that takes too long reports the stage it reached", async (t) => {
   // Every sample is in the neighbourhood of every other: the work is quadratic in their number.
   const sample = (k) => `${k * 1e-9},${Math.sin(k)}`;
   const record = ["time_s,a", ...Array.from({length: 50000}, (_, k) => sample(k))].join("\n");
-  const hasty = await startService(["--deadline", "0.5"]);
-  const response = await fetch(`${hasty.url}/v1/identify?preset=fig15`, {
-    method: "POST",
-    headers: {"Content-Type": "text/csv"},
-    body: record,
-  });
+  const hasty = await serviceFor(t, ["--deadline", "0.5"]);
+  const headers = {"Content-Type": "text/csv"};
+  const response = await send(hasty.url, "/v1/identify?preset=fig15", record, {headers});
   assert.equal(response.status, 413);
   assert.match(
     (await response.json()).detail,
     /stopped while looking for spikes \(a record of 50000/,
   );
   assert.ok((await computed(hasty.pid)) < 2);
-  await hasty.stop();
 });
 
-test("the deadline and the answer limit hold for the largest possible request, in time and memory", async () => {
-  const hasty = await startService(["--deadline", "1", "--answer-limit", "50000000"]);
+test("the deadline and the answer limit hold for the largest possible request, in time and memory", async (t) => {
+  const hasty = await serviceFor(t, ["--deadline", "1", "--answer-limit", "50000000"]);
   const {fields} = await getJson("/v1/parameters");
   const include = fields.find((f) => f.name === "include").choices;
   const lists = {max_points: 1e6, max_impacts: 2e6};
-  const body = JSON.stringify({b: 0.003, tau_end: 1e7, ...lists, include});
-  const response = await fetch(`${hasty.url}/v1/simulate`, {method: "POST", body});
+  const request = {b: 0.003, tau_end: 1e7, ...lists, include};
+  const response = await send(hasty.url, "/v1/simulate", request);
   const text = await response.text();
   const seconds = await computed(hasty.pid);
   assert.ok(seconds < 4, `${seconds} s`);
@@ -499,11 +470,10 @@ test("the deadline and the answer limit hold for the largest possible request, i
   const status = await readFile(`/proc/${hasty.pid}/status`, "utf8");
   const peak = Number(status.match(/VmHWM:\s+(\d+)/)[1]) / 1024;
   assert.ok(peak < 1000, `${peak} MB`);
-  await hasty.stop();
 });
 
-test("an answer beyond the server's limit is thinned, or refused with both sizes if it cannot be thinned", async () => {
-  const small = await startService([], {VINES_ANSWER_LIMIT: "300000"});
+test("an answer beyond the server's limit is thinned, or refused with both sizes if it cannot be thinned", async (t) => {
+  const small = await serviceFor(t, [], {VINES_ANSWER_LIMIT: "300000"});
   const get = (path) => fetch(`${small.url}${path}`);
   const text = await (await get("/v1/simulate?b=0.003&include=series,impacts")).text();
   assert.ok(text.length <= 300000, `${text.length} bytes`);
@@ -511,7 +481,6 @@ test("an answer beyond the server's limit is thinned, or refused with both sizes
   const {detail} = await problem(await get("/v1/manifold?points=100000"), 413);
   assert.match(detail, /has \d+ bytes, more than this server's limit of 300000/);
   assert.equal((await get("/v1/manifold?points=1000")).status, 200);
-  await small.stop();
 });
 
 test("SIGTERM ends the service with 0 without waiting for an idle connection; SIGUSR1 and SIGALRM do not end it", async () => {

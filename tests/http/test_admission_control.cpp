@@ -21,12 +21,13 @@ void wait_until(Condition holds) {
 }
 
 const std::string client = "192.0.2.1";
+using Slot = AdmissionControl::Slot;
 
 }  // namespace
 
 TEST_CASE("foreground work queues up to its limit and is refused beyond it") {
     AdmissionControl admission({.running = 1, .waiting = 1});
-    AdmissionControl::Slot first = admission.acquire(client);
+    Slot first = admission.acquire(client);
     REQUIRE(first);
     std::atomic<bool> entered = false;
     std::thread second([&] { entered = admission.acquire(client) != nullptr; });
@@ -42,25 +43,24 @@ TEST_CASE("foreground work queues up to its limit and is refused beyond it") {
 
 TEST_CASE("no work waits if the queue's limit is 0") {
     AdmissionControl admission({.running = 1, .waiting = 0});
-    const AdmissionControl::Slot slot = admission.acquire(client);
+    const Slot slot = admission.acquire(client);
     CHECK(slot);
     CHECK(!admission.acquire(client));
 }
 
 TEST_CASE("background work that releases its slot gets it back after the foreground work") {
     AdmissionControl admission({.running = 1});
-    const std::stop_source stop;
     for (int round = 0; round < 200; ++round) {
-        AdmissionControl::Slot slot = admission.acquire_background(client, stop.get_token());
+        Slot slot = admission.acquire_background(client);
         REQUIRE(slot);
         std::atomic<bool> served = false;
         std::thread foreground([&] {
-            const AdmissionControl::Slot own = admission.acquire(client);
+            const Slot own = admission.acquire(client);
             served = own != nullptr;
         });
         wait_until([&] { return admission.foreground_waits(); });
         slot.reset();
-        slot = admission.acquire_background(client, stop.get_token());
+        slot = admission.acquire_background(client);
         CHECK(slot);
         CHECK(served);
         foreground.join();
@@ -69,19 +69,17 @@ TEST_CASE("background work that releases its slot gets it back after the foregro
 
 TEST_CASE("background work gets slots in the order of arrival") {
     AdmissionControl admission({.running = 1});
-    const std::stop_source stop;
     for (int round = 0; round < 200; ++round) {
-        AdmissionControl::Slot slot = admission.acquire_background(client, stop.get_token());
+        Slot slot = admission.acquire_background(client);
         CHECK(!admission.background_waits());
         std::atomic<bool> served = false;
         std::thread other([&] {
-            const AdmissionControl::Slot own =
-                admission.acquire_background(client, stop.get_token());
+            const Slot own = admission.acquire_background(client);
             served = own != nullptr;
         });
         wait_until([&] { return admission.background_waits(); });
         slot.reset();
-        slot = admission.acquire_background(client, stop.get_token());
+        slot = admission.acquire_background(client);
         CHECK(slot);
         CHECK(served);
         other.join();
@@ -91,12 +89,11 @@ TEST_CASE("background work gets slots in the order of arrival") {
 TEST_CASE("stopped background work does not block later background work") {
     AdmissionControl admission({.running = 1});
     std::stop_source first_stop;
-    const std::stop_source stop;
-    AdmissionControl::Slot slot = admission.acquire_background(client, stop.get_token());
+    Slot slot = admission.acquire_background(client);
     std::thread first(
         [&] { CHECK(!admission.acquire_background(client, first_stop.get_token())); });
     wait_until([&] { return admission.background_waits(); });
-    std::thread second([&] { CHECK(admission.acquire_background(client, stop.get_token())); });
+    std::thread second([&] { CHECK(admission.acquire_background(client)); });
     first_stop.request_stop();
     first.join();
     slot.reset();
@@ -106,17 +103,14 @@ TEST_CASE("stopped background work does not block later background work") {
 TEST_CASE(
     "when two slots become free at once, background work gets the one that foreground work "
     "leaves") {
-    const std::stop_source stop;
     for (int round = 0; round < 1000; ++round) {
         AdmissionControl admission({.running = 2});
-        AdmissionControl::Slot first = admission.acquire(client),
-                               second = admission.acquire(client);
+        Slot first = admission.acquire(client), second = admission.acquire(client);
         std::atomic<bool> background_inside = false;
-        std::thread background([&] {
-            background_inside = admission.acquire_background(client, stop.get_token()) != nullptr;
-        });
+        std::thread background(
+            [&] { background_inside = admission.acquire_background(client) != nullptr; });
         std::thread foreground([&] {
-            const AdmissionControl::Slot own = admission.acquire(client);
+            const Slot own = admission.acquire(client);
             wait_until([&] { return background_inside.load(); });  // keeps its slot
         });
         wait_until([&] { return admission.foreground_waits(); });
@@ -130,7 +124,7 @@ TEST_CASE(
 
 TEST_CASE("a stop ends background work's wait, whether it comes before or during the wait") {
     AdmissionControl admission({.running = 1});
-    const AdmissionControl::Slot held = admission.acquire(client);
+    const Slot held = admission.acquire(client);
     for (int round = 0; round < 500; ++round) {  // stops at different times relative to the wait
         std::stop_source stop;
         std::atomic<bool> waiting = false, entered = true;
@@ -153,14 +147,13 @@ TEST_CASE(
         AdmissionControl admission({.running = 1, .sweeps = 2});
         const AdmissionControl::SweepSlot sweep_slot = admission.acquire_sweep(client);
         CHECK(sweep_slot);
-        AdmissionControl::Slot held = admission.acquire(client);
-        const std::stop_source stop;
+        Slot held = admission.acquire(client);
         std::atomic<int> waiting = 0, without = 0;
         std::vector<std::thread> background;
         for (int k = 0; k < 3; ++k)
             background.emplace_back([&] {
                 ++waiting;
-                if (!admission.acquire_background(client, stop.get_token())) ++without;
+                if (!admission.acquire_background(client)) ++without;
             });
         wait_until([&] { return waiting == 3; });
         admission.stop_sweeps();
@@ -185,7 +178,6 @@ TEST_CASE("a sweep's slot can be acquired again after its release") {
 TEST_CASE("no wake-up and no slot is lost when foreground and background work compete") {
     constexpr int slots = 2, rounds = 20000;
     AdmissionControl admission({.running = slots});
-    const std::stop_source stop;
     std::atomic<int> inside = 0, most = 0, background_done = 0, foreground_done = 0;
     const auto compute = [&] {
         const int now = ++inside;
@@ -196,11 +188,10 @@ TEST_CASE("no wake-up and no slot is lost when foreground and background work co
     for (int k = 0; k < 3; ++k)
         threads.emplace_back([&] {
             for (int round = 0; round < rounds; ++round) {
-                AdmissionControl::Slot slot =
-                    admission.acquire_background(client, stop.get_token());
+                Slot slot = admission.acquire_background(client);
                 if (admission.foreground_waits()) {
                     slot.reset();
-                    slot = admission.acquire_background(client, stop.get_token());
+                    slot = admission.acquire_background(client);
                 }
                 if (!slot) continue;
                 compute();
@@ -210,7 +201,7 @@ TEST_CASE("no wake-up and no slot is lost when foreground and background work co
     for (int k = 0; k < 3; ++k)
         threads.emplace_back([&] {
             for (int round = 0; round < rounds; ++round)
-                if (const AdmissionControl::Slot slot = admission.acquire(client)) {
+                if (const Slot slot = admission.acquire(client)) {
                     compute();
                     ++foreground_done;
                 }
@@ -224,45 +215,41 @@ TEST_CASE("no wake-up and no slot is lost when foreground and background work co
 
 TEST_CASE("without a free slot foreground work starts in grace periods, up to the queue's limit") {
     AdmissionControl admission({.running = 1, .waiting = 2});
-    const AdmissionControl::Attempt first = admission.try_acquire(),
-                                    second = admission.try_acquire(),
-                                    third = admission.try_acquire();
-    CHECK(first.slot);
-    CHECK(!first.grace);
-    CHECK(second.grace);
-    CHECK(third.grace);
-    CHECK(!second.slot);
-    const AdmissionControl::Attempt fourth = admission.try_acquire();
-    CHECK(!fourth.slot);
-    CHECK(!fourth.grace);
+    const Slot first = admission.try_acquire(), second = admission.try_acquire(),
+               third = admission.try_acquire();
+    CHECK(first);
+    CHECK(!admission.is_grace(first));
+    CHECK(admission.is_grace(second));
+    CHECK(admission.is_grace(third));
+    CHECK(!admission.try_acquire());
     CHECK(!admission.acquire(client));
     CHECK(admission.load().running == 1);
 }
 
 TEST_CASE("the number of grace periods per slot is limited; one that ends allows another") {
     AdmissionControl admission({.running = 1, .waiting = 1000});
-    const AdmissionControl::Slot slot = admission.acquire(client);
-    std::vector<AdmissionControl::Attempt> begun;
-    for (AdmissionControl::Attempt try_acquire = admission.try_acquire(); try_acquire.grace;
-         try_acquire = admission.try_acquire())
-        begun.push_back(std::move(try_acquire));
+    const Slot slot = admission.acquire(client);
+    std::vector<Slot> begun;
+    while (Slot grace = admission.try_acquire()) {
+        CHECK(admission.is_grace(grace));
+        begun.push_back(std::move(grace));
+    }
     CHECK(begun.size() == 4);
     begun.pop_back();
-    CHECK(admission.try_acquire().grace);
+    CHECK(admission.is_grace(admission.try_acquire()));
 }
 
 TEST_CASE("work whose grace period is over joins a full queue, at its end") {
     AdmissionControl admission({.running = 1, .waiting = 2});
-    AdmissionControl::Slot slot = admission.acquire(client);
-    AdmissionControl::Attempt try_acquire = admission.try_acquire();
-    REQUIRE(try_acquire.grace);
+    Slot slot = admission.acquire(client);
+    Slot grace = admission.try_acquire();
+    REQUIRE(admission.is_grace(grace));
     std::atomic<bool> first_entered = false, second_entered = false;
     std::thread first([&] { first_entered = admission.acquire(client) != nullptr; });
     wait_until([&] { return admission.load().waiting == 1; });
     CHECK(!admission.acquire(client));
     std::thread second([&] {
-        const AdmissionControl::Slot own =
-            admission.acquire(client, {}, std::move(try_acquire.grace));
+        const Slot own = admission.acquire(client, {}, std::move(grace));
         second_entered = own && first_entered;
     });
     wait_until([&] { return admission.load().waiting == 2; });
@@ -271,12 +258,13 @@ TEST_CASE("work whose grace period is over joins a full queue, at its end") {
     first.join();
     second.join();
     CHECK(second_entered);
-    CHECK(admission.try_acquire().slot);
+    const Slot last = admission.try_acquire();
+    CHECK((last && !admission.is_grace(last)));
 }
 
 TEST_CASE("a permit lasts for a grace period without a slot, then waits for one, or gives up") {
     AdmissionControl admission({.running = 1});
-    AdmissionControl::Slot slot = admission.acquire(client);
+    Slot slot = admission.acquire(client);
     std::atomic<bool> left = false;
     Permit permit(admission, client, [&] { return left.load(); }, true);
     REQUIRE(permit);
@@ -302,7 +290,7 @@ TEST_CASE("a permit lasts for a grace period without a slot, then waits for one,
 
 TEST_CASE("a permit without a grace period waits for a slot") {
     AdmissionControl admission({.running = 1, .waiting = 0});
-    AdmissionControl::Slot slot = admission.acquire(client);
+    Slot slot = admission.acquire(client);
     CHECK(!Permit(admission, client, {}, true));
     CHECK(!Permit(admission, client, {}, false));
     slot.reset();
@@ -313,14 +301,14 @@ TEST_CASE("a permit without a grace period waits for a slot") {
 
 TEST_CASE("clients take turns, whatever the number of their requests") {
     AdmissionControl admission({.running = 1, .waiting = 10});
-    AdmissionControl::Slot slot = admission.acquire("greedy");
+    Slot slot = admission.acquire("greedy");
     std::mutex mutex;
     std::string order;
     std::vector<std::thread> threads;
     const auto queue = [&](const std::string& name) {
         const std::size_t before = admission.load().waiting;
         threads.emplace_back([&, name] {
-            const AdmissionControl::Slot own = admission.acquire(name);
+            const Slot own = admission.acquire(name);
             const std::lock_guard lock(mutex);
             order += name[0];
         });
@@ -336,7 +324,7 @@ TEST_CASE("clients take turns, whatever the number of their requests") {
 
 TEST_CASE("a client whose turn is earlier displaces the last request of a full queue") {
     AdmissionControl admission({.running = 1, .waiting = 3});
-    AdmissionControl::Slot slot = admission.acquire("greedy");
+    Slot slot = admission.acquire("greedy");
     std::atomic<int> refused = 0, served = 0;
     std::vector<std::thread> threads;
     for (std::size_t i = 0; i < 3; ++i) {

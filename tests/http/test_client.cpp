@@ -31,12 +31,14 @@ TEST_CASE("entries before the one of an untrusted address can be forged and do n
     CHECK(client_of("10.1.2.3", "198.51.100.7, 203.0.113.9") == "203.0.113.9");
     CHECK(client_of("10.1.2.3", "198.51.100.7, 203.0.113.9,10.9.9.9") == "203.0.113.9");
     CHECK(client_of("10.1.2.3", "203.0.113.9, unknown") == "10.1.2.3");
+    CHECK(client_of("10.1.2.3", "203.0.113.9, cafe") == "10.1.2.3");
     CHECK(client_of("10.1.2.3", "") == "10.1.2.3");
     CHECK(client_of("10.1.2.3", ",") == "10.1.2.3");
 }
 
 TEST_CASE("a network is an address with up to as many bits as it has") {
-    for (const char* text : {"", "10.0.0.0/33", "10.0.0.0/", "10.0.0/8", "::/129", "host", "/8"})
+    for (const char* text :
+         {"", "10.0.0.0/33", "10.0.0.0/", "10.0.0/8", "::/129", "host", "cafe", "/8"})
         CHECK_FALSE(Network::read(text));
     CHECK(Network::read("0.0.0.0/0")->contains("255.1.2.3"));
     CHECK_FALSE(Network::read("0.0.0.0/0")->contains("2001:db8::1"));

@@ -15,15 +15,17 @@ namespace {
 
 Response answer_of(
     AdmissionControl& admission, const RouteOptions& options, const std::string& method,
-    const std::string& path, const std::string& body = "{}", bool has_left = false) {
+    const std::string& target, const std::string& body = "{}", bool has_left = false,
+    std::vector<Header> headers = {}) {
     static const AdmissionControl idle({});
     static Metrics metrics(idle);  // outlives the streams
     const std::vector<Route> routes = make_routes(options, admission, metrics);
-    const Route* route = find_route(routes, method, path);
+    Request request{
+        .head = {.method = method, .target = target, .headers = std::move(headers)},
+        .body = body,
+        .left = [has_left] { return has_left; }};
+    const Route* route = find_route(routes, method, request.head.path());
     REQUIRE(route);
-    Request request{.head = {.method = method, .target = path}, .body = body, .left = [has_left] {
-                        return has_left;
-                    }};
     return route->answer(request);
 }
 
@@ -93,27 +95,18 @@ TEST_CASE("an identification ended by its deadline reports the stage it had reac
 
 TEST_CASE("a large answer is compressed by the computing thread, unless its client has left") {
     AdmissionControl admission({.running = 1});
-    static const AdmissionControl idle({});
-    Metrics metrics(idle);
-    const std::vector<Route> routes = make_routes({}, admission, metrics);
-    const auto ask = [&](const std::string& encoding, std::function<bool()> left) {
-        Request request{
-            .head =
-                {.method = "GET",
-                 .target = "/v1/simulate?preset=fig3",
-                 .headers = {{"accept-encoding", encoding}}},
-            .left = std::move(left)};
-        return find_route(routes, "GET", "/v1/simulate")->answer(request);
+    const auto ask = [&](const std::string& encoding, bool has_left = false) {
+        return answer_of(
+            admission, {}, "GET", "/v1/simulate?preset=fig3", "", has_left,
+            {{"accept-encoding", encoding}});
     };
-    const auto never = [] { return false; };
-    const Response plain = ask("", never), packed = ask("gzip", never);
+    const Response plain = ask(""), packed = ask("gzip");
     CHECK(plain.uncompressed_size == 0);
     REQUIRE(packed.uncompressed_size == plain.body.size());
     CHECK(packed.body == gzip(plain.body));
     CHECK(packed.tag == plain.tag);
     CHECK(packed.timing.back().first == "encode");
-    const Response abandoned = ask("gzip", [] { return true; });
-    CHECK(abandoned.status == 499);
+    CHECK(ask("gzip", true).status == 499);
 }
 
 TEST_CASE(

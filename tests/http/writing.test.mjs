@@ -2,13 +2,10 @@
 import assert from "node:assert/strict";
 import {test} from "node:test";
 import {startService} from "../service.mjs";
-import {connect, statuses, until} from "./raw.mjs";
+import {connect, connectAll, get, post, send, serviceFor, statuses, until} from "./raw.mjs";
 
 // Time within which others get what such a client holds, ms.
 const soon = 5000;
-
-const post = (path, body, more = "") =>
-  `POST ${path} HTTP/1.1\r\nHost: localhost\r\n${more}Content-Length: ${body.length}\r\n\r\n${body}`;
 
 /** A client that sends a request and reads only the beginning of its answer. */
 async function unread(url, path, body, address) {
@@ -19,12 +16,9 @@ async function unread(url, path, body, address) {
   return connection;
 }
 
-const fetched = (url, path, body) =>
-  fetch(url + path, {method: "POST", body: JSON.stringify(body)});
-
 /** True once the answer is 200; reads all of it. */
 async function isAnswered(url, path, body) {
-  const answer = await fetched(url, path, body);
+  const answer = await send(url, path, body);
   await answer.arrayBuffer();
   return answer.status === 200;
 }
@@ -73,14 +67,14 @@ test("finished answers that are not read occupy no thread", async (t) => {
 
 test("neither do pipelined small ones", async (t) => {
   const one = await startService(["--threads", "4"]);
-  const held = await Promise.all(Array.from({length: 12}, () => connect(one.url)));
+  const held = await connectAll(one.url, 12);
   t.after(async () => {
     for (const {socket} of held) socket.destroy();
     await one.stop();
   });
   for (const {socket} of held) {
     socket.pause();
-    socket.write("GET /v1/parameters HTTP/1.1\r\nHost: localhost\r\n\r\n".repeat(200));
+    socket.write(get("/v1/parameters").repeat(200));
   }
   await until(() => isAnswered(one.url, "/v1/simulate", small), soon);
 });
@@ -101,19 +95,16 @@ test("sweeps that are not read give their places to others", async (t) => {
   const {url, accepted} = await serviceWith(t, ["--sweeps", "4"], 4, "/v1/sweep", sweep);
   assert.equal(accepted, 4);
   await until(async () => {
-    const answer = await fetched(url, "/v1/sweep", {...sweep, cycles: 40});
+    const answer = await send(url, "/v1/sweep", {...sweep, cycles: 40});
     await answer.body.cancel();
     return answer.status === 200;
   }, soon);
 });
 
 test("a client that reads slowly but steadily gets all of its answer", async (t) => {
-  const one = await startService(["--threads", "4"]);
-  t.after(() => one.stop());
+  const one = await serviceFor(t, ["--threads", "4"]);
   const {socket, text, ended} = await connect(one.url);
-  socket.write(
-    post("/v1/simulate", JSON.stringify(large)).replace("\r\n", "\r\nConnection: close\r\n"),
-  );
+  socket.write(post("/v1/simulate", JSON.stringify(large), "Connection: close\r\n"));
   socket.on("data", () => {
     socket.pause();
     setTimeout(() => socket.resume(), 2);

@@ -7,7 +7,7 @@ import {createHash} from "node:crypto";
 import {readFile, writeFile} from "node:fs/promises";
 import {test} from "node:test";
 import {identifications, requests} from "../golden/requests.mjs";
-import {startService} from "../service.mjs";
+import {serviceFor} from "../http/raw.mjs";
 import {answerOf, ask} from "./answers.mjs";
 
 const file = new URL("answers.json", import.meta.url);
@@ -21,8 +21,7 @@ const asRecorded = (text) =>
     .replaceAll(/"version":"[^"]*"/g, '"version":""');
 
 test("responses have the recorded bytes", async (t) => {
-  const service = await startService();
-  t.after(() => service.stop());
+  const service = await serviceFor(t);
   // Identifications use simulated records.
   const simulate = async (body) => (await ask(service.url, {path: "/v1/simulate", body})).json();
   const computed = requests.filter(({path}) =>

@@ -5,7 +5,7 @@ import {spawnSync} from "node:child_process";
 import {readFileSync} from "node:fs";
 import {test} from "node:test";
 import {identifications, requests} from "../golden/requests.mjs";
-import {startService} from "../service.mjs";
+import {serviceFor} from "../http/raw.mjs";
 import {answerOf, ask} from "./answers.mjs";
 
 const older = {GLIBC_TUNABLES: "glibc.cpu.hwcaps=-AVX2,-FMA,-AVX512F,-FMA4"};
@@ -21,18 +21,14 @@ const nothingToCompare = () => {
 
 test("a response is the same, byte for byte, on a processor without fused operations", {
   skip: nothingToCompare(),
-}, async () => {
-  const services = [await startService(), await startService([], older)];
-  try {
-    const simulate = async (body) =>
-      (await ask(services[0].url, {path: "/v1/simulate", body})).json();
-    const routed = requests.filter(({path}) => path.startsWith("/v1/"));
-    for (const request of [...routed, ...(await identifications(simulate))]) {
-      const [here, there] = await Promise.all(services.map(({url}) => answerOf(url, request)));
-      assert.ok(here === there, `${request.name} differs`);
-    }
-  } finally {
-    await Promise.all(services.map(({stop}) => stop()));
+}, async (t) => {
+  const services = [await serviceFor(t), await serviceFor(t, [], older)];
+  const simulate = async (body) =>
+    (await ask(services[0].url, {path: "/v1/simulate", body})).json();
+  const routed = requests.filter(({path}) => path.startsWith("/v1/"));
+  for (const request of [...routed, ...(await identifications(simulate))]) {
+    const [here, there] = await Promise.all(services.map(({url}) => answerOf(url, request)));
+    assert.ok(here === there, `${request.name} differs`);
   }
 });
 
