@@ -151,8 +151,11 @@ void Metrics::count_impacts(long impacts) {
     implementation_->impacts.Increment(static_cast<double>(impacts));
 }
 
-void Metrics::count_sweep(SweepEnd end, std::size_t runs, std::size_t impacts) {
+void Metrics::count_sweep(SweepEnd end) {
     implementation_->sweeps.Add({{"end", sweep_ends[static_cast<std::size_t>(end)]}}).Increment();
+}
+
+void Metrics::count_runs(std::size_t runs, std::size_t impacts) {
     implementation_->runs.Increment(static_cast<double>(runs));
     implementation_->impacts.Increment(static_cast<double>(impacts));
 }

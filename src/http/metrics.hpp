@@ -24,8 +24,9 @@ public:
 
     void count_answer(const std::string& method, const Outcome& outcome);
     void count_impacts(long impacts);
+    void count_sweep(SweepEnd end);  ///< of one request
     /// Adds the runs of one sweep and their measured impacts.
-    void count_sweep(SweepEnd end, std::size_t runs, std::size_t impacts);
+    void count_runs(std::size_t runs, std::size_t impacts);
 
     /// Sets the function that text() calls for the state of the connections.
     void watch_connections(std::function<ConnectionLoad()> connections);

@@ -19,10 +19,13 @@ struct RouteOptions {
     PageOptions page = {};
 };
 
+class RunningStreams;
+
 struct Service {
     const RouteOptions options;
     AdmissionControl& admission;
     Metrics& metrics;
+    const std::shared_ptr<RunningStreams> running;
 };
 
 /// Answers of the routes that compute. Each function waits for admission, reads the request,

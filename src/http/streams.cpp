@@ -16,9 +16,13 @@ constexpr auto report_interval = std::chrono::milliseconds(200);
 // Time for which a sweep keeps a slot that another sweep waits for.
 constexpr auto time_slice = std::chrono::milliseconds(20);
 
-/// Lines or rows of a sweep between the threads that compute them and the one that sends them.
+/// Lines or rows of a sweep between the threads that compute them and those that send them.
 class LineQueue {
 public:
+    /// keeps: any number of readers, each of which gets all lines; they are kept, and the queue is
+    /// never full. Otherwise one reader, which takes the lines.
+    explicit LineQueue(bool keeps) : keeps_(keeps) {}
+
     void push(const std::string& text) {
         const std::lock_guard lock(mutex_);
         text_ += text;
@@ -34,21 +38,23 @@ public:
     }
 
     struct Taken {
-        std::string text;       ///< lines since the last call
+        std::string text;       ///< lines since the reader's last call
         std::size_t count = 0;  ///< lines so far
         bool finished = false;  ///< no more will come
     };
-    /// Waits for lines, for at most `at_most`. One thread at a time.
-    Taken take(std::chrono::milliseconds at_most) {
+    /// Waits for lines after the first `read` bytes, which is then advanced; for at most `at_most`.
+    Taken take(std::size_t& read, std::chrono::milliseconds at_most) {
         std::unique_lock lock(mutex_);
-        changed_.wait_for(lock, at_most, [this] { return !text_.empty() || finished_; });
-        size_ = 0;
+        changed_.wait_for(lock, at_most, [&] { return text_.size() > read || finished_; });
+        Taken taken{keeps_ ? text_.substr(read) : std::exchange(text_, {}), count_, finished_};
+        if (keeps_) read = text_.size();
+        size_ = text_.size();
         changed_.notify_all();
-        return {std::exchange(text_, {}), count_, finished_};
+        return taken;
     }
 
     /// True while the queue is full; producers should wait.
-    bool is_full() const { return size_ > capacity_; }
+    bool is_full() const { return !keeps_ && size_ > capacity_; }
     /// Waits until the queue is not full, for at most `at_most`.
     void wait_while_full(std::chrono::milliseconds at_most) {
         std::unique_lock lock(mutex_);
@@ -58,6 +64,7 @@ public:
 private:
     static constexpr std::size_t capacity_ = 1 << 20;  // bytes
 
+    const bool keeps_;
     std::mutex mutex_;
     std::condition_variable changed_;
     std::string text_;
@@ -80,39 +87,39 @@ struct LineWork {
     /// Last lines after progress; empty function if the computation sends them.
     std::function<std::string(std::size_t done)> complete;
     const char* how_to_go_on = "";  ///< after an early end; null for a table, which is then cut off
+    bool is_shared = false;         ///< equal requests get the lines of one computation
 };
 
-/// Computes lines on other threads while this one sends them. The threads take background slots,
-/// release them while requests wait, and wait while the client reads slower than they compute.
-class LineStream : public api::RunControl {
-public:
-    /// `id`: of the request, for the log; deadline: s.
-    LineStream(
-        const LineWork& work, double deadline, std::string client, std::string id,
-        AdmissionControl& admission, Writer& out)
-        : work_(work),
-          deadline_(deadline),
-          client_(std::move(client)),
-          id_(std::move(id)),
-          admission_(admission),
-          out_(out) {}
+}  // namespace
 
-    SweepEnd run() {
-        if (!out_.write(work_.begin)) return SweepEnd::client_left;
-        SweepEnd end;
-        std::string last;
-        try {
-            const auto [is_complete, done] = send_lines();
-            end = is_complete             ? SweepEnd::complete
-                  : is_late(Clock::now()) ? SweepEnd::deadline
-                                          : SweepEnd::stopping;
-            last = last_line(end, done);
-        } catch (...) {
-            log_failure(work_.path, id_);
-            end = SweepEnd::failed;
-            last = last_line(end, lines_.take({}).count);
-        }
-        return connected_ && out_.write(last) ? end : SweepEnd::client_left;
+/// Computes lines on other threads while those of its clients' requests send them. Its threads take
+/// background slots, release them while requests wait, and wait while the client reads slower than
+/// they compute. It begins with the first client and stops when the last one has left.
+class LineComputation : public api::RunControl {
+public:
+    /// `first`: the first request, for the log. The service must outlive the object.
+    LineComputation(
+        LineWork work, const Request& first, const Service& service,
+        AdmissionControl::SweepSlot sweep_slot)
+        : work_(std::move(work)),
+          deadline_(service.options.sweep_deadline),
+          client_(first.sender.client()),
+          id_(first.id),
+          admission_(service.admission),
+          metrics_(service.metrics),
+          sweep_slot_(std::move(sweep_slot)),
+          lines_(work_.is_shared) {}
+    ~LineComputation() {
+        stop_.request_stop();
+        if (is_complete_.valid()) is_complete_.wait();
+        metrics_.count_runs(runs, impacts);
+    }
+
+    /// Sends all lines to one client. False if its connection is to be cut off.
+    bool send(Writer& out) {
+        const SweepEnd end = send_all(out);
+        metrics_.count_sweep(end);
+        return work_.how_to_go_on ? end != SweepEnd::client_left : end == SweepEnd::complete;
     }
 
     // Called by the threads that compute.
@@ -150,29 +157,36 @@ private:
         return stop_.stop_requested() || admission_.sweeps_stopped() || is_late(now);
     }
 
-    /// Starts the computation, and sends its lines. Returns whether it is complete, and their
-    /// number.
-    std::pair<bool, std::size_t> send_lines() {
-        auto computing = std::async(std::launch::async, [this] {
+    void start() {
+        started_ = Clock::now();
+        is_complete_ = std::async(std::launch::async, [this] {
             const std::shared_ptr<void> at_end(nullptr, [this](void*) { lines_.finish(); });
             return work_.compute(*this, [this](const std::string& text) { lines_.push(text); });
         });
-        try {
-            const std::size_t done = send_computed_lines();
-            return {computing.get(), done};
-        } catch (...) {
-            stop_.request_stop();  // the destructor of `computing` waits for its end
-            throw;
-        }
     }
 
-    /// Sends lines as they come, and progress between them; returns their number. Stops the
-    /// computation once the client has left.
-    std::size_t send_computed_lines() {
+    SweepEnd send_all(Writer& out) {
+        std::call_once(is_started_, [this] { start(); });
+        std::size_t done = 0;
+        if (!out.write(work_.begin) || !send_lines(out, done)) return SweepEnd::client_left;
+        SweepEnd end = SweepEnd::complete;
+        try {
+            if (!is_complete_.get())
+                end = is_late(Clock::now()) ? SweepEnd::deadline : SweepEnd::stopping;
+        } catch (...) {
+            log_failure(work_.path, id_);
+            end = SweepEnd::failed;
+        }
+        return out.connected() && out.write(last_line(end, done)) ? end : SweepEnd::client_left;
+    }
+
+    /// Sends lines as they come, and progress between them; counts them. False if the client left.
+    bool send_lines(Writer& out, std::size_t& count) {
         auto reported = started_;
+        std::size_t read = 0;
         LineQueue::Taken taken;
         do {
-            taken = lines_.take(client_check_interval);
+            taken = lines_.take(read, client_check_interval);
             const auto now = Clock::now();
             const bool due =
                 taken.finished ? bool(work_.complete) : now - reported >= report_interval;
@@ -183,10 +197,10 @@ private:
                 taken.text.insert(work_.complete ? taken.text.size() : 0, line);
                 reported = now;
             }
-            connected_ = connected_ && out_.connected() && out_.write(taken.text);
-            if (!connected_) stop_.request_stop();
+            if (!out.connected() || !out.write(taken.text)) return false;
         } while (!taken.finished);
-        return taken.count;
+        count = taken.count;
+        return true;
     }
 
     /// The last line of a stream, or the end of a table; an incomplete table has none.
@@ -204,43 +218,52 @@ private:
             done);
     }
 
-    const LineWork& work_;
-    const Clock::time_point started_ = Clock::now();
+    const LineWork work_;
     const std::chrono::duration<double> deadline_;
     const std::string client_, id_;
     AdmissionControl& admission_;
-    Writer& out_;
+    Metrics& metrics_;
+    const AdmissionControl::SweepSlot sweep_slot_;
     LineQueue lines_;
     std::stop_source stop_;
-    bool connected_ = true;
+    std::once_flag is_started_;
+    Clock::time_point started_;
+    std::shared_future<bool> is_complete_;
 };
 
-/// Sends a computation, which counts as a sweep. The response can be copied: the sweep's slot is
-/// released with the last copy, whether it was sent or not.
-Response stream_lines(LineWork lines, const Request& asked, const Service& service) {
-    AdmissionControl& admission = service.admission;
-    const auto work = std::make_shared<const LineWork>(std::move(lines));
-    const std::string client = asked.sender.client();
-    const AdmissionControl::SweepSlot sweep_slot = admission.acquire_sweep(client);
-    if (!sweep_slot) {
-        if (admission.sweeps_stopped()) return stopping_refusal();
-        const bool own_limit = admission.sweeps_left();
-        Response response = problem_response(api::Problem::unavailable(
-            "sweeps", own_limit ? "all sweeps but one are yours; wait for the end of one"
-                                : "the maximum number of sweeps is running; try again later"));
-        response.own_limit = own_limit;
-        return response;
-    }
+namespace {
+
+// A sweep of at most this many lines, with this many points of their sections, is shared. They are
+// kept until its end, in about 2 MB.
+constexpr std::size_t most_shared_lines = 1000, most_shared_points = 20'000;
+
+Response sweep_refusal(const AdmissionControl& admission) {
+    if (admission.sweeps_stopped()) return stopping_refusal();
+    const bool own_limit = admission.sweeps_left();
+    Response response = problem_response(api::Problem::unavailable(
+        "sweeps", own_limit ? "all sweeps but one are yours; wait for the end of one"
+                            : "the maximum number of sweeps is running; try again later"));
+    response.own_limit = own_limit;
+    return response;
+}
+
+/// Sends a computation, which counts as a sweep, or the lines of a running one of an equal request.
+/// The response can be copied: the sweep's slot is released with the last copy, whether it was sent
+/// or not.
+Response stream_lines(LineWork work, const Request& asked, const Service& service) {
+    const std::string key = work.path + asked.body;
+    const bool is_shared = work.is_shared;
+    const auto begin = [&]() -> std::shared_ptr<LineComputation> {
+        auto slot = service.admission.acquire_sweep(asked.sender.client());
+        if (!slot) return nullptr;
+        return std::make_shared<LineComputation>(std::move(work), asked, service, std::move(slot));
+    };
+    const auto lines = is_shared ? service.running->find_or_begin(key, begin) : begin();
+    if (!lines) return sweep_refusal(service.admission);
     return {
         .content_type = api::sweep_format_names[0].media_type,
         .headers = {{"Cache-Control", "no-store"}, {"X-Accel-Buffering", "no"}},
-        .stream = [work, client, id = asked.id, deadline = service.options.sweep_deadline,
-                   &admission, &metrics = service.metrics, sweep_slot](Writer& out) {
-            LineStream sending(*work, deadline, client, id, admission, out);
-            const SweepEnd end = sending.run();
-            metrics.count_sweep(end, sending.runs, sending.impacts);
-            return work->how_to_go_on ? end != SweepEnd::client_left : end == SweepEnd::complete;
-        }};
+        .stream = [lines](Writer& out) { return lines->send(out); }};
 }
 
 /// A sweep's lines, or the rows of `table` unless it is null.
@@ -269,6 +292,10 @@ LineWork work_of(
         },
         table ? nullptr : "request the missing indices again"};
     if (table) return work;
+    const PointOptions& options = request->plan.options;
+    const std::size_t lines = request->plan.lines.size(),
+                      each = options.section == SectionKind::none ? 0 : options.section_points;
+    work.is_shared = lines <= most_shared_lines && lines * each <= most_shared_points;
     work.progress = [=](std::size_t done, const api::RunControl& control, double seconds) {
         return api::progress_line(*request, done, control, seconds);
     };
@@ -276,6 +303,17 @@ LineWork work_of(
 }
 
 }  // namespace
+
+std::shared_ptr<LineComputation> RunningStreams::find_or_begin(
+    const std::string& request, const std::function<std::shared_ptr<LineComputation>()>& begin) {
+    const std::lock_guard lock(mutex_);
+    std::erase_if(running_, [](const auto& entry) { return entry.second.expired(); });
+    std::weak_ptr<LineComputation>& running = running_[request];
+    if (auto found = running.lock()) return found;
+    auto begun = begin();
+    running = begun;
+    return begun;
+}
 
 Response stream_sweep(
     api::SweepRequest request, api::Format format, const Request& asked, const Service& service) {

@@ -2,6 +2,12 @@
 // compute slots as background work, and stop when their client leaves.
 #pragma once
 
+#include <functional>
+#include <map>
+#include <memory>
+#include <mutex>
+#include <string>
+
 #include "api/continuation.hpp"
 #include "api/design.hpp"
 #include "api/format/sweep_table.hpp"
@@ -9,10 +15,24 @@
 
 namespace vines::http {
 
+class LineComputation;  // of a stream
+
+/// The running computations whose lines several clients can get. Thread-safe.
+class RunningStreams {
+public:
+    /// The computation of an equal request, or else the result of `begin`, which can be null.
+    std::shared_ptr<LineComputation> find_or_begin(
+        const std::string& request, const std::function<std::shared_ptr<LineComputation>()>& begin);
+
+private:
+    std::mutex mutex_;
+    std::map<std::string, std::weak_ptr<LineComputation>> running_;
+};
+
 /// A sweep as a stream of NDJSON lines, or as a table. It ends after the sweep deadline: lines with
 /// the points so far, a table with a reset connection. Problem 413 for a table beyond the answer
-/// limit; 503 if the maximum number of sweeps is running. The admission control and the metrics of
-/// the service must outlive the response.
+/// limit; 503 if the maximum number of sweeps is running. A small sweep of lines is computed once
+/// for all equal requests that come while it runs. The service must outlive the response.
 Response stream_sweep(
     api::SweepRequest request, api::Format format, const Request& asked, const Service& service);
 

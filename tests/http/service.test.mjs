@@ -167,6 +167,34 @@ test("points arrive while the sweep runs, and it stops when its client leaves", 
   assert.equal(linesOf(await next.text()).at(-1).type, "done");
 });
 
+test("equal small sweeps at once are computed once, for all clients, even if the first one leaves", async () => {
+  const one = await startService(["--sweeps", "1"]);
+  const shared = {...sweep, axes: [{...sweep.axes[0], count: 300}], cycles: 1000};
+  const leaving = new AbortController();
+  const first = (await postSweep(shared, {signal: leaving.signal}, one.url)).body.getReader();
+  for (let text = ""; !text.includes('"point"'); )
+    text += new TextDecoder().decode((await first.read()).value);
+  const others = await Promise.all(Array.from({length: 29}, () => postSweep(shared, {}, one.url)));
+  assert.equal((await postSweep({...shared, cycles: 999}, {}, one.url)).status, 503);
+  leaving.abort();
+  const answers = await Promise.all(others.map(linesOf));
+  const points = answers.map((lines) => lines.filter((line) => line.type === "point"));
+  assert.equal(points[0].length, 300);
+  for (const each of points) assert.deepEqual(each, points[0]);
+  for (const lines of answers) assert.equal(lines.at(-1).type, "done");
+  // Counts the runs of a further sweep, once it has been counted.
+  const total = async () => {
+    const text = await (await fetch(`${one.url}/metrics`)).text();
+    return Number(/^vines_sweep_runs_total (\d+)/m.exec(text)[1]);
+  };
+  await until(async () => (await total()) > 0);
+  const once = await total();
+  await (await postSweep(shared, {}, one.url)).text();
+  await until(async () => (await total()) > once);
+  assert.equal(await total(), 2 * once);
+  await one.stop();
+});
+
 test("the last line of a design is its result, after the progress", async () => {
   const base = {m1: 2, f0: 8, damping_ratio: 0.01};
   const search = {b_count: 2, f_count: 2, R: 0.2, starts: "one", cycles: 20, transient_cycles: 0};

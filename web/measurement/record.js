@@ -2,6 +2,7 @@
 import {nextTask} from "../shared/dom.js";
 import {Motion} from "../shared/motion.js";
 import {firstFrom, lastUpTo} from "../shared/numbers.js";
+import {read, write} from "../shared/store.js";
 
 const atOnce = 50000; // lines between two progress reports
 const encodings = ["utf-8", "utf-16le", "utf-16be", "windows-1252"];
@@ -253,28 +254,13 @@ export function spikeNear({t, a}, time, reach) {
   return best;
 }
 
-/** Runs act(store) on the store of records and resolves to the result of the request it returns. */
-const within = (mode, act) =>
-  new Promise((resolve, reject) => {
-    const opening = indexedDB.open("vines", 1);
-    opening.onupgradeneeded = () => opening.result.createObjectStore("records");
-    opening.onerror = () => reject(opening.error);
-    opening.onsuccess = () => {
-      const request = act(opening.result.transaction("records", mode).objectStore("records"));
-      request.onsuccess = () => resolve(request.result);
-      request.onerror = () => reject(request.error);
-    };
-  });
-
-/** Keeps a file in place of the previous one; without permission to store, nothing is kept. */
-export const keep = (file) =>
-  within("readwrite", (store) => store.put(file, "last")).catch(() => {});
+/** Keeps a file in place of the previous one. */
+export const keep = (file) => write("records", "last", file);
 
 /** The kept file if the page was reloaded, else undefined. */
 export async function afterReload() {
   const [navigation] = performance.getEntriesByType("navigation");
-  if (navigation?.type !== "reload") return undefined;
-  return within("readonly", (store) => store.get("last")).catch(() => undefined);
+  return navigation?.type === "reload" ? read("records", "last") : undefined;
 }
 
 const samplesPerCycle = 245; // about 2 kHz at 8.35 Hz, the forcing of Li et al. (2018)
