@@ -65,20 +65,6 @@ void ComparedRun::on_impact(const Impact& i) {
     deviation_ = saltation(parameters_, i).times(deviation_);  // (26)
 }
 
-void ComparedRun::on_stick(const StickStart& start) {
-    contacts.push_back(
-        {.tau = start.tau,
-         .side = start.side,
-         .stick = true,
-         .pressed = true,
-         .release = start.tau});
-}
-
-void ComparedRun::finish(const Outcome& outcome) {
-    series_.finish(outcome);
-    if (tangent.size() < series().tau.size()) tangent.push_back(deviation_.norm());
-}
-
 void ComparedRun::look_ahead(const Outcome& outcome) {
     ComparedRun ahead(parameters_, 0, {});
     simulate(

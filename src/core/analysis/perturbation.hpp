@@ -55,13 +55,18 @@ public:
     ComparedRun(const Parameters& parameters, double step, const State& deviation)
         : parameters_(parameters),
           deviation_(vector_of(deviation)),
-          step_(step),
-          series_(step) {}
+          step_(step) {}
     void on_stretch(const Stretch&) override;
     void on_impact(const Impact&) override;
-    void on_stick(const StickStart&) override;
+    void on_stick(const StickStart& s) override {
+        contacts.push_back(
+            {.tau = s.tau, .side = s.side, .stick = true, .pressed = true, .release = s.tau});
+    }
     void on_release(double tau) override { contacts.back().release = tau; }
-    void finish(const Outcome& outcome);
+    void finish(const Outcome& outcome) {
+        series_.finish(outcome);
+        if (tangent.size() < series().tau.size()) tangent.push_back(deviation_.norm());
+    }
     /// Records one more cycle, where impacts of the other run can have their counterparts.
     void look_ahead(const Outcome& outcome);
 
@@ -74,7 +79,7 @@ private:
     const Parameters parameters_;
     Eigen::Vector4d deviation_;
     const double step_;
-    SeriesRecord series_;
+    SeriesRecord series_{step_};
 };
 
 /// Interval over which the distance follows the linear theory, from the first impact on.

@@ -151,17 +151,6 @@ void Energy::on_impact(const Impact& i) {
     last_ = {after, 0, i.y_dot_after, false, last_.in_closed_form};
 }
 
-Oscillation Energy::end() const {
-    return (last_.is_stuck ? *sticking_ : free_).flow->after(last_.begin, last_.duration);
-}
-
-Integrals Energy::integrals() const {
-    Integrals sum = sum_;
-    if (last_.in_closed_form)
-        sum += (last_.is_stuck ? *sticking_ : free_).antiderivative->at(end());
-    return sum;
-}
-
 EnergyBalance Energy::balance(const Interval& reached) const {
     const Parameters& p = parameters_;
     const Integrals sum = integrals();

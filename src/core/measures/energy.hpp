@@ -95,9 +95,13 @@ private:
     double next_step_ = steps_.end_of(0);  ///< its end, in tau
 
     void add_curved(const Stretch& stretch, double from, double to);
-    Integrals integrals() const;
+    Oscillation end() const { return last_law().flow->after(last_.begin, last_.duration); }
+    Integrals integrals() const {
+        if (!last_.in_closed_form) return sum_;
+        return sum_ + last_law().antiderivative->at(end());
+    }
+    const Law& last_law() const { return last_.is_stuck ? *sticking_ : free_; }
     void add_steps(const Law& law, const Oscillation& begin, double tau, double duration);
-    Oscillation end() const;
 };
 
 /// Empty unless the denominator is positive.

@@ -122,10 +122,8 @@ std::optional<PeriodicOrbit> orbit_of(
         auto orbit = orbit_at_end(p, on.states, scale, near_return, e.stop, tried);
         if (!orbit) continue;
         const auto along = whole_cycle_states(p, *orbit);
-        if (distance(states.back(), along[phase_of(states.back(), along, scale)], scale) <
-            2 * captured_within)
-            return orbit;
-        return std::nullopt;
+        const State& nearest = along[phase_of(states.back(), along, scale)];
+        return distance(states.back(), nearest, scale) < 2 * captured_within ? orbit : std::nullopt;
     }
     return std::nullopt;
 }

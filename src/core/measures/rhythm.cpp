@@ -69,15 +69,13 @@ private:
 
 }  // namespace
 
-bool Synchrony::is_synchronised(const CountedContact& next) const {
-    return next.side != last_.side &&
-           std::abs(next.tau - last_.tau - half_cycle_) < synchrony_tolerance * half_cycle_;
-}
-
 void Synchrony::add(const CountedContact& contact) {
+    const bool is_synchronised =
+        contact.side != last_.side &&
+        std::abs(contact.tau - last_.tau - half_cycle_) < synchrony_tolerance * half_cycle_;
     if (contacts == 0) {
         alternating_from_ = free_from_ = {contact.tau, 0};
-    } else if (!is_synchronised(contact)) {
+    } else if (!is_synchronised) {
         end_alternation();
         alternating_from_ = {contact.tau, contacts};
     }
@@ -94,17 +92,6 @@ void Synchrony::end_alternation() {
     stretches.add({alternating_from_.tau, last.tau, true, half_cycles + 1});
     in_stretches += half_cycles + 1;
     free_from_ = last;
-}
-
-void Synchrony::desynchronised(const Mark& to) {
-    if (to.number > free_from_.number)
-        stretches.add({free_from_.tau, to.tau, false, to.number - free_from_.number + 1});
-}
-
-void Synchrony::finish() {
-    if (contacts == 0) return;
-    end_alternation();
-    desynchronised({last_.tau, contacts - 1});
 }
 
 void CyclePositions::add(double cycles) {

@@ -30,7 +30,12 @@ public:
         : stretches(most_stretches),
           half_cycle_(half_cycle) {}
     void add(const CountedContact& contact);
-    void finish();  ///< call after the last contact
+    /// Call after the last contact.
+    void finish() {
+        if (contacts == 0) return;
+        end_alternation();
+        desynchronised({last_.tau, contacts - 1});
+    }
 
     LastOf<SynchronyStretch> stretches;
     long contacts = 0;
@@ -43,9 +48,11 @@ private:
         double tau = 0;
         long number = 0;
     };
-    bool is_synchronised(const CountedContact& next) const;
     void end_alternation();
-    void desynchronised(const Mark& to);
+    void desynchronised(const Mark& to) {
+        if (to.number > free_from_.number)
+            stretches.add({free_from_.tau, to.tau, false, to.number - free_from_.number + 1});
+    }
 
     const double half_cycle_;
     Mark alternating_from_;

@@ -72,16 +72,10 @@ SiParameters in_si(const Parameters& p, double m1, double k1) {
     return si;
 }
 
-double Parameters::zeta() const {
-    return damping == Damping::closed_form ? epsilon * lambda : 0.5 * epsilon * lambda;
-}
-
 // Eq. (3): the base moves spring and damper.
 double Parameters::A() const { return G * elementary::hypot(1.0, lambda * epsilon * Omega); }
 
 double Parameters::phi() const { return elementary::atan(lambda * epsilon * Omega); }
-
-State default_state(const Parameters& parameters) { return {0, 0, 0, 0.95 * parameters.b}; }
 
 std::span<const ParameterRange> parameter_ranges() { return ranges; }
 

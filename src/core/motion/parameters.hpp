@@ -68,9 +68,12 @@ struct Parameters {
     /// Replaces the harmonic forcing: G is 0 then.
     std::shared_ptr<const Load> load;
 
-    double zeta() const;  ///< damping ratio of x'' + 2 zeta x' + x = ...
-    double A() const;     ///< forcing amplitude over epsilon, m, eq. (3)
-    double phi() const;   ///< forcing phase at tau = 0, eq. (3)
+    /// Damping ratio of x'' + 2 zeta x' + x = ...
+    double zeta() const {
+        return damping == Damping::closed_form ? epsilon * lambda : 0.5 * epsilon * lambda;
+    }
+    double A() const;    ///< forcing amplitude over epsilon, m, eq. (3)
+    double phi() const;  ///< forcing phase at tau = 0, eq. (3)
     double cycle() const { return 2 * std::numbers::pi / Omega; }  ///< forcing period, in tau
     /// Half a cycle of the faster of forcing and oscillator, in tau.
     double faster_half_cycle() const { return std::numbers::pi / (Omega > 1 ? Omega : 1); }
@@ -124,7 +127,7 @@ struct Fault {
 };
 
 /// The initial state of Table 1: at rest, the ball at 95 % of b.
-State default_state(const Parameters& parameters);
+inline State default_state(const Parameters& p) { return {0, 0, 0, 0.95 * p.b}; }
 
 /// All faults: ranges, the damping ratio, and |x - y| <= b at the start.
 std::vector<Fault> validate(const Parameters& parameters, const State& start);

@@ -61,11 +61,6 @@ Oscillation SampledFlow::at(double s) {
         o.cos_theta - Omega * o.sin_theta * late};
 }
 
-void SeriesRecord::expect(double tau_end) {
-    const auto samples = static_cast<std::size_t>(std::min(tau_end / step_, 1e6)) + 2;
-    for (auto* column : series.columns()) column->reserve(samples);
-}
-
 void SeriesRecord::add(double at, const State& state, double acceleration, double base) {
     series.tau.push_back(at);
     series.x.push_back(state.x);
@@ -87,11 +82,6 @@ void SeriesRecord::on_stretch(const Stretch& stretch) {
     }
     x_ddot_at_end_ = stretch.x_ddot(stretch.duration);
     base_at_end_ = base_at(stretch.duration);
-}
-
-void SeriesRecord::finish(const Outcome& outcome) {
-    if (series.tau.empty() || series.tau.back() < outcome.tau)
-        add(outcome.tau, outcome.state, x_ddot_at_end_, base_at_end_);
 }
 
 void Stroboscope::on_stretch(const Stretch& stretch) {

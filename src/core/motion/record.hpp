@@ -82,13 +82,17 @@ public:
     /// `with_base`: records x_relative.
     explicit SeriesRecord(double step, bool with_base = false)
         : step_(step),
-          with_base_(with_base),
-          free_(step),
-          sticking_(step) {}
+          with_base_(with_base) {}
     /// Reserves memory for a complete run, or for the first million samples.
-    void expect(double tau_end);
+    void expect(double tau_end) {
+        const auto samples = static_cast<std::size_t>(std::min(tau_end / step_, 1e6)) + 2;
+        for (auto* column : series.columns()) column->reserve(samples);
+    }
     void on_stretch(const Stretch&) override;
-    void finish(const Outcome& outcome);
+    void finish(const Outcome& outcome) {
+        if (series.tau.empty() || series.tau.back() < outcome.tau)
+            add(outcome.tau, outcome.state, x_ddot_at_end_, base_at_end_);
+    }
 
     Series series;
 
@@ -97,7 +101,7 @@ private:
     double step_, x_ddot_at_end_ = 0, base_at_end_ = 0;
     bool with_base_;
     long next_ = 0;
-    SampledFlow free_, sticking_;
+    SampledFlow free_{step_}, sticking_{step_};
 };
 
 /// Times at which a Stroboscope takes the state, up to `until`: tau = (k + phase/(2 pi)) 2 pi/Omega

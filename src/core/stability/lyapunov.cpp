@@ -42,14 +42,14 @@ public:
     /// Calls exponents() if its result is to be kept.
     template <class Compute>
     void add(double tau, const Compute& exponents) {
-        if (wants_next() && history_.tau.size() == capacity_) thin();
+        if (wants_next() && history.tau.size() == capacity_) thin();
         if (wants_next()) {
-            history_.tau.push_back(tau);
-            history_.lambda.push_back(exponents());
+            history.tau.push_back(tau);
+            history.lambda.push_back(exponents());
         }
         ++seen_;
     }
-    const ExponentHistory& history() const { return history_; }
+    ExponentHistory history;
 
 private:
     bool wants_next() const { return capacity_ > 0 && seen_ % stride_ == 0; }
@@ -59,12 +59,11 @@ private:
             for (std::size_t i = 0; i < column.size(); i += 2) column[kept++] = column[i];
             column.resize(kept);
         };
-        halve(history_.tau), halve(history_.lambda);
+        halve(history.tau), halve(history.lambda);
         stride_ *= 2;
     }
 
     std::size_t capacity_, seen_ = 0, stride_ = 1;
-    ExponentHistory history_;
 };
 
 /// logs / T, with -infinity beyond the rank.
@@ -312,13 +311,13 @@ Exponents TransferProduct::raw_product() const {
     return raw ? raw->exponents(end_ - start_) : no_exponents;
 }
 const ExponentHistory& TransferProduct::qr_history() const {
-    return estimators_->qr_history.history();
+    return estimators_->qr_history.history;
 }
 const ExponentHistory& TransferProduct::eigenvalues_history() const {
-    return estimators_->powers_history.history();
+    return estimators_->powers_history.history;
 }
 const ExponentHistory& TransferProduct::raw_product_history() const {
-    return estimators_->raw_history.history();
+    return estimators_->raw_history.history;
 }
 
 double TransferProduct::sum_rule_residual() const {

@@ -60,11 +60,9 @@ GrowthSteps growth_steps(const ExponentHistory& h, double tau_start, std::size_t
 }
 
 double slope_of(const GrowthSteps& steps) {
-    const std::size_t n = steps.log.size();
-    if (n < fewest_steps_of_slope) return nan;
-    double sum = 0, time = 0;
-    for (std::size_t i = 0; i < n; ++i) sum += steps.log[i], time += steps.duration[i];
-    return sum / time;
+    if (steps.log.size() < fewest_steps_of_slope) return nan;
+    const auto sum = [](const auto& v) { return std::accumulate(v.begin(), v.end(), 0.0); };
+    return sum(steps.log) / sum(steps.duration);
 }
 
 double coarse_slope(const ExponentHistory& h, double tau_start) {
