@@ -51,7 +51,7 @@ std::vector<Experiment> measured_responses() {
 
 /// Relative scatter of the times between impacts.
 double irregularity(const Experiment& e) {
-    return moments(steps_of(e.result.found.impacts)).scatter();
+    return moments(steps_of(values_of(e.result.found.impacts, &IdentifiedImpact::tau))).scatter();
 }
 
 double impacts_per_cycle(const Experiment& e) {

@@ -129,8 +129,8 @@ std::vector<double> late_changes_after(const Experiment& e) {
     double tau = e.truth.begin;
     for (int k = 0; k < following; ++k) {
         tau += T;
-        observers.push_back(
-            &stretches.emplace_back(p, tau, tau + T, ExponentOptions{.eigenvalues = true}));
+        observers.push_back(&stretches.emplace_back(
+            p, Interval{tau, tau + T}, ExponentOptions{.eigenvalues = true}));
     }
     simulate(
         p, default_state(p), {.tau_end = tau + T, .max_impacts = std::numeric_limits<long>::max()},
