@@ -48,6 +48,13 @@ public:
           control_(control),
           most_bytes_(most_bytes) {
         find_placeholders(answer, lists_);
+        // Allocated once: the allocator would keep the memory of smaller vectors.
+        std::size_t all = 0, largest = 0;
+        for (const Placeholder& list : lists_) {
+            all += size_of(list);
+            largest = std::max(largest, size_of(list));
+        }
+        bytes_.reserve(std::max(largest, std::min(all, most_bytes_)));
     }
 
     PackedList next() {
@@ -72,7 +79,6 @@ private:
             if (bytes > 0 && bytes + size > most_bytes_) break;
             bytes += size;
         }
-        bytes_ = {};  // freed before the next are allocated
         bytes_.resize(bytes);
         at_ = 0;
         const AnalysisRequest& w = run_.wanted;

@@ -177,7 +177,7 @@ test("equal small sweeps at once are computed once, for all clients, even if the
   const others = await Promise.all(Array.from({length: 29}, () => postSweep(shared, {}, one.url)));
   assert.equal((await postSweep({...shared, cycles: 999}, {}, one.url)).status, 503);
   leaving.abort();
-  const answers = await Promise.all(others.map(linesOf));
+  const answers = await Promise.all(others.map(async (each) => linesOf(await each.text())));
   const points = answers.map((lines) => lines.filter((line) => line.type === "point"));
   assert.equal(points[0].length, 300);
   for (const each of points) assert.deepEqual(each, points[0]);
