@@ -284,6 +284,20 @@ void complete_cells(
     else if (cells.size() != columns) fault_of_length(line, cells.size(), columns);
 }
 
+/// Room for lines like the first: columns of a large record are not copied as they grow.
+void reserve(Csv& csv, std::size_t rows) {
+    for (CsvColumn& column : csv.columns) column.values.reserve(rows);
+    csv.lines.reserve(rows);
+}
+
+[[noreturn]] void refuse_empty(const Heading& heading) {
+    throw Problem(
+        422, heading.has_something()
+                 ? "the record has no line of two or more numbers, separated by semicolons, tabs, "
+                   "commas or blanks"
+                 : "the record is empty: it needs a header and lines of numbers");
+}
+
 }  // namespace
 
 Csv parse_csv(std::string_view bytes, const ReadLimits& limits) {
@@ -309,10 +323,7 @@ Csv parse_csv(std::string_view bytes, const ReadLimits& limits) {
                 continue;
             }
             csv.columns = heading.columns(line, cells_of(line.text, *separator).size(), *separator);
-            // Room for lines like this one: columns of a large record are not copied as they grow.
-            const std::size_t rows = rest.size() / (line.text.size() + 1) + 2;
-            for (CsvColumn& column : csv.columns) column.values.reserve(rows);
-            csv.lines.reserve(rows);
+            reserve(csv, rest.size() / (line.text.size() + 1) + 2);
         } else if (comment_of(line.text)) {
             continue;
         }
@@ -343,12 +354,7 @@ Csv parse_csv(std::string_view bytes, const ReadLimits& limits) {
         }
         csv.lines.push_back(static_cast<std::uint32_t>(line.number));
     }
-    if (csv.columns.empty())
-        throw Problem(
-            422, heading.has_something()
-                     ? "the record has no line of two or more numbers, separated by semicolons, "
-                       "tabs, commas or blanks"
-                     : "the record is empty: it needs a header and lines of numbers");
+    if (csv.columns.empty()) refuse_empty(heading);
     return csv;
 }
 

@@ -109,7 +109,7 @@ public:
           metrics_(service.metrics),
           sweep_slot_(std::move(sweep_slot)),
           lines_(work_.is_shared) {}
-    ~LineComputation() {
+    ~LineComputation() override {
         stop_.request_stop();
         if (is_complete_.valid()) is_complete_.wait();
         metrics_.count_runs(runs, impacts);
@@ -286,7 +286,7 @@ LineWork work_of(
         {},
         [=](std::size_t done) {
             if (table) return table->end(*warning);
-            const std::string last = api::done_line(done, request.get());
+            std::string last = api::done_line(done, request.get());
             if (warning->empty()) return last;
             return api::json_line({{"type", "warning"}, {"message", *warning}}) + last;
         },
