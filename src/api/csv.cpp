@@ -10,6 +10,7 @@
 #include <set>
 
 #include "api/parse.hpp"
+#include "core/motion/elementary.hpp"
 
 namespace vines::api {
 
