@@ -23,7 +23,7 @@ struct Head {
     bool takes_chunks = true;       ///< an answer without a length can be sent in chunks
     bool expects_continue = false;  ///< the client waits for 100 before it sends the body
 
-    /// Of the target, not decoded.
+    /// The path of the target, not decoded.
     std::string_view path() const { return std::string_view(target).substr(0, target.find('?')); }
     std::string_view query() const;  ///< after the "?"
     /// The value of a header by its name in lower case; empty if missing.

@@ -116,7 +116,7 @@ void Outbox::cancel() {
 bool Outbox::client_is_slow(Clock::time_point now, bool scarce) {
     const std::lock_guard lock(mutex_);
     const auto wait = waited_ + (blocked_ ? now - blocked_since_ : Clock::duration(0));
-    // What the client's system has received: bytes in the socket's buffer are not read yet.
+    // Bytes that the client's system has received: those in the socket's buffer are not read yet.
     const std::size_t all = before_ + sent_;
     const auto bytes = static_cast<double>(all - std::min(all, queued()));
     const std::chrono::duration<double> waited = wait - std::exchange(counted_wait_, wait);

@@ -251,14 +251,13 @@ Response sweep_refusal(const AdmissionControl& admission) {
 /// The response can be copied: the sweep's slot is released with the last copy, whether it was sent
 /// or not.
 Response stream_lines(LineWork work, const Request& asked, const Service& service) {
-    const std::string key = work.path + asked.body;
-    const bool is_shared = work.is_shared;
     const auto begin = [&]() -> std::shared_ptr<LineComputation> {
         auto slot = service.admission.acquire_sweep(asked.sender.client());
         if (!slot) return nullptr;
         return std::make_shared<LineComputation>(std::move(work), asked, service, std::move(slot));
     };
-    const auto lines = is_shared ? service.running->find_or_begin(key, begin) : begin();
+    const auto lines =
+        work.is_shared ? service.running->find_or_begin(work.path + asked.body, begin) : begin();
     if (!lines) return sweep_refusal(service.admission);
     return {
         .content_type = api::sweep_format_names[0].media_type,

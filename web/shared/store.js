@@ -13,7 +13,8 @@ const within = (name, mode, act) =>
       for (const each of names)
         if (!result.objectStoreNames.contains(each)) result.createObjectStore(each);
     };
-    opening.onerror = () => reject(opening.error);
+    // An older page in another tab can block the upgrade.
+    opening.onerror = opening.onblocked = () => reject(opening.error);
     opening.onsuccess = () => {
       const request = act(opening.result.transaction(name, mode).objectStore(name));
       request.onsuccess = () => resolve(request.result);

@@ -42,7 +42,7 @@ inline constexpr Range any_number{-1e300, 1e300};
 /// The unit of a dimensionless number.
 inline constexpr const char* dimensionless = "dimensionless";
 
-/// What a field holds.
+/// The values that a field can hold.
 struct FieldKind {
     FieldType type;
     std::string unit, symbol;

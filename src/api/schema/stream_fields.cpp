@@ -180,8 +180,7 @@ const FieldTable& continue_fields() {
           "further cycles in which the motion must settle"},
          {"resolution", number({1e-5, 1}, dimensionless), 0.01,
           "largest step of the parameter as a fraction of its range; steps are shorter where "
-          "the "
-          "orbit changes fast"},
+          "the orbit changes fast"},
          {"points", integer({2, 100000}, dimensionless), 2000,
           "largest number of points of a branch"},
          {"switch", integer({0, 6}, dimensionless), 0,

@@ -139,7 +139,7 @@ struct AnalysisConclusion {
 
     void warn(const Warning& warning) { a.warnings.push_back(warning); }
 
-    /// Of this run, and of the perturbed one.
+    /// The series, and a warning if it or that of the perturbed run is thinned.
     void series() {
         const double step = series_step(w), cycle = w.parameters.cycle();
         if (step > cycle / w.samples_per_cycle)

@@ -104,7 +104,7 @@ struct JointFitState : JointFitInput {
     /// The motion is still zero, so only unknowns that are linear in it are fitted.
     bool is_first_step = false;
     JointEquations equations{0, 0};  ///< of the current step
-    // Of the last step that was solved:
+    // Results of the last step that was solved:
     std::vector<JointEquations::OfInterval> interval_equations = {};
     std::vector<double> time_errors = {};
     JointFit fit = {};
@@ -165,12 +165,14 @@ public:
     /// First column of an effect; -1 if it is not tested.
     Eigen::Index first_of(Effect effect) const;
 
-    /// Of the displacement, or the acceleration, at sample time tau; `row`: motion of interval i.
+    /// Derivatives of a sample at time tau: displacement or acceleration; `row`: motion of interval
+    /// i.
     const Eigen::VectorXd& sample(bool of_x, std::size_t i, double tau, const MotionRow& row);
-    /// Of x, x' or x'' of the motion of interval i at tau.
+    /// Derivatives of x, x' or x'' of the motion of interval i at tau.
     const Eigen::VectorXd& motion(
         std::size_t i, double tau, const MotionRow& row, double OscillatorMotion::* member);
-    /// Of y' at the start (+1) or the end (-1) of the flight between borders p and p + 1.
+    /// Derivatives of y' at the start (+1) or the end (-1) of the flight between borders p and p
+    /// + 1.
     double flight(std::size_t p, double sign) const;
     double mean_speed = 0;  ///< mean of |x' - y'| before the impacts
 

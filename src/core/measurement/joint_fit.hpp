@@ -102,7 +102,7 @@ struct FittedEffect {
 
 /// Residual of one sensor; empty without it.
 struct SensorResidual {
-    /// Of each sample: displacements in the sensor's own scale, accelerations with their pulses.
+    /// One per sample: displacements in the sensor's own scale, accelerations with their pulses.
     std::vector<double> left;
     double noise = 0;  ///< its standard deviation; NaN without the sensor
     /// Its standard deviation over that of its part unrelated to the motion (joint_fit.cpp): 1 if

@@ -59,7 +59,7 @@ SlowState part_of_state(
     return by.allFinite() ? SlowState(by.tail<2>()) : SlowState::Zero();
 }
 
-/// Variance of the sum of correlated steps of mean zero, after a fit of so many degrees of freedom.
+/// Variance of the sum of correlated steps of mean zero, after a fit of `fitted` values.
 double variance_with_fit(const std::vector<double>& off, std::size_t fitted) {
     const double n = count_of(off);
     const int lags = std::max(1, static_cast<int>(dependent * n));

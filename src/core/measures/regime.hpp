@@ -26,7 +26,8 @@ struct Capture {
     /// the run's end if the run was continued. Empty if the run ends on its way to the orbit.
     std::optional<double> tau;
     Exponents after;  ///< from the Floquet multipliers
-    /// By qr from the first impact to tau or to the end; NaN if too few impacts or not examined.
+    /// Exponents by qr from the first impact to tau or to the end; NaN if too few impacts or not
+    /// examined.
     Exponents before = no_exponents;
     /// Chaos before is shown, by its exponents or a part of their history.
     std::optional<bool> chaotic_before = {};

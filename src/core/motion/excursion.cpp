@@ -69,7 +69,8 @@ struct PeakSearch {
     double peak() {
         known = std::max(known, std::abs(o.x));
         if (bounds.x <= known) return known;
-        // By rule 1 of contact_search.hpp, from blocks of cells to cells to an extremum in a cell.
+        // Rule 1 of contact_search.hpp, applied from blocks of cells to cells to an extremum in a
+        // cell.
         const double width = Flow::block * h, more = bounds.x_ddot * (width * width / 8);
         double left = o.x;
         const int blocks = cells / Flow::block;

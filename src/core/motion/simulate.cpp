@@ -275,7 +275,7 @@ private:
         chatter_ = i.side == last_side_ && pressed ? chatter_ + 1 : 1;
         last_side_ = i.side;
         ++impacts_;
-        // As a whole: a read that spans several separate writes waits for the cache.
+        // Stored as a whole: a read that spans several separate writes waits for the cache.
         lo_ = {i.x, i.x_dot_after, i.sin_theta, i.cos_theta};
         y_dot_ = i.y_dot_after;
         relative_speed_ = i.relative_speed_after;

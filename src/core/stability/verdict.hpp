@@ -35,7 +35,7 @@ struct Growth {
     Exponents standard_error;  ///< of all four exponents
     /// Sum of the first exponent's logarithms over the window and over its second half.
     double whole, late;
-    /// Of lambda1 (mean_error.hpp).
+    /// The statistic of mean_error.hpp, for lambda1.
     double difference_of_halves = nan;
 };
 Growth growth_of(const TransferProduct& product);
