@@ -13,7 +13,7 @@ namespace vines::test {
 namespace {
 
 constexpr double rate = 2048, settling = 20, seconds = 12, pulse_seconds = 0.8e-3, noise_x = 2e-6,
-                 noise_a = 0.05, compared = 0.01;
+                 noise_a = 0.05, compared = 0.01, slowest = 1e-6;
 constexpr int steps_per_sample = 4, bisections = 45;
 
 using Motion = std::array<double, 4>;  // x, x', y, y'
@@ -49,8 +49,9 @@ public:
     void advance(double h) {
         while (h > 0) {
             const Motion next = step(tau_, state_, h);
-            if (!is_outside(next)) {
+            if (stuck_ != 0 || !is_outside(next)) {
                 state_ = next, tau_ += h;
+                if (stuck_ * x_ddot() < 0) stuck_ = 0;
                 return;
             }
             double inside = 0, outside = h;
@@ -75,6 +76,11 @@ private:
     Motion derivative(double tau, const Motion& m) const {
         const double forcing = forcing_at(p_, omega0_, o_, tau), slip = m[3] > m[1] ? 1 : -1,
                      stiffness = 1 + o_.cubic * m[0] * m[0] / (compared * compared);
+        if (stuck_ != 0) {
+            const double x_ddot =
+                (forcing - stiffness * m[0] - 2 * p_.zeta() * m[1]) / (1 + p_.epsilon);
+            return {m[1], x_ddot, m[1], x_ddot};
+        }
         return {
             m[1], forcing - stiffness * m[0] - 2 * p_.zeta() * m[1] + p_.epsilon * friction_ * slip,
             m[3], -friction_ * slip};
@@ -88,7 +94,8 @@ private:
             to[i] = m[i] + h / 6 * (a[i] + 2 * b[i] + 2 * c[i] + d[i]);
         return to;
     }
-    /// False if the ball moves away from the wall already.
+    /// False if the ball moves away from the wall already. The last impact of a chatter is the
+    /// first one with a negligible speed.
     bool collide() {
         Impact i{};
         i.tau = tau_, i.side = state_[0] > state_[2] ? 1 : -1, i.x = state_[0];
@@ -98,6 +105,7 @@ private:
         i.relative_speed_before = w;
         i.R = p_.restitution(i.side, 0) * (1 + o_.R_slope * std::abs(w) * omega0_) +
               o_.R_scatter * standard_normal(engine_);
+        if (std::abs(w) < slowest && i.side * x_ddot() > 0) stuck_ = i.side;
         const double centre = (state_[1] + p_.epsilon * state_[3]) / (1 + p_.epsilon);
         state_[1] = i.x_dot_after = centre - p_.epsilon * i.R * w / (1 + p_.epsilon);
         state_[3] = i.y_dot_after = centre + i.R * w / (1 + p_.epsilon);
@@ -111,6 +119,7 @@ private:
     Motion state_;
     const double friction_;
     double tau_ = 0;
+    int stuck_ = 0;
     std::mt19937_64 engine_{5};
 };
 
@@ -181,7 +190,7 @@ Experiment unmodelled_experiment(double b, const UnmodelledEffects& o) {
     const SiParameters table_4{4.168, 3.02, 11.47e3, 0.032, 0, 0};
     Parameters p;
     p.epsilon = table_4.epsilon(), p.lambda = table_4.lambda(), p.G = 0.01, p.b = b;
-    p.R_plus = p.R_minus = 0.85;
+    p.R_plus = p.R_minus = o.R;
     const double omega0 = table_4.omega0(), sample = omega0 / rate;
     Experiment e{p, omega0, {}, {}, {}, nan, p, Verdict::not_decided};
     UnmodelledRun run(p, omega0, o);

@@ -11,6 +11,7 @@
 namespace vines::test {
 
 struct UnmodelledEffects {
+    double R = 0.85;               ///< restitution coefficient of both walls
     double second = 0, third = 0;  ///< forcing at 2 f and 3 f, relative to that at f
     /// Of the forcing's amplitude, relative, and of its phase, rad, with this many cycles over the
     /// record.
@@ -33,7 +34,7 @@ struct UnmodelledCase {
 /// One effect each.
 std::vector<UnmodelledCase> unmodelled_cases();
 
-/// Table 4's oscillator with R = .85, 20 s after rest; 12 s at 2048 Hz with the default noise and
+/// Table 4's oscillator, 20 s after rest; 12 s at 2048 Hz with the default noise and
 /// pulses of Sensors. Experiment::lambda1 and verdict are not set.
 Experiment unmodelled_experiment(double b, const UnmodelledEffects& effects);
 

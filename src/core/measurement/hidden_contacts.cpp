@@ -2,14 +2,41 @@
 
 #include <algorithm>
 #include <cmath>
+#include <complex>
 
 #include "core/motion/elementary.hpp"
+#include "core/motion/load.hpp"
 
 namespace vines {
 
-IdentifiedSystem::IdentifiedSystem(const Parameters& p, const UnknownValues& v, double tau_zero)
+namespace {
+
+/// The forcing as a load of a run whose time starts at the excess' begin and runs `faster`.
+Load load_of(const LoadResponse::Excess& excess, const UnknownValues& v, double faster) {
+    using Complex = std::complex<double>;
+    const Complex amplitude(v[Unknown::force_cos], -v[Unknown::force_sin]);
+    const double step = 0.5 * excess.step, square = faster * faster;
+    std::vector<LoadNode> nodes;
+    for (std::size_t n = 0; n < excess.at.size(); ++n) {
+        const auto sine =
+            elementary::phasor(v[Unknown::Omega] * (excess.begin + step * static_cast<double>(n)));
+        // Differences of fourth order; the outermost nodes lie beyond the record.
+        const Complex* at = &excess.at[std::clamp<std::size_t>(n, 2, excess.at.size() - 3)];
+        const Complex rate = (8.0 * (at[1] - at[-1]) - (at[2] - at[-2])) / (12 * step);
+        nodes.push_back(
+            {(amplitude * (sine + excess.at[n])).real() / square,
+             (amplitude * (Complex(0, v[Unknown::Omega]) * sine + rate)).real() /
+                 (square * faster)});
+    }
+    return {faster * step, nodes};
+}
+
+}  // namespace
+
+IdentifiedSystem::IdentifiedSystem(
+    const Parameters& p, const UnknownValues& v, double tau_zero, const MeasuredLoad* load)
     : values(v),
-      flows(v, false),
+      flows(v, false, p.epsilon, load),
       own(p),
       faster(std::sqrt(v[Unknown::stiffness])),
       tau_zero(tau_zero) {
@@ -17,12 +44,16 @@ IdentifiedSystem::IdentifiedSystem(const Parameters& p, const UnknownValues& v, 
     own.lambda = std::max(0.0, v[Unknown::damping] / (faster * p.epsilon));
     own.G = G_of(own, v[Unknown::force_sin], v[Unknown::force_cos]) / (faster * faster);
     own.friction /= faster * faster;
+    if (!flows.excess) return;
+    own.G = 0;
+    own.load = std::make_shared<const Load>(load_of(*flows.excess, v, faster));
 }
 
 // simulate() counts the forcing's phase from eq. (3); the measurement has its own phase.
 double IdentifiedSystem::start_of(double tau) const {
+    if (flows.excess) return faster * (tau - tau_zero - flows.excess->begin);
     return std::fmod(
-        faster * (tau - tau_zero) + (flows.phase - own.phi()) / own.Omega, own.cycle());
+        faster * (tau - tau_zero) + (flows.free.phase - own.phi()) / own.Omega, own.cycle());
 }
 
 Outcome IdentifiedSystem::run(
@@ -37,7 +68,7 @@ OscillatorMotion IdentifiedSystem::free_motion(
     const double pull = faster * faster * own.epsilon * own.friction;
     const FittedInterval interval{
         from.tau, from.x, from.x_dot, false, Sliding::between(from_side, to_side), pull};
-    return IntervalMotion(flows, values, tau_zero, interval).at(tau - from.tau, false).value;
+    return IntervalMotion(flows.free, values, tau_zero, interval).at(tau - from.tau, false).value;
 }
 
 Impact IdentifiedSystem::measured(Impact i, double tau) const {
@@ -82,7 +113,7 @@ struct RunContacts : Observer {
     }
     void on_stretch(const Stretch& s) override {
         if (s.sticking_side == 0) return;
-        const Oscillation end = s.flow.after(s.start, s.duration);
+        const State end = s.at(s.duration);
         const double at = system.measured_time(s.tau + s.duration, tau);
         stuck = Release{at, end.x, end.x_dot * system.faster};
     }

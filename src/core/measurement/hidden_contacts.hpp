@@ -17,8 +17,10 @@ namespace vines {
 /// The identified system, prepared for runs from any time of the measurement.
 struct IdentifiedSystem {
     /// `parameters`: with the identified b, R of each wall and Omega. `values`: forcing (phase at
-    /// `tau_zero`), stiffness and damping.
-    IdentifiedSystem(const Parameters& parameters, const UnknownValues& values, double tau_zero);
+    /// `tau_zero`), stiffness and damping. `load`: null if the forcing is a sine.
+    IdentifiedSystem(
+        const Parameters& parameters, const UnknownValues& values, double tau_zero,
+        const MeasuredLoad* load);
 
     /// Runs from `tau` on; `state` and `limits` in the measurement's units. Observers see the run's
     /// own time, which starts at start_of(tau) and runs `faster`.
@@ -36,7 +38,7 @@ struct IdentifiedSystem {
     }
 
     const UnknownValues values;
-    const OscillatorFlows flows;
+    const IntervalFlows flows;
     Parameters own;  ///< in the run's own time
     double faster;   ///< units of the run's own time per unit of tau
     double tau_zero;

@@ -210,7 +210,7 @@ void insert_missing_impacts(
     const Look& look) {
     UnknownValues values = given_unknowns(p);
     values[Unknown::force_sin] = forcing.sin, values[Unknown::force_cos] = forcing.cos;
-    const IdentifiedSystem system(listed_system(p, impacts), values, 0);
+    const IdentifiedSystem system(listed_system(p, impacts), values, 0, nullptr);
     const HiddenContactLimits limits = hidden_contact_limits(forcing, impacts);
     insert_hidden(hidden_contacts(system, limits, impacts, {}, look), impacts);
 }

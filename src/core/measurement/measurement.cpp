@@ -330,7 +330,7 @@ MeasurementResult evaluate_measurement(const Measurement& m, const Identificatio
     std::optional<IdentifiedSystem> system;
     std::vector<HiddenContacts> hidden;
     if (refined) {
-        system.emplace(p, values, refined->fit.tau_middle);
+        system.emplace(p, values, refined->fit.tau_middle, m.forcing.load.get());
         hidden = hidden_contacts(*system, refined->hidden_contact_limits, found.impacts);
         insert_hidden(hidden, found.impacts);
         complete_impacts(p, found.impacts, refined->pulse.length());

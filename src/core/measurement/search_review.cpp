@@ -296,7 +296,8 @@ bool add_hidden_contacts(ImpactSearch& s) {
     ShownImpacts shown = shown_impacts(s);
     const double typical = typical_jump(s.candidates);
     const IdentifiedSystem system(
-        identified_parameters(s), s.found.fit.values, s.found.fit.tau_middle);
+        identified_parameters(s), s.found.fit.values, s.found.fit.tau_middle,
+        s.measurement.forcing.load.get());
     s.found.hidden_contact_limits = {
         .tolerance = hidden_tolerance * typical,
         .typical_flight = (s.record.tau.back() - s.record.tau.front()) / count_of(shown.impacts),

@@ -108,10 +108,19 @@ void HalfCycles::on_stretch(const Stretch& stretch) {
 
 void HalfCycles::pass(const Stretch& stretch, double from, double to) {
     if (!(from < to)) return;
-    const Oscillation begin = stretch.flow.after(stretch.start, from);
-    peak_ = peak_beyond(peak_, stretch.flow, begin, to - from);
-    path_ += stretch.sticking_side == 0 ? std::abs(stretch.y_dot) * (to - from)
-                                        : path_length(stretch.flow, begin, to - from);
+    const Flow& flow = stretch.flow;
+    const Polynomial shift = stretch.shift();
+    peak_ = shift.is_zero() ? peak_beyond(peak_, flow, flow.after(stretch.start, from), to - from)
+                            : peak_beyond(peak_, flow, stretch.start, shift, from, to);
+    if (stretch.is_joint()) {
+        path_ += path_length(flow, stretch.start, shift, from, to);
+        return;
+    }
+    // Gravity and friction turn the ball once at most.
+    const double y_ddot = stretch.forces ? stretch.forces->y_ddot : 0,
+                 turn = y_ddot == 0 ? from : std::clamp(-stretch.y_dot / y_ddot, from, to);
+    path_ += std::abs(stretch.at(turn).y - stretch.at(from).y) +
+             std::abs(stretch.at(to).y - stretch.at(turn).y);
 }
 
 }  // namespace vines

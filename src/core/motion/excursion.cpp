@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <optional>
 
 #include "core/motion/flow.hpp"
 
@@ -54,6 +55,45 @@ void visit_extrema(
     middle = at(d);
     part(left, d, middle);
     part(middle, width - d, right);
+}
+
+/// Visits x of the motion of a flow plus a polynomial: at the start, at its extrema, at the end.
+template <class Visit>
+void visit_extrema(
+    const Flow& flow, const Oscillation& start, const Polynomial& shift, double from, double to,
+    const Visit& visit) {
+    struct Point {
+        double s, x, x_dot, x_ddot;
+    };
+    const auto at = [&](double s) {
+        const Oscillation o = flow.after(start, s);
+        return Point{
+            s, o.x + shift.at(s), o.x_dot + shift.rate(s), flow.acceleration(o) + shift.second(s)};
+    };
+    // By bisection to a width at which x differs from its extremum by an ulp.
+    const auto zero_of = [&](double Point::* member, Point low, Point high) {
+        while (high.s - low.s > 1e-8 * flow.cell()) {
+            const Point middle = at(0.5 * (low.s + high.s));
+            (signs_differ(low.*member, middle.*member) ? high : low) = middle;
+        }
+        return low;
+    };
+    const auto part = [&](const Point& left, const Point& right) {
+        if (signs_differ(left.x_dot, right.x_dot)) visit(zero_of(&Point::x_dot, left, right).x);
+    };
+    Point left = at(from);
+    visit(left.x);
+    while (left.s < to) {
+        const Point right = at(std::min(to, left.s + flow.cell()));
+        if (signs_differ(left.x_ddot, right.x_ddot)) {
+            const Point middle = zero_of(&Point::x_ddot, left, right);
+            part(left, middle), part(middle, right);
+        } else {
+            part(left, right);
+        }
+        left = right;
+    }
+    visit(left.x);
 }
 
 /// Search for the peak over one grid length: the motion from o, for at most the reach of the flow.
@@ -152,52 +192,19 @@ double peak_beyond(double known, const Flow& flow, Oscillation o, double duratio
 double peak_beyond(
     double known, const Flow& flow, const Oscillation& start, const Polynomial& shift, double from,
     double to) {
-    const auto motion = [&](double s) {
-        const Oscillation o = flow.after(start, s);
-        return std::array{o.x + shift.at(s), o.x_dot + shift.rate(s)};
-    };
-    double s = from;
-    auto left = motion(s);
-    known = std::max(known, std::abs(left[0]));
-    while (s < to) {
-        const double next = std::min(to, s + flow.cell());
-        const auto right = motion(next);
-        known = std::max(known, std::abs(right[0]));
-        if (signs_differ(left[1], right[1])) {
-            // Bisection to a width at which x differs from its extremum by an ulp.
-            double low = s, high = next;
-            while (high - low > 1e-8 * flow.cell()) {
-                const double middle = 0.5 * (low + high);
-                (signs_differ(left[1], motion(middle)[1]) ? high : low) = middle;
-            }
-            known = std::max(known, std::abs(motion(low)[0]));
-        }
-        s = next, left = right;
-    }
+    visit_extrema(
+        flow, start, shift, from, to, [&](double x) { known = std::max(known, std::abs(x)); });
     return known;
 }
 
-double path_length(const Flow& flow, Oscillation o, double duration) {
-    double path = 0, last = o.x;
-    const auto visit = [&](double x) {
-        path += std::abs(x - last);
+double path_length(
+    const Flow& flow, const Oscillation& start, const Polynomial& shift, double from, double to) {
+    double path = 0;
+    std::optional<double> last;
+    visit_extrema(flow, start, shift, from, to, [&](double x) {
+        path += std::abs(x - last.value_or(x));
         last = x;
-    };
-    while (duration > 0) {
-        const double part = std::min(duration, flow.reach());
-        const int cells = std::min(static_cast<int>(part / flow.cell()), Flow::cells);
-        Oscillation left = o;
-        for (int k = 1; k <= cells; ++k) {
-            const Oscillation right = flow.at(o, k);
-            visit_extrema(flow, left, flow.cell(), right, visit);
-            left = right;
-        }
-        const double d = std::max(0.0, part - cells * flow.cell());
-        o = flow.after(left, d);
-        visit_extrema(flow, left, d, o, visit);
-        visit(o.x);
-        duration -= part;
-    }
+    });
     return path;
 }
 

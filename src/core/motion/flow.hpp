@@ -287,8 +287,9 @@ double peak_beyond(
     double known, const Flow& flow, const Oscillation& start, const Polynomial& shift, double from,
     double to);
 
-/// Total variation of x over 0 <= s <= duration, in m.
-double path_length(const Flow& flow, Oscillation start, double duration);
+/// Total variation of x of that motion, in m.
+double path_length(
+    const Flow& flow, const Oscillation& start, const Polynomial& shift, double from, double to);
 
 /// Caches a pure function of a few numbers for its most recent keys; a new entry replaces the
 /// oldest. Declare it thread_local: no lock, and a thread's results do not depend on other threads.

@@ -51,6 +51,14 @@ struct BaseMotion {
     }
 };
 
+/// The cubic from one node to another, a time h later.
+Polynomial cubic(const LoadNode& from, const LoadNode& to, double h) {
+    const double mean = (to.value - from.value) / h;
+    return {
+        from.value, from.rate, (3 * mean - 2 * from.rate - to.rate) / h,
+        (from.rate + to.rate - 2 * mean) / (h * h)};
+}
+
 /// A base coasts or stays at the value `last`, a force ends.
 Polynomial after_end(LoadKind kind, const BaseMotion& motion, const Polynomial& last) {
     if (kind == LoadKind::base_displacement) return last;
@@ -100,6 +108,12 @@ Load::Load(
     add_piece(duration, after_end(kind, motion, value));
 }
 
+Load::Load(double step, const std::vector<LoadNode>& nodes) : kind_(LoadKind::force), width_(4) {
+    for (std::size_t n = 0; n + 1 < nodes.size(); ++n)
+        add_piece(step * static_cast<double>(n), cubic(nodes[n], nodes[n + 1], step));
+    add_piece(step * static_cast<double>(nodes.size() - 1), {0});
+}
+
 double Load::response_reach(double damping) const {
     const bool is_formula = !harmonics_.empty() || width_ == Polynomial::most;
     return is_formula ? longest_formula_step / std::max(1.0, damping) : infinity;
@@ -147,10 +161,9 @@ Load Load::noise(
     double largest = 0;
     for (std::size_t n = 0; n < N; ++n) {
         const auto from = motion[n], to = motion[(n + 1) % N];
-        const double x = place + from.real(), v = from.imag(), mean = (to.real() - from.real()) / h;
-        load.add_piece(
-            h * static_cast<double>(n),
-            {x, v, (3 * mean - 2 * v - to.imag()) / h, (v + to.imag() - 2 * mean) / (h * h)});
+        Polynomial piece = cubic({from.real(), from.imag()}, {to.real(), to.imag()}, h);
+        piece.c[0] += place;
+        load.add_piece(h * static_cast<double>(n), piece);
         largest = std::max(largest, std::abs(second[n].real()));
     }
     load.add_piece(duration, {place + motion[0].real()});

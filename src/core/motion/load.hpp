@@ -23,6 +23,11 @@ struct LoadHarmonic {
     double amplitude, Omega, phase;
 };
 
+/// A value and its derivative by tau.
+struct LoadNode {
+    double value, rate;
+};
+
 /// After its end an acceleration or force is zero; a displacement stays.
 class Load {
 public:
@@ -35,6 +40,8 @@ public:
     Load(
         LoadKind kind, double amplitude, double duration,
         const std::function<Polynomial(double tau)>& theta);
+    /// A force: cubics through nodes at equidistant times from 0 on, at least two.
+    Load(double step, const std::vector<LoadNode>& nodes);
     /// Normally distributed acceleration of the base with the frequencies k 2 pi/duration between
     /// Omega_low and Omega_high, at least one. The base begins and ends at rest, at the same place.
     static Load noise(

@@ -176,6 +176,32 @@ TEST_CASE("a measured forcing is the load: its modulation, harmonics and sweeps 
         }
 }
 
+TEST_CASE("hidden contacts and the run of the identified system follow a measured forcing") {
+    for (const double R : {0.3, 0.85}) {
+        CAPTURE(R);
+        const UnmodelledEffects effects{.R = R, .second = 0.05, .amplitude_modulation = 0.03};
+        const Experiment e = unmodelled_experiment(0.012, effects);
+        Measurement m = measurement_of(e);
+        m.forcing.load = load_of(unmodelled_channel(e, effects, ForcingKind::force, 0.02));
+        const MeasurementResult r = evaluate_measurement(m);
+        check_values(e, r, mean_amplitude(effects));
+        CHECK(r.doubts.empty());
+        CHECK(r.found.b_error < 2e-3 * e.true_parameters.b);
+        const auto found = std::ranges::count_if(e.impacts, [&](const Impact& i) {
+            return std::ranges::any_of(r.found.impacts, [&](const IdentifiedImpact& j) {
+                return std::abs(j.tau - i.tau) < 1.5e-3 * e.omega0;
+            });
+        });
+        CHECK(static_cast<double>(found) >= 0.98 * static_cast<double>(e.impacts.size()));
+        // Deviations double from impact to impact at R = .3.
+        for (std::size_t k = 0; k < (R < 0.5 ? 3 : 8); ++k) {
+            const double tau = r.forward->impacts[k].tau;
+            CHECK(std::ranges::any_of(
+                e.impacts, [tau](const Impact& i) { return std::abs(i.tau - tau) < 0.006; }));
+        }
+    }
+}
+
 TEST_CASE("with a measured forcing zeta is fitted under modulation") {
     const UnmodelledEffects effects{.amplitude_modulation = 0.03};
     Experiment e = unmodelled_experiment(0.015, effects);

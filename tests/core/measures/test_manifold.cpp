@@ -6,6 +6,7 @@
 
 #include "../support.hpp"
 #include "core/measures/manifold.hpp"
+#include "core/motion/load.hpp"
 #include "core/stability/exterior.hpp"
 
 using namespace vines;
@@ -135,22 +136,33 @@ TEST_CASE(
 
 TEST_CASE(
     "half cycles hold the mean speed of the ball and the peak of the oscillator, including "
-    "sticking phases") {
-    const Parameters p = table1(0.015, Damping::closed_form);
-    HalfCycles points(p, {0, 60});  // includes the sticking phase at 11.8
-    SeriesRecord series(1e-4);
-    record(p, default_state(p), 60, 1000000, {&points, &series});
-    for (std::size_t k = 0; k < points.points.size(); ++k) {
-        double path = 0, peak = 0;
-        for (std::size_t i = 0; i + 1 < series.series.tau.size(); ++i) {
-            if (series.series.tau[i] < points.tau[k] - std::numbers::pi ||
-                series.series.tau[i] > points.tau[k])
-                continue;
-            path += std::abs(series.series.y[i + 1] - series.series.y[i]);
-            peak = std::max(peak, std::abs(series.series.x[i]));
+    "sticking phases, gravity, friction and a load") {
+    const Parameters plain = table1(0.015, Damping::closed_form);  // sticks at 11.8
+    Parameters inclined = plain, rubbing = plain, loaded = plain;
+    inclined.gravity = 0.003, inclined.R_plus = inclined.R_minus = 0.1;
+    rubbing.friction = 0.004, rubbing.R_plus = rubbing.R_minus = 0.1;
+    loaded.load =
+        std::make_shared<const Load>(std::vector<LoadHarmonic>{{1.7e-4, 1, 0}, {1e-4, 3.3, 0.5}});
+    loaded.G = 0, loaded.R_plus = loaded.R_minus = 0;
+    for (const Parameters& p : {plain, inclined, rubbing, loaded}) {
+        CAPTURE(p.gravity);
+        CAPTURE(p.friction);
+        HalfCycles points(p, {0, 60});
+        SeriesRecord series(1e-4);
+        record(p, default_state(p), 60, 1000000, {&points, &series});
+        REQUIRE(points.points.size() == 19);
+        for (std::size_t k = 0; k < points.points.size(); ++k) {
+            double path = 0, peak = 0;
+            for (std::size_t i = 0; i + 1 < series.series.tau.size(); ++i) {
+                if (series.series.tau[i] < points.tau[k] - std::numbers::pi ||
+                    series.series.tau[i] > points.tau[k])
+                    continue;
+                path += std::abs(series.series.y[i + 1] - series.series.y[i]);
+                peak = std::max(peak, std::abs(series.series.x[i]));
+            }
+            CHECK(points.points[k].V == doctest::Approx(path / std::numbers::pi).epsilon(2e-3));
+            CHECK(points.points[k].C == doctest::Approx(peak).epsilon(1e-4));
         }
-        CHECK(points.points[k].V == doctest::Approx(path / std::numbers::pi).epsilon(2e-3));
-        CHECK(points.points[k].C == doctest::Approx(peak).epsilon(1e-4));
     }
 }
 

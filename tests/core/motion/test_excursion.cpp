@@ -18,7 +18,7 @@ TEST_CASE(
     const double duration = 10 * 2 * std::numbers::pi + 1;
     CHECK(peak_beyond(0, undamped, {0, 1, 0, 1}, duration) == doctest::Approx(1).epsilon(1e-15));
     CHECK(
-        path_length(undamped, {0, 1, 0, 1}, duration) ==
+        path_length(undamped, {0, 1, 0, 1}, {}, 0, duration) ==
         doctest::Approx(10 * 4 + std::sin(1)).epsilon(1e-13));
 }
 
@@ -73,7 +73,12 @@ TEST_CASE("two extrema of x in one cell of the search both count for the peak an
         CHECK(
             peak_beyond(0, c.flow, c.o, c.duration) ==
             doctest::Approx(sampled).epsilon(1e-7).scale(0));
-        CHECK(path_length(c.flow, c.o, c.duration) == doctest::Approx(path).epsilon(1e-5).scale(0));
+        CHECK(
+            peak_beyond(0, c.flow, c.o, {}, 0, c.duration) ==
+            doctest::Approx(sampled).epsilon(1e-7).scale(0));
+        CHECK(
+            path_length(c.flow, c.o, {}, 0, c.duration) ==
+            doctest::Approx(path).epsilon(1e-5).scale(0));
     }
 }
 
