@@ -15,7 +15,7 @@ constexpr int graces_per_slot = 4;
 // Bodies up to this size need no permit. Larger ones run together up to `bodies_at_once` bytes, or
 // one alone. While they are read and computed they take up to fifteen times their size, one of the
 // largest up to 340 MB. Bytes.
-constexpr std::size_t immediate_body = 1 << 20, bodies_at_once = 16 << 20;
+constexpr std::size_t immediate_body = 1 << 20, bodies_at_once = 8 << 20;
 
 // Larger bodies that wait, and their bytes; each occupies a worker.
 constexpr std::size_t most_waiting_bodies = 32, most_waiting_bytes = 256 << 20;
@@ -130,16 +130,21 @@ void AdmissionControl::release(bool is_grace) {
 AdmissionControl::SweepSlot AdmissionControl::acquire_sweep(const std::string& client) {
     std::unique_lock lock(mutex_);
     const auto running = static_cast<int>(sweeps_.size()),
-               own = static_cast<int>(sweeps_.count(client));
+               own = static_cast<int>(std::ranges::count(sweeps_, client));
     if (running >= limits_.sweeps || (limits_.sweeps > 1 && own >= limits_.sweeps - 1) ||
         sweeps_stopped_)
         return nullptr;
-    const auto place = sweeps_.insert(client);
+    const auto place = sweeps_.insert(sweeps_.end(), client);
     lock.unlock();
-    return {this, [this, place](void*) {
+    return {&*place, [this, place](std::string*) {
                 const std::lock_guard ending(mutex_);
                 sweeps_.erase(place);
             }};
+}
+
+void AdmissionControl::pass_on(const SweepSlot& slot, const std::string& client) {
+    const std::lock_guard lock(mutex_);
+    *slot = client;
 }
 
 bool AdmissionControl::sweeps_left() const { return load().sweeps < limits_.sweeps; }

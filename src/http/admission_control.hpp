@@ -14,8 +14,8 @@
 #include <atomic>
 #include <condition_variable>
 #include <functional>
+#include <list>
 #include <mutex>
-#include <set>
 #include <stop_token>
 
 #include "http/fair_queue.hpp"
@@ -71,8 +71,10 @@ public:
 
     /// The right to run one sweep. Null if the limit is reached, or all but one are this client's,
     /// or sweeps are stopped.
-    using SweepSlot = std::shared_ptr<void>;
+    using SweepSlot = std::shared_ptr<std::string>;  // its client
     SweepSlot acquire_sweep(const std::string& client);
+    /// From now on the sweep counts as this client's.
+    void pass_on(const SweepSlot& slot, const std::string& client);
     bool sweeps_left() const;  ///< by the limit of all clients
 
     /// The right to read a large body and to compute with it. At most one, or several that are
@@ -114,8 +116,8 @@ private:
 
     const AdmissionLimits limits_;
     mutable std::mutex mutex_;
-    int free_, graces_ = 0;              // nobody waits while free_ > 0
-    std::multiset<std::string> sweeps_;  // their clients
+    int free_, graces_ = 0;          // nobody waits while free_ > 0
+    std::list<std::string> sweeps_;  // their clients
     Queue foreground_, background_;
     Queue bodies_;
     std::size_t bodies_in_work_ = 0;  // bytes

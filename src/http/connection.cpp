@@ -47,7 +47,7 @@ Connection::Connection(int socket, std::string peer, RequestHandler& handler, Me
 
 Connection::~Connection() {
     if (delivery_) delivery_->outbox.cancel();
-    memory_.count(held_, 0);
+    memory_.count(held_, held_.client, 0);
 }
 
 Connection::Progress Connection::advance() try {
@@ -79,7 +79,7 @@ Connection::Progress Connection::read_request() {
     }
     if (!request_) return Progress::waits;
     // Large bodies only: the number of connections bounds the small ones.
-    if (!request_->refused && body_size() > small_body && memory_.is_full())
+    if (!request_->refused && body_size() > small_body && memory_.is_full_for(client()))
         request_->refused = memory_refusal();
     const bool whole = request_->refused || bytes_.size() >= body_size();
     return whole ? Progress::complete : Progress::waits;

@@ -105,7 +105,10 @@ public:
     std::string client() const { return request_->sender.client(); }
 
     /// Sets the bytes of answers held for the client; received bytes are added.
-    void hold(std::size_t bytes) { memory_.count(held_, bytes + bytes_.capacity()); }
+    void hold(std::size_t bytes) {
+        const std::string client = request_ ? this->client() : held_.client;
+        memory_.count(held_, client.empty() ? owner_ : client, bytes + bytes_.capacity());
+    }
 
 private:
     Progress read_request();
@@ -119,7 +122,7 @@ private:
     const std::string peer_, owner_;
     RequestHandler& handler_;
     MemoryBudget& memory_;
-    std::size_t held_ = 0;
+    MemoryBudget::Counted held_;
     std::string bytes_;  // received, not yet taken
     HeadReader reader_;
     std::optional<Request> request_;  // once the head is complete; bytes_ then holds its body

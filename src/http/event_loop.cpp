@@ -18,8 +18,9 @@ constexpr auto expiry_interval = 250ms;
 // connection to the event loop and get it back.
 constexpr int next_request_wait = 1;
 
-// Answers to one client in a row; then the others get their turn.
+// Answers to one client in a row, and the time for them; then the others get their turn.
 constexpr int max_answers_in_row = 16;
+constexpr auto longest_turn = 1ms;
 
 // Time for which a resource counts as scarce after a request was refused for lack of it: longer
 // than a client that reads slowly may pause then, and than a refused one waits (Retry-After: 1).
@@ -96,6 +97,7 @@ void EventLoop::wait() {
     const int n = ::epoll_wait(
         poll_.number(), events.data(), events.size(),
         ready_.empty() ? static_cast<int>((stopping_ ? 20ms : expiry_interval).count()) : 0);
+    std::set<int> due = std::exchange(ready_, {});  // each has one turn
     for (int i = 0; i < n; ++i) {
         const epoll_event& event = events[static_cast<std::size_t>(i)];
         const int socket = event.data.fd;
@@ -103,9 +105,10 @@ void EventLoop::wait() {
         else if (socket == wake_.number()) {
             std::uint64_t count = 0;
             static_cast<void>(!::read(wake_.number(), &count, sizeof count));
-        } else handle(socket, event.events & (EPOLLERR | EPOLLHUP));
+        } else if (event.events & (EPOLLERR | EPOLLHUP)) handle(socket, true);
+        else due.insert(socket);
     }
-    for (const int socket : std::exchange(ready_, {})) handle(socket);
+    for (const int socket : due) handle(socket);
 }
 
 void EventLoop::change_events(int operation, int socket, std::uint32_t events) const {
@@ -218,6 +221,7 @@ void EventLoop::handle(int socket, bool failed) {
 }
 
 void EventLoop::read(Connection& connection) {
+    const Clock::time_point began = Clock::now();
     for (int n = 0;; ++n) {
         switch (connection.advance()) {
             case Connection::Progress::waits: return;
@@ -225,7 +229,10 @@ void EventLoop::read(Connection& connection) {
             case Connection::Progress::complete: break;
         }
         if (!connection.is_answered_on_loop()) return hand_over(release(connection.socket()));
-        if (n >= max_answers_in_row) return ready_.push_back(connection.socket());
+        if (n >= max_answers_in_row || Clock::now() - began > longest_turn) {
+            ready_.insert(connection.socket());
+            return;
+        }
         if (!answer_here(connection)) return;
     }
 }
@@ -256,7 +263,7 @@ bool EventLoop::answer_here(Connection& connection) {
 void EventLoop::deliver(Connection& connection) {
     connection.deliver(max_sent);
     if (connection.is_delivering()) {
-        if (connection.outbox().can_send_more()) ready_.push_back(connection.socket());
+        if (connection.outbox().can_send_more()) ready_.insert(connection.socket());
         return;
     }
     --delivering_;

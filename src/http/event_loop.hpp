@@ -4,6 +4,8 @@
 // not taken.
 #pragma once
 
+#include <set>
+
 #include "http/connection.hpp"
 #include "http/metrics.hpp"
 #include "http/worker_pool.hpp"
@@ -77,7 +79,7 @@ private:
     MemoryBudget memory_;
     std::vector<Owned> connections_;             // indexed by socket; used by run() only
     std::map<std::string, std::size_t> open_;    // connections by client, also those with workers
-    std::vector<int> ready_;                     // sockets with more to read or to send
+    std::set<int> ready_;                        // sockets with more to read or to send
     std::atomic<std::size_t> count_ = 0;         // number of connections_
     std::atomic<std::size_t> delivering_ = 0;    // those of them that take an answer
     std::atomic<std::size_t> with_workers_ = 0;  // or returned and not yet collected

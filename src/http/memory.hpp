@@ -6,6 +6,9 @@
 
 #include <atomic>
 #include <cstddef>
+#include <map>
+#include <mutex>
+#include <string>
 
 #ifdef __GLIBC__
 #include <malloc.h>
@@ -13,21 +16,41 @@
 
 namespace vines::http {
 
+/// Thread-safe.
 class MemoryBudget {
 public:
     explicit MemoryBudget(std::size_t limit) : limit_(limit) {}
     /// True if nothing large should be accepted.
     bool is_full() const { return held_ >= limit_; }
+    /// True if nothing large should be accepted of a client: also if half of the budget is its own.
+    bool is_full_for(const std::string& client) const {
+        const std::lock_guard lock(mutex_);
+        const auto own = clients_.find(client);
+        return is_full() || (own != clients_.end() && own->second >= limit_ / 2);
+    }
     std::size_t bytes() const { return held_; }
-    /// Counts `now` bytes of a client instead of `counted`, which it sets to them.
-    void count(std::size_t& counted, std::size_t now) {
-        held_ += now - counted;
-        counted = now;
+
+    struct Counted {
+        std::string client;
+        std::size_t bytes = 0;
+    };
+    /// Counts these bytes of a client instead of what was counted.
+    void count(Counted& counted, const std::string& client, std::size_t bytes) {
+        held_ += bytes - counted.bytes;
+        const std::lock_guard lock(mutex_);
+        if (counted.bytes > 0) {
+            const auto before = clients_.find(counted.client);
+            if ((before->second -= counted.bytes) == 0) clients_.erase(before);
+        }
+        if (bytes > 0) clients_[client] += bytes;
+        counted = {client, bytes};
     }
 
 private:
     const std::size_t limit_;
     std::atomic<std::size_t> held_ = 0;
+    mutable std::mutex mutex_;
+    std::map<std::string, std::size_t> clients_;  // bytes of each
 };
 
 /// Limits the memory that malloc keeps. Blocks of 4 MiB and more are mapped one by one: glibc's own

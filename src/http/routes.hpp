@@ -16,6 +16,7 @@ struct RouteOptions {
     /// A JSON answer that lists more impacts is streamed; the columns of impacts are then generated
     /// while it is sent.
     std::size_t most_kept_impacts = api::most_kept_impacts;
+    int most_followers = 32;  ///< of sweeps, see RunningStreams
     PageOptions page = {};
 };
 

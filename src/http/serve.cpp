@@ -198,6 +198,7 @@ int serve(ServeOptions options) {
         // Read before signals are blocked: a disk can be slow and a folder large.
         if (!options.key_file.empty()) keys = std::make_shared<ApiKeys>(options.key_file);
         options.server.access.keys = keys;
+        options.routes.most_followers = std::max(1, options.server.limits.workers / 4);
         std::vector<Route> routes = make_routes(options.routes, admission, metrics);
         if (keys) std::signal(SIGHUP, SIG_DFL);  // it reloads them, also under nohup
         block_end_signals();

@@ -38,7 +38,7 @@ public:
     }
 
     struct Taken {
-        std::string text;       ///< lines since the reader's last call
+        std::string text;       ///< that follows what the reader has taken
         std::size_t count = 0;  ///< lines so far
         bool finished = false;  ///< no more will come
     };
@@ -46,8 +46,9 @@ public:
     Taken take(std::size_t& read, std::chrono::milliseconds at_most) {
         std::unique_lock lock(mutex_);
         changed_.wait_for(lock, at_most, [&] { return text_.size() > read || finished_; });
-        Taken taken{keeps_ ? text_.substr(read) : std::exchange(text_, {}), count_, finished_};
-        if (keeps_) read = text_.size();
+        Taken taken{
+            keeps_ ? text_.substr(read, at_once_) : std::exchange(text_, {}), count_, finished_};
+        if (keeps_) read += taken.text.size(), taken.finished &= read == text_.size();
         size_ = text_.size();
         changed_.notify_all();
         return taken;
@@ -63,6 +64,7 @@ public:
 
 private:
     static constexpr std::size_t capacity_ = 1 << 20;  // bytes
+    static constexpr std::size_t at_once_ = 1 << 16;   // bytes copied for one of many readers
 
     const bool keeps_;
     std::mutex mutex_;
@@ -103,7 +105,6 @@ public:
         AdmissionControl::SweepSlot sweep_slot)
         : work_(std::move(work)),
           deadline_(service.options.sweep_deadline),
-          client_(first.sender.client()),
           id_(first.id),
           admission_(service.admission),
           metrics_(service.metrics),
@@ -116,15 +117,20 @@ public:
     }
 
     /// Sends all lines to one client. False if its connection is to be cut off.
-    bool send(Writer& out) {
+    bool send(Writer& out, const std::string& client) {
+        enter(client);
         const SweepEnd end = send_all(out);
+        leave(client);
         metrics_.count_sweep(end);
         return work_.how_to_go_on ? end != SweepEnd::client_left : end == SweepEnd::complete;
     }
 
+    /// True if it has ended without all lines.
+    bool is_cut_off() const { return is_cut_off_; }
+
     // Called by the threads that compute.
     void begin() override {
-        held().slot = admission_.acquire_background(client_, stop_.get_token());
+        held().slot = admission_.acquire_background(owner(), stop_.get_token());
         held().since = Clock::now();
     }
     void end() override { held().slot.reset(); }
@@ -157,11 +163,32 @@ private:
         return stop_.stop_requested() || admission_.sweeps_stopped() || is_late(now);
     }
 
+    /// The client for which it counts as a sweep: the first one, then one of those that remain.
+    std::string owner() const {
+        const std::lock_guard lock(clients_mutex_);
+        return *sweep_slot_;
+    }
+    void enter(const std::string& client) {
+        const std::lock_guard lock(clients_mutex_);
+        clients_.push_back(client);
+    }
+    void leave(const std::string& client) {
+        const std::lock_guard lock(clients_mutex_);
+        clients_.erase(std::ranges::find(clients_, client));
+        if (!clients_.empty() && std::ranges::count(clients_, *sweep_slot_) == 0)
+            admission_.pass_on(sweep_slot_, clients_.front());
+    }
+
     void start() {
         started_ = Clock::now();
         is_complete_ = std::async(std::launch::async, [this] {
-            const std::shared_ptr<void> at_end(nullptr, [this](void*) { lines_.finish(); });
-            return work_.compute(*this, [this](const std::string& text) { lines_.push(text); });
+            bool whole = false;
+            const std::shared_ptr<void> at_end(nullptr, [&](void*) {
+                is_cut_off_ = !whole;
+                lines_.finish();
+            });
+            whole = work_.compute(*this, [this](const std::string& text) { lines_.push(text); });
+            return whole;
         });
     }
 
@@ -220,10 +247,13 @@ private:
 
     const LineWork work_;
     const std::chrono::duration<double> deadline_;
-    const std::string client_, id_;
+    const std::string id_;
     AdmissionControl& admission_;
     Metrics& metrics_;
     const AdmissionControl::SweepSlot sweep_slot_;
+    mutable std::mutex clients_mutex_;
+    std::vector<std::string> clients_;  // to which it sends
+    std::atomic<bool> is_cut_off_ = false;
     LineQueue lines_;
     std::stop_source stop_;
     std::once_flag is_started_;
@@ -237,12 +267,15 @@ namespace {
 // kept until its end, in about 2 MB.
 constexpr std::size_t most_shared_lines = 1000, most_shared_points = 20'000;
 
-Response sweep_refusal(const AdmissionControl& admission) {
+Response sweep_refusal(const Service& service, bool is_begun) {
+    const AdmissionControl& admission = service.admission;
     if (admission.sweeps_stopped()) return stopping_refusal();
-    const bool own_limit = admission.sweeps_left();
+    const bool own_limit = !is_begun && admission.sweeps_left();
     Response response = problem_response(api::Problem::unavailable(
-        "sweeps", own_limit ? "all sweeps but one are yours; wait for the end of one"
-                            : "the maximum number of sweeps is running; try again later"));
+        "sweeps", is_begun
+                      ? "too many clients follow the sweep of an equal request; try again later"
+                  : own_limit ? "all sweeps but one are yours; wait for the end of one"
+                              : "the maximum number of sweeps is running; try again later"));
     response.own_limit = own_limit;
     return response;
 }
@@ -251,18 +284,22 @@ Response sweep_refusal(const AdmissionControl& admission) {
 /// The response can be copied: the sweep's slot is released with the last copy, whether it was sent
 /// or not.
 Response stream_lines(LineWork work, const Request& asked, const Service& service) {
+    bool is_begun = true;
     const auto begin = [&]() -> std::shared_ptr<LineComputation> {
+        is_begun = false;
         auto slot = service.admission.acquire_sweep(asked.sender.client());
         if (!slot) return nullptr;
         return std::make_shared<LineComputation>(std::move(work), asked, service, std::move(slot));
     };
     const auto lines =
         work.is_shared ? service.running->find_or_begin(work.path + asked.body, begin) : begin();
-    if (!lines) return sweep_refusal(service.admission);
+    if (!lines) return sweep_refusal(service, is_begun);
     return {
         .content_type = api::sweep_format_names[0].media_type,
         .headers = {{"Cache-Control", "no-store"}, {"X-Accel-Buffering", "no"}},
-        .stream = [lines](Writer& out) { return lines->send(out); }};
+        .stream = [lines, client = asked.sender.client()](Writer& out) {
+            return lines->send(out, client);
+        }};
 }
 
 /// A sweep's lines, or the rows of `table` unless it is null.
@@ -308,7 +345,15 @@ std::shared_ptr<LineComputation> RunningStreams::find_or_begin(
     const std::lock_guard lock(mutex_);
     std::erase_if(running_, [](const auto& entry) { return entry.second.expired(); });
     std::weak_ptr<LineComputation>& running = running_[request];
-    if (auto found = running.lock()) return found;
+    if (auto found = running.lock(); found && !found->is_cut_off()) {
+        if (followers_ >= most_followers_) return nullptr;
+        ++followers_;
+        LineComputation* const followed = found.get();
+        return {followed, [this, found](LineComputation*) mutable {
+                    found.reset();
+                    --followers_;
+                }};
+    }
     auto begun = begin();
     running = begun;
     return begun;

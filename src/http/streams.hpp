@@ -2,6 +2,7 @@
 // compute slots as background work, and stop when their client leaves.
 #pragma once
 
+#include <atomic>
 #include <functional>
 #include <map>
 #include <memory>
@@ -17,14 +18,21 @@ namespace vines::http {
 
 class LineComputation;  // of a stream
 
-/// The running computations whose lines several clients can get. Thread-safe.
+/// The running computations whose lines several clients can get. Thread-safe; outlives them.
 class RunningStreams {
 public:
-    /// The computation of an equal request, or else the result of `begin`, which can be null.
+    /// `most_followers`: requests at once that get the lines of another one's computation, since
+    /// each takes a thread.
+    explicit RunningStreams(int most_followers) : most_followers_(most_followers) {}
+
+    /// The computation of an equal request, null with too many of them; or else the result of
+    /// `begin`, which can be null.
     std::shared_ptr<LineComputation> find_or_begin(
         const std::string& request, const std::function<std::shared_ptr<LineComputation>()>& begin);
 
 private:
+    const int most_followers_;
+    std::atomic<int> followers_ = 0;
     std::mutex mutex_;
     std::map<std::string, std::weak_ptr<LineComputation>> running_;
 };

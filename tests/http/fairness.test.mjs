@@ -6,7 +6,7 @@ import {tmpdir} from "node:os";
 import {join} from "node:path";
 import {test} from "node:test";
 import {startService} from "../service.mjs";
-import {connect, connectAll, get, post, send, statuses, textOf, until} from "./raw.mjs";
+import {connect, connectAll, get, post, send, serviceFor, statuses, textOf, until} from "./raw.mjs";
 
 const from = (address) => `X-Forwarded-For: 198.51.100.7, ${address}\r\n`;
 const run = '{"tau_end": 20000, "include": ["exponents"]}';
@@ -41,6 +41,45 @@ test("so are they, however many, while it has more streams than there are thread
   for (let i = 0; i < 100; ++i) {
     await textOf(await send(one.url, "/v1/simulate", small, other));
   }
+});
+
+test("pipelined health checks of many connections take their turns with the others", async (t) => {
+  const one = await serviceFor(t);
+  const count = (text) => Number(/route="\/livez"[^}]*} (\d+)/.exec(text)?.[1] ?? 0);
+  const answered = async () => count(await (await fetch(`${one.url}/metrics`)).text());
+  const sockets = await connectAll(one.url, 10, () => get("/livez").repeat(20000));
+  t.after(() => sockets.forEach(({socket}) => socket.destroy()));
+  let before = await answered();
+  while (before < 20000) before = await answered();
+  // Two rounds of 17 answers to each of ten connections.
+  const within = (await answered()) - before;
+  assert.ok(within < 500, `${within} answers within one`);
+});
+
+test("few requests follow one sweep, so that threads remain for others; it passes to one that remains", async (t) => {
+  const one = await serviceFor(t, [...trust, "--threads", "8", "--sweeps", "2"]);
+  const sweep = {
+    axes: [{parameter: "b", from: 0.01, to: 0.03, count: 500}],
+    cycles: 100000,
+    transient_cycles: 10,
+  };
+  const begun = [];
+  t.after(() => begun.forEach(({leave}) => leave.abort()));
+  const follow = async (client) => {
+    const leave = new AbortController();
+    const headers = {"X-Forwarded-For": client};
+    const answer = await send(one.url, "/v1/sweep", sweep, {headers, signal: leave.signal});
+    begun.push({leave, answer});
+    return answer.status;
+  };
+  for (let i = 1; i <= 3; ++i) assert.equal(await follow(`192.0.2.${i}`), 200);
+  assert.equal(await follow("192.0.2.4"), 503);
+  await textOf(await send(one.url, "/v1/simulate", small, other));
+  // The client of the first request may begin another sweep once it has left this one.
+  begun[0].leave.abort();
+  sweep.cycles += 1;
+  const again = () => follow("192.0.2.1");
+  await until(async () => (await again()) === 200);
 });
 
 test("an API key is a client, wherever its requests come from; the log names it, not its secret", async (t) => {

@@ -397,6 +397,14 @@ std::string cbor_bytes(Json answer, const std::function<bool()>& gives_up) {
     return bytes;
 }
 
+std::size_t packed_bytes(const Json& answer) {
+    if (answer.is_binary()) return answer.get_binary().size();
+    std::size_t sum = 0;
+    if (answer.is_structured())
+        for (const Json& part : answer) sum += packed_bytes(part);
+    return sum;
+}
+
 std::string encoded(
     Json answer, Format format, const std::optional<Provenance>& provenance,
     const std::function<bool()>& gives_up) {

@@ -42,6 +42,9 @@ std::string encoded(
     Json answer, Format format, const std::optional<Provenance>& provenance,
     const std::function<bool()>& gives_up = {});
 
+/// Bytes of the numbers in packed lists, which CBOR and npz have at least.
+std::size_t packed_bytes(const Json& answer);
+
 /// CBOR with lists of numbers as typed arrays (float64, int32, little-endian) and null in them as
 /// NaN. Lists of exponents or matrices are arrays of typed arrays.
 std::string cbor_bytes(Json answer, const std::function<bool()>& gives_up = {});
