@@ -137,6 +137,17 @@ Json describe_fitted(const JointFit& fit, const Parameters& parameters, double o
     return j;
 }
 
+Json describe_laws(const std::optional<FittedLaws>& laws, const BallLaws& wanted, double omega0) {
+    if (!laws) return nullptr;
+    const double mu = omega0 * omega0 / standard_gravity;
+    return {
+        {"mu", described({mu * laws->friction, mu * laws->friction_error}, !wanted.friction)},
+        {"R_slope",
+         described({laws->R.slope / omega0, laws->R_slope_error / omega0}, !wanted.R_slope)},
+        {"R_speed", laws->R.speed * omega0},
+        {"chi_square_decrease", laws->chi_square}};
+}
+
 ChannelForcing channel_forcing(const MeasuredForcing& m, const System& system) {
     const Parameters& p = system.parameters;
     const double amplitude = elementary::hypot(m.sin, m.cos);

@@ -323,6 +323,9 @@ Json identify_answer(const IdentifyRequest& r, const IdentificationWatch& watch)
     Warnings warnings = r.notes;
     if (result.refined) add_fit_warnings(r, result, warnings);
     add_continuity_warnings(result, warnings);
+    if (m.laws.any() && !result.laws)
+        warnings.push_back(
+            "the laws of the ball in fit do not settle: the record does not determine them");
     for (const std::string& doubt : doubts) warnings.push_back("no verdict: " + doubt);
 
     const System used = identified_system(r, result);
@@ -338,6 +341,7 @@ Json identify_answer(const IdentifyRequest& r, const IdentificationWatch& watch)
         answer["fitted"] =
             describe_fitted(result.refined->fit, result.parameters, r.system.si->omega0());
     }
+    if (m.laws.any()) answer["laws"] = describe_laws(result.laws, m.laws, r.system.si->omega0());
     answer["impacts"] = describe_identified(found.impacts);
     answer["sticking"] = describe(sticking_columns, sticking_phases(found.impacts));
     answer["restitution"] = describe_walls(found);

@@ -44,6 +44,8 @@ FixedUnknowns fixed_of(const std::set<std::string>& names);
 /// {name: {value, standard_error, fixed}} for each Unknown, and for F and phase of the forcing.
 /// `parameters`: those in use, with the fitted Omega. `omega0`: as given, in rad/s.
 Json describe_fitted(const JointFit& fit, const Parameters& parameters, double omega0);
+/// The laws of the ball in SI; `wanted`: those that were fitted. Null without a result.
+Json describe_laws(const std::optional<FittedLaws>& laws, const BallLaws& wanted, double omega0);
 
 /// Warns of sensors or given values that the record contradicts.
 void add_fitted_warnings(

@@ -86,6 +86,12 @@ IdentifyRequest read_fields(const Json& given, bool with_record, bool forcing_fi
         std::sort(m.impact_times.begin(), m.impact_times.end());
     }
     m.fixed = fixed_of(merged["fixed"]);
+    const std::set<std::string> fit = merged["fit"];
+    m.laws = {.friction = fit.contains("mu"), .R_slope = fit.contains("R_of_speed")};
+    if (m.laws.R_slope && !m.parameters.has_constant_R())
+        refuse(
+            {{"/fit", "R_of_speed", nullptr,
+              "restitution gives R of the speed: give R instead, or do not fit R_of_speed"}});
     m.uncertainty = {
         merged["m1_uncertainty"], merged["c1_uncertainty"], merged["k1_uncertainty"],
         merged["m2_uncertainty"]};
@@ -95,6 +101,8 @@ IdentifyRequest read_fields(const Json& given, bool with_record, bool forcing_fi
     m.estimators = read_estimators(merged);
     m.estimators.qr = true;  // the verdict needs it
     r.include = merged["include"].get<std::set<std::string>>();
+    if (!with_record && m.laws.any())
+        refuse({{"/fit", fit, nullptr, "laws are fitted to a record, not to a list of impacts"}});
     if (!with_record && !r.include.empty())
         refuse(
             {{"/include", r.include, nullptr,

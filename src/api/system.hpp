@@ -16,6 +16,8 @@
 
 namespace vines::api {
 
+inline constexpr double standard_gravity = 9.80665;  ///< m/s^2
+
 /// A request's fields, each checked by itself, over those of its preset.
 struct MergedFields {
     const FieldTable& table;  ///< outlives the request, like the tables of tables.hpp

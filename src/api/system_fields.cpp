@@ -10,8 +10,6 @@ namespace vines::api {
 
 namespace {
 
-constexpr double standard_gravity = 9.80665;  // m/s^2
-
 /// Nullopt if not given or not a table.
 std::optional<RestitutionField> restitution_field(const Json& fields, const char* name) {
     if (!fields.contains(name)) return std::nullopt;

@@ -97,6 +97,25 @@ TEST_CASE(
     CHECK(b["impacts"]["tau"] == a["impacts"]["tau"]);
 }
 
+TEST_CASE("laws of the ball are fitted to a record without friction: none, with their errors") {
+    const std::string csv = measured("fig15", 12);
+    const Json a = identified(read_identify_request({{"preset", "fig15"}, {"fit", {"mu"}}}, csv)),
+               &laws = a["laws"];
+    CHECK(
+        std::abs(laws["mu"]["value"].get<double>()) <
+        4 * laws["mu"]["standard_error"].get<double>());
+    CHECK(laws["mu"]["standard_error"].get<double>() < 0.02);
+    CHECK(laws["R_slope"]["fixed"] == true);
+    CHECK(laws["R_slope"]["standard_error"].is_null());
+    CHECK(laws["chi_square_decrease"].get<double>() < 20);
+    CHECK(!identified(read_identify_request({{"preset", "fig15"}}, csv)).contains("laws"));
+    const Json table = {
+        {"preset", "fig15"},
+        {"fit", {"R_of_speed"}},
+        {"restitution", {{"speed_m_s", {0, 1}}, {"R", {0.9, 0.8}}}}};
+    CHECK_THROWS_AS(read_identify_request(table, csv), Problem);
+}
+
 TEST_CASE("the fitted motion is given at the record's samples if included") {
     const std::string csv = measured("fig15", 3);
     const Json a =

@@ -747,6 +747,9 @@ class IdentifyFields(TypedDict, total=False):
         default: []
     fixed: quantities that are not fitted to the record: f, F, phase, omega0, zeta, b and R keep
         the values of the other fields, a sensor counts as free of errors; default: []
+    fit: laws of the ball to fit to the record as well: mu, its friction; R_of_speed, one slope
+        of R against the relative speed for both walls; the given values are the initial ones;
+        default: []
     phase: phase of the base, which moves by F sin(2 pi f t + phase), t as in the record; used
         if fixed contains phase (rad); default: fitted; if fixed, the phase of the forcing
         channel; -7 to 7
@@ -821,6 +824,7 @@ class IdentifyFields(TypedDict, total=False):
     max_points: int
     include: Iterable[Literal["motion", "direct_exponents"]]
     fixed: Iterable[Literal["f", "F", "phase", "displacement_offset", "displacement_drift", "displacement_gain", "displacement_delay_s", "acceleration_offset", "acceleration_drift", "omega0", "zeta", "b", "R_plus", "R_minus"]]
+    fit: Iterable[Literal["mu", "R_of_speed"]]
     phase: float
     time_column: str
     displacement_column: str

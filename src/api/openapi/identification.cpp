@@ -22,6 +22,10 @@ void add_identification(Json& schemas) {
              "fitted", reference("Fitted"),
              "fitted properties of the sensors, of the forcing and of the oscillator"),
          of_record(
+             "laws", or_null(reference("BallLaws")),
+             "with fit, the fitted laws of the ball; null if they do not settle, or where b is "
+             "withheld"),
+         of_record(
              "motion", reference("FittedMotion"),
              "if include has motion, the fitted motion at the samples"),
          of_record(
@@ -99,6 +103,13 @@ void add_identification(Json& schemas) {
          {"R_minus", value, "restitution coefficient of the wall at -b"},
          {"F", value, "amplitude of the base, m"},
          {"phase", value, "the base moves by F sin(2 pi f t + phase), rad"}});
+    schemas["BallLaws"] = object_of(
+        {{"mu", value, "friction of the ball over its weight"},
+         {"R_slope", value, "growth of R of both walls per m/s of |x' - y'|"},
+         {"R_speed", number, "speed at which R_plus and R_minus apply, the mean one, m/s"},
+         {"chi_square_decrease", number,
+          "by which the fitted laws decrease the sum of squared residuals over their variances; "
+          "about the number of laws if the given ones hold"}});
     schemas["IdentifiedImpacts"] =
         object_of({columns_of(identified_wall_columns), columns_of(identified_columns)});
     const Json wall = object_of(values_of(properties::restitution));

@@ -61,6 +61,10 @@ FieldTable record_rows() {
         {"fixed", choices(fixable()), Json::array(),
          "quantities that are not fitted to the record: f, F, phase, omega0, zeta, b and R keep "
          "the values of the other fields, a sensor counts as free of errors"},
+        {"fit", choices({"mu", "R_of_speed"}), Json::array(),
+         "laws of the ball to fit to the record as well: mu, its friction; R_of_speed, one slope "
+         "of "
+         "R against the relative speed for both walls; the given values are the initial ones"},
         {"phase", number({-7, 7}, "rad"),
          Note{"fitted; if fixed, the phase of the forcing channel"},
          "phase of the base, which moves by F sin(2 pi f t + phase), t as in the record; used "

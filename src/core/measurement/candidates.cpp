@@ -20,6 +20,8 @@ constexpr double looked_before = 0.15, looked_after = 1.5;
 // decay by this factor.
 constexpr double quantile_of_fading = 0.8, separate_factor = 2.5;
 constexpr std::size_t fewest_of_bin = 4;
+// An event ends before a time of this length, in tau, in which no sample exceeds the threshold.
+constexpr double quiet = 0.15;
 // Bins are one step wide but limited in number: the sampling can be far denser than any pulse.
 constexpr double most_bins = 4096;
 
@@ -31,7 +33,7 @@ struct Fading {
     /// Learns from the events at `peaks`.
     Fading(
         const ImpactSearch& s, const PulseSignal& signal, const std::vector<char>& bad,
-        const std::vector<std::size_t>& peaks)
+        double threshold, const std::vector<std::size_t>& peaks)
         : step(std::max(s.statistics.step, looked_after / most_bins)) {
         const std::vector<double>& tau = s.record.tau;
         const auto bins = [this](double range) {
@@ -46,10 +48,18 @@ struct Fading {
             const auto share = [&](std::size_t k) {
                 return std::max(0.0, std::abs(signal.value[k]) - 1.5 * signal.noise) / height;
             };
+            // What follows a quiet time is another event, however regularly it comes.
+            double loud = tau[p];
+            const auto shown = [&](std::size_t k) {
+                if (std::abs(signal.value[k]) > threshold && std::abs(tau[k] - loud) < quiet)
+                    loud = tau[k];
+                return std::abs(tau[k] - loud) < quiet ? share(k) : 0;
+            };
             for (std::size_t k = p + 1; k < tau.size() && tau[k] - tau[p] < looked_after; ++k)
-                if (!bad[k]) all_after[bin(tau[k] - tau[p])].push_back(share(k));
+                if (!bad[k]) all_after[bin(tau[k] - tau[p])].push_back(shown(k));
+            loud = tau[p];
             for (std::size_t k = p; k-- > 0 && tau[p] - tau[k] < looked_before;)
-                if (!bad[k]) all_before[bin(tau[p] - tau[k])].push_back(share(k));
+                if (!bad[k]) all_before[bin(tau[p] - tau[k])].push_back(shown(k));
         }
         before = hull(std::move(all_before)), after = hull(std::move(all_after));
     }
@@ -211,7 +221,8 @@ PulseEvents pulse_events(
     const std::vector<std::size_t> order = standing_out(signal, bad, threshold);
     // Learns from the highest samples within the range of an event.
     const Fading fading(
-        s, signal, bad, unexplained(s, order, [](std::size_t, std::size_t) { return true; }));
+        s, signal, bad, threshold,
+        unexplained(s, order, [](std::size_t, std::size_t) { return true; }));
     const auto is_part = [&](std::size_t p, std::size_t k) {
         return std::abs(signal.value[k]) <
                threshold + separate_factor * std::abs(signal.value[p]) * fading.at(tau[k] - tau[p]);

@@ -166,6 +166,19 @@ void take_restitution(const Restitution& plus, const Restitution& minus, Paramet
     if (std::isfinite(minus.R)) p.R_minus = std::clamp(minus.R, 0.0, 1.0);
 }
 
+void take_slope(const RestitutionSlope& of_R, Parameters& p) {
+    if (of_R.slope == 0) return;
+    const auto law = [&](double R) {
+        const auto at = [&](double w) {
+            return std::clamp(R + of_R.slope * (w - of_R.speed), 0.0, 1.0);
+        };
+        const std::vector<double> speeds = {0, of_R.speed, 3 * of_R.speed};
+        return std::make_shared<const RestitutionTable>(
+            RestitutionTable{speeds, values_of(speeds, at)});
+    };
+    p.table_plus = law(p.R_plus), p.table_minus = law(p.R_minus);
+}
+
 void set_flight_velocities(const Parameters& p, IdentifiedImpacts& impacts) {
     for (std::size_t i = 1; i < impacts.size(); ++i) {
         IdentifiedImpact &from = impacts[i - 1], &to = impacts[i];

@@ -80,6 +80,13 @@ Restitution restitution_of(const IdentifiedImpacts& impacts, int side);
 /// Takes R of each wall that has impacts, clamped to the range of an R.
 void take_restitution(const Restitution& plus, const Restitution& minus, Parameters& parameters);
 
+/// R of both walls grows by `slope` per m per unit of tau of |x' - y'|, from its value at `speed`.
+struct RestitutionSlope {
+    double slope = 0, speed = 0;
+};
+/// Replaces the constant R of the walls, each of which is that at `speed`; none without a slope.
+void take_slope(const RestitutionSlope& of_R, Parameters& parameters);
+
 /// Sets y' before and after each impact where it is NaN, from the flights, eq. (43). It stays
 /// unknown before the first and after the last impact.
 void set_flight_velocities(const Parameters& parameters, IdentifiedImpacts& impacts);

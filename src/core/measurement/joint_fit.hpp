@@ -100,6 +100,21 @@ struct FittedEffect {
     UnknownValues change;
 };
 
+/// Laws of the ball that a fit can determine.
+struct BallLaws {
+    bool friction = false;  ///< of Parameters
+    bool R_slope = false;   ///< RestitutionSlope
+
+    bool any() const { return friction || R_slope; }
+};
+/// Changes of the laws that the residual shows, with their standard errors.
+struct LawChanges {
+    double friction = 0, friction_error = 0;  ///< m
+    double R_slope = 0, R_slope_error = 0;    ///< per m per unit of tau
+    double mean_speed = 0;                    ///< of |x' - y'| before the impacts
+    double chi_square = 0;                    ///< by which they decrease the sum of squares
+};
+
 /// Residual of one sensor; empty without it.
 struct SensorResidual {
     /// One per sample: displacements in the sensor's own scale, accelerations with their pulses.
@@ -123,6 +138,7 @@ struct JointFit {
     std::vector<FittedImpact> impacts;  ///< one fewer than intervals
     SensorResidual x, a;
     std::vector<FittedEffect> effects = {};  ///< with JointFitInput::with_mass
+    LawChanges laws = {};                    ///< of JointFitInput::laws
     bool converged = false;
 };
 
@@ -143,6 +159,8 @@ struct JointFitInput {
     // For the effects outside the model, which are tested in a fit with the mass:
     std::vector<double> mains = {};  ///< frequencies of the mains, like Omega
     GivenUncertainty uncertainty = {};
+    RestitutionSlope R_slope = {};
+    BallLaws laws = {};
 };
 
 /// `borders`: in order, within the record; JointFit::impacts has an entry for each. `values`, and

@@ -175,10 +175,12 @@ std::vector<MassResidual> mass_residuals(
         const MassFlight first(state, impacts, i - 1), second(state, impacts, i);
         const double before = first.y_dot + m.braked_before, after = second.y_dot + m.braked_after,
                      approach = m.x_dot_before - before, w = std::abs(approach),
-                     fitted = state.fit.values[restitution_at(m.side)];
+                     fitted = state.fit.values[restitution_at(m.side)] +
+                              state.R_slope.slope * (w - state.R_slope.speed);
         const bool is_given = p.table_of(m.side) != nullptr;
         const double R = is_given ? p.restitution(m.side, w) : fitted,
-                     derivative = is_given ? p.restitution_derivative(m.side, w) : fitted;
+                     derivative = is_given ? p.restitution_derivative(m.side, w)
+                                           : fitted + state.R_slope.slope * w;
         residuals.push_back(
             {i, first, second, m.jump() + state.fit.epsilon * (after - before),
              m.x_dot_after - after + R * approach, m.jump(), approach, R, derivative});

@@ -190,6 +190,7 @@ std::optional<DirectEstimate> direct_estimate(
     Identification found = identify_impacts(
         p, direct_motion(m.record, refined.fit.impacts, pulse), refined.gaps, pulse);
     if (!m.R_given) take_restitution(found.plus, found.minus, p);
+    take_slope(m.R_slope, p);
     insert_hidden(hidden, found.impacts);
     complete_impacts(p, found.impacts, pulse);
     const MeasuredExponents faultless(
@@ -295,20 +296,12 @@ void withhold_values(
     for (Restitution* wall : {&found.plus, &found.minus}) wall->R = wall->error = nan;
 }
 
-}  // namespace
+// Fits of the laws of the ball: at most, and the change of a law over its error at which they end.
+constexpr int most_rounds_of_laws = 8;
+constexpr double settled_share = 0.1;
 
-bool b_agrees(const Parameters& p, const Identification& i) {
-    return !std::isfinite(i.b_fitted) ||
-           std::abs(i.b_fitted - p.b) <= std::max(b_tolerance * p.b, b_sigmas * i.b_error);
-}
-
-double Measurement::step() const {
-    return (record.tau.back() - record.tau.front()) / (count_of(record.tau) - 1);
-}
-
-MeasurementResult evaluate_measurement(const Measurement& m, const IdentificationWatch& watch) {
-    IdentificationProgress progress(watch);
-    assert(m.is_record() || m.impacts.size() >= 2);
+/// The measurement with the given laws of the ball.
+MeasurementResult evaluated(const Measurement& m, IdentificationProgress& progress) {
     Parameters p = m.parameters;
     UnknownValues values = given_unknowns(p);
     std::optional<FoundImpacts> refined;
@@ -320,13 +313,14 @@ MeasurementResult evaluate_measurement(const Measurement& m, const Identificatio
         if (fit.impacts.size() < 2) throw TooFewImpacts{static_cast<long>(fit.impacts.size())};
         values = fit.values;
         found = identified(*refined, p);
-        doubts = doubts_of(p, *refined, found);
     } else {
         found.impacts = m.impacts;
         found.plus = restitution_of(m.impacts, 1);
         found.minus = restitution_of(m.impacts, -1);
     }
     if (!m.R_given) take_restitution(found.plus, found.minus, p);
+    take_slope(m.R_slope, p);
+    if (refined) doubts = doubts_of(p, *refined, found);
     std::optional<IdentifiedSystem> system;
     std::vector<HiddenContacts> hidden;
     if (refined) {
@@ -356,6 +350,43 @@ MeasurementResult evaluate_measurement(const Measurement& m, const Identificatio
         .doubts = std::move(doubts),
         .direct = std::move(direct),
         .forward = std::move(forward)};
+}
+
+}  // namespace
+
+bool b_agrees(const Parameters& p, const Identification& i) {
+    return !std::isfinite(i.b_fitted) ||
+           std::abs(i.b_fitted - p.b) <= std::max(b_tolerance * p.b, b_sigmas * i.b_error);
+}
+
+double Measurement::step() const {
+    return (record.tau.back() - record.tau.front()) / (count_of(record.tau) - 1);
+}
+
+MeasurementResult evaluate_measurement(const Measurement& m, const IdentificationWatch& watch) {
+    IdentificationProgress progress(watch);
+    assert(m.is_record() || m.impacts.size() >= 2);
+    Measurement with = m;
+    std::optional<double> chi_square;
+    for (int round = 1;; ++round) {
+        MeasurementResult r = evaluated(with, progress);
+        if (!m.laws.any() || !r.refined->with_mass || round > most_rounds_of_laws) return r;
+        const LawChanges& c = r.refined->fit.laws;
+        double& friction = with.parameters.friction;
+        const auto is_small = [](double change, double error) {
+            return std::abs(change) <= settled_share * error;
+        };
+        if (!chi_square) chi_square = c.chi_square, with.R_slope.speed = c.mean_speed;
+        if (is_small(c.R_slope, c.R_slope_error) &&
+            (is_small(c.friction, c.friction_error) || (friction == 0 && c.friction < 0))) {
+            // Withheld together with b.
+            if (!std::isnan(r.refined->fit.values[Unknown::b]))
+                r.laws = {friction, c.friction_error, with.R_slope, c.R_slope_error, *chi_square};
+            return r;
+        }
+        friction = std::max(0.0, friction + c.friction);
+        with.R_slope.slope += c.R_slope;
+    }
 }
 
 }  // namespace vines

@@ -43,6 +43,8 @@ struct Measurement {
     KnownForcing forcing = {};
     std::vector<double> mains = {};  ///< frequencies of the mains, like Omega
     GivenUncertainty uncertainty = {};
+    BallLaws laws = {};             ///< fitted from those of the parameters and of R_slope
+    RestitutionSlope R_slope = {};  ///< of walls without a table
     ExponentOptions estimators = {};
     ExponentOptions direct_estimators = qr_alone;  ///< for the paper's direct estimate
 
@@ -127,6 +129,14 @@ struct DirectEstimate {
     MeasuredExponents exponents;
 };
 
+/// The laws of the ball as fitted.
+struct FittedLaws {
+    double friction, friction_error;  ///< m
+    RestitutionSlope R;               ///< speed: the mean one, at which the walls' R applies
+    double R_slope_error;
+    double chi_square;  ///< decrease of the sum of squares from the laws that were given
+};
+
 /// Run of the identified system over the record's time, from the first impact of known state.
 struct ForwardRun {
     double start;                 ///< tau of that impact
@@ -140,6 +150,8 @@ struct MeasurementResult {
     Parameters parameters;
     Identification found;
     std::optional<FoundImpacts> refined;  ///< for a record
+    /// Empty unless they are fitted, if the fit does not settle, or where b is withheld.
+    std::optional<FittedLaws> laws = {};
     Continuity continuity;
     MeasuredExponents exponents;
     IdentifiedExponents judged;

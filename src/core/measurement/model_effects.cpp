@@ -38,15 +38,24 @@ std::array<Oscillation, 2> at_rest(double angle) {
     return {{{0, 0, sin, cos}, {0, 0, cos, -sin}}};
 }
 
-/// Tests the effects with the equations of the last step, solved with them. Returns those that are
-/// present and matter for b, R or the forcing. `factor`: of standard errors.
+/// S and the right side of the equations of all sizes, from the last step, solved with them.
+struct EffectEquations {
+    explicit EffectEquations(const JointEquations& e)
+        : S(e.effects.squares.selfadjointView<Eigen::Lower>().toDenseMatrix() -
+            e.effects.mixed.transpose() * e.effects.solved),
+          g(e.effects.right - e.effects.mixed.transpose() * e.step) {}
+
+    Eigen::MatrixXd S;
+    Eigen::VectorXd g;
+};
+
+/// The effects that are present and matter for b, R or the forcing. `factor`: of standard errors.
 std::vector<FittedEffect> tested_effects(
-    const JointFitState& state, const EffectDerivatives& effects, double factor) {
+    const JointFitState& state, const EffectDerivatives& effects, const EffectEquations& of_effects,
+    double factor) {
     const JointEquations& e = state.equations;
     const JointEquations::EffectSums& sums = e.effects;
-    const Eigen::MatrixXd S = sums.squares.selfadjointView<Eigen::Lower>().toDenseMatrix() -
-                              sums.mixed.transpose() * sums.solved;
-    const Eigen::VectorXd g = sums.right - sums.mixed.transpose() * e.step;
+    const auto& [S, g] = of_effects;
     std::vector<FittedEffect> found;
     for (const EffectDerivatives::Columns& c : effects.columns()) {
         if (c.effect == Effect::given_mass_ratio || c.effect == Effect::given_oscillator) continue;
@@ -77,6 +86,32 @@ std::vector<FittedEffect> tested_effects(
         if (most > matters || c.effect == Effect::R_varies) found.push_back(effect);
     }
     return found;
+}
+
+/// Fits the laws of the ball. Returns the standard errors of the unknowns that follow from theirs.
+UnknownValues fit_laws(
+    JointFitState& state, const EffectDerivatives& effects, const EffectEquations& of_effects,
+    double factor) {
+    std::vector<Eigen::Index> columns;
+    if (state.laws.friction) columns.push_back(effects.first_of(Effect::friction));
+    if (state.laws.R_slope) columns.push_back(effects.first_of(Effect::R_varies));
+    const Eigen::VectorXd g = of_effects.g(columns);
+    const Eigen::MatrixXd covariance = of_effects.S(columns, columns).inverse();
+    const Eigen::VectorXd change = covariance * g,
+                          error = factor * covariance.diagonal().cwiseSqrt();
+    LawChanges& laws = state.fit.laws;
+    laws = {.mean_speed = effects.mean_speed, .chi_square = g.dot(change) / (factor * factor)};
+    if (state.laws.friction) laws.friction = change(0), laws.friction_error = error(0);
+    const Eigen::Index last = change.size() - 1;
+    if (state.laws.R_slope) laws.R_slope = change(last), laws.R_slope_error = error(last);
+    UnknownValues errors{};
+    for (std::size_t k = 0; k < unknowns; ++k) {
+        if (state.fit.fixed[k]) continue;
+        const Eigen::VectorXd by =
+            state.equations.effects.solved.row(state.equations.unknown_at(k))(columns);
+        errors[k] = factor * std::sqrt(by.dot(covariance * by));
+    }
+    return errors;
 }
 
 /// Standard errors that follow from those of the given masses, stiffness and damping, and from the
@@ -245,14 +280,16 @@ void test_effects(JointFitState& state) {
     if (!state.equations.solve()) return;
     // evaluate_residual() scaled the errors.
     const double factor = state.fit.errors[Unknown::Omega] / state.equations.errors[Unknown::Omega];
-    state.fit.effects =
-        tested_effects(state, derivatives, std::isfinite(factor) && factor > 1 ? factor : 1);
+    const double widened = std::isfinite(factor) && factor > 1 ? factor : 1;
+    const EffectEquations of_effects(state.equations);
+    state.fit.effects = tested_effects(state, derivatives, of_effects, widened);
     const auto widen = [&state](const UnknownValues& by) {
         for (std::size_t k = 0; k < unknowns; ++k)
             state.fit.errors[k] = elementary::hypot(state.fit.errors[k], by[k]);
     };
     for (const FittedEffect& e : state.fit.effects) widen(e.change);
     widen(propagated_uncertainty(state, derivatives));
+    if (state.laws.any()) widen(fit_laws(state, derivatives, of_effects, widened));
 }
 
 }  // namespace vines

@@ -72,7 +72,9 @@ JointFitInput fit_input(const ImpactSearch& s) {
         .fixed = s.fixed,
         .forcing = s.measurement.forcing,
         .mains = s.measurement.mains,
-        .uncertainty = s.measurement.uncertainty};
+        .uncertainty = s.measurement.uncertainty,
+        .R_slope = s.measurement.R_slope,
+        .laws = s.measurement.laws};
 }
 
 /// Limits the extent of pulses to a fraction of a typical flight.

@@ -221,6 +221,7 @@ Parameters identified_parameters(const ImpactSearch& s) {
     p.b = v[Unknown::b];
     p.R_plus = std::clamp(v[Unknown::R_plus], 0.0, 1.0);
     p.R_minus = std::clamp(v[Unknown::R_minus], 0.0, 1.0);
+    take_slope(s.measurement.R_slope, p);
     return p;
 }
 

@@ -123,6 +123,43 @@ TEST_CASE("a given R of the speed is part of the model") {
     CHECK((!wrong.doubts.empty() || !wrong.refined->fit.effects.empty()));
 }
 
+TEST_CASE("friction and a slope of R are fitted, alone and together, with errors that cover") {
+    const auto check = [](double value, double truth, double error) {
+        CAPTURE(value);
+        CAPTURE(truth);
+        CAPTURE(error);
+        CHECK(std::abs(value - truth) < 4 * error);
+    };
+    for (const UnmodelledEffects& effects :
+         {UnmodelledEffects{}, UnmodelledEffects{.R_slope = -0.1},
+          UnmodelledEffects{.friction = 0.2},
+          UnmodelledEffects{.R_slope = -0.1, .friction = 0.1}}) {
+        CAPTURE(effects.R_slope);
+        CAPTURE(effects.friction);
+        const Experiment e = unmodelled_experiment(0.015, effects);
+        Measurement m = measurement_of(e);
+        m.laws = {.friction = true, .R_slope = true};
+        const MeasurementResult r = evaluate_measurement(m);
+        REQUIRE(r.laws);
+        const double mu = effects.friction / (e.omega0 * e.omega0), R = e.true_parameters.R_plus,
+                     slope = R * effects.R_slope * e.omega0;
+        check(r.laws->friction, mu, r.laws->friction_error);
+        check(r.laws->R.slope, slope, r.laws->R_slope_error);
+        check(r.found.b_fitted, e.true_parameters.b, r.found.b_error);
+        check(r.found.plus.R, R + slope * r.laws->R.speed, r.found.plus.error);
+        check(r.found.minus.R, R + slope * r.laws->R.speed, r.found.minus.error);
+        CHECK(r.found.b_error < 1e-3 * e.true_parameters.b);
+        CHECK(r.laws->friction_error < 0.02 / (e.omega0 * e.omega0));
+        CHECK(r.laws->R_slope_error < 0.02 * R * e.omega0);
+        CHECK(!shows(r, Effect::friction));
+        CHECK(!shows(r, Effect::R_varies));
+        const bool none = effects.R_slope == 0 && effects.friction == 0;
+        CHECK((none ? r.laws->chi_square < 20 : r.laws->chi_square > 100));
+        for (std::size_t k = 0; k < 3; ++k)
+            CHECK(r.forward->impacts[k].tau == doctest::Approx(e.impacts[k + 1].tau).epsilon(1e-4));
+    }
+}
+
 TEST_CASE(
     "no value is more than four of its errors off under any effect outside the model" *
     doctest::test_suite("statistics")) {
