@@ -48,7 +48,9 @@ test("pipelined health checks of many connections take their turns with the othe
   const count = (text) => Number(/route="\/livez"[^}]*} (\d+)/.exec(text)?.[1] ?? 0);
   const answered = async () => count(await (await fetch(`${one.url}/metrics`)).text());
   const sockets = await connectAll(one.url, 10, () => get("/livez").repeat(20000));
-  t.after(() => sockets.forEach(({socket}) => socket.destroy()));
+  t.after(() => {
+    for (const {socket} of sockets) socket.destroy();
+  });
   let before = await answered();
   while (before < 20000) before = await answered();
   // Two rounds of 17 answers to each of ten connections.
@@ -64,7 +66,9 @@ test("few requests follow one sweep, so that threads remain for others; it passe
     transient_cycles: 10,
   };
   const begun = [];
-  t.after(() => begun.forEach(({leave}) => leave.abort()));
+  t.after(() => {
+    for (const {leave} of begun) leave.abort();
+  });
   const follow = async (client) => {
     const leave = new AbortController();
     const headers = {"X-Forwarded-For": client};
