@@ -123,7 +123,9 @@ TEST_CASE("a given R of the speed is part of the model") {
     CHECK((!wrong.doubts.empty() || !wrong.refined->fit.effects.empty()));
 }
 
-TEST_CASE("friction and a slope of R are fitted, alone and together, with errors that cover") {
+TEST_CASE(
+    "friction and a slope of R are fitted, alone and together, with errors that cover" *
+    doctest::test_suite("statistics")) {
     const auto check = [](double value, double truth, double error) {
         CAPTURE(value);
         CAPTURE(truth);
@@ -213,7 +215,9 @@ TEST_CASE("a measured forcing is the load: its modulation, harmonics and sweeps 
         }
 }
 
-TEST_CASE("hidden contacts and the run of the identified system follow a measured forcing") {
+TEST_CASE(
+    "hidden contacts and the run of the identified system follow a measured forcing" *
+    doctest::test_suite("long")) {
     for (const double R : {0.3, 0.85}) {
         CAPTURE(R);
         const UnmodelledEffects effects{.R = R, .second = 0.05, .amplitude_modulation = 0.03};
