@@ -77,11 +77,12 @@ private:
     const Networks proxies_;
     const Descriptor listening_, poll_, wake_;
     MemoryBudget memory_;
-    std::vector<Owned> connections_;             // indexed by socket; used by run() only
-    std::map<std::string, std::size_t> open_;    // connections by client, also those with workers
-    std::set<int> ready_;                        // sockets with more to read or to send
-    std::atomic<std::size_t> count_ = 0;         // number of connections_
-    std::atomic<std::size_t> delivering_ = 0;    // those of them that take an answer
+    std::vector<Owned> connections_;           // indexed by socket; used by run() only
+    std::map<std::string, std::size_t> open_;  // connections by client, also those with workers
+    std::set<int> ready_;                      // sockets with more to read or to send
+    std::atomic<std::size_t> count_ = 0;       // number of connections_
+    std::atomic<std::size_t> delivering_ = 0;  // those of them that take an answer
+    bool is_memory_to_return_ = false;
     std::atomic<std::size_t> with_workers_ = 0;  // or returned and not yet collected
     std::atomic<Clock::time_point> streams_scarce_{};
     Clock::time_point connections_scarce_{};

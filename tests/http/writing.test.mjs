@@ -2,7 +2,7 @@
 import assert from "node:assert/strict";
 import {test} from "node:test";
 import {startService} from "../service.mjs";
-import {connect, connectAll, get, post, send, serviceFor, statuses, until} from "./raw.mjs";
+import {connect, connectAll, get, memory, post, send, serviceFor, statuses, until} from "./raw.mjs";
 
 // Time within which others get what such a client holds, ms.
 const soon = 5000;
@@ -112,4 +112,15 @@ test("a client that reads slowly but steadily gets all of its answer", async (t)
   await ended;
   const [head, body] = text().split("\r\n\r\n");
   assert.equal(body.length, Number(/Content-Length: (\d+)/.exec(head)[1]));
+});
+
+test("memory of answers that nobody reads returns to the system once their clients have left", async (t) => {
+  const one = await serviceFor(t);
+  const before = await memory(one.pid);
+  const body = JSON.stringify({...large, tau_end: 1000});
+  const sockets = await connectAll(one.url, 60, () => post("/v1/simulate", body));
+  for (const {socket} of sockets) socket.pause();
+  await until(async () => (await memory(one.pid)) > before + 80);
+  for (const {socket} of sockets) socket.destroy();
+  if (!process.env.SANITIZED) await until(async () => (await memory(one.pid)) < before + 40);
 });

@@ -33,9 +33,13 @@ ExtremesRecord::Relative ExtremesRecord::relative_to_base(const Flow& flow) cons
 
 void ExtremesRecord::on_stretch(const Stretch& s) {
     const auto [from, to] = s.within(window_);
-    if (!has_peaks_ || !(from < to)) return;
+    if (wanted_ < ExtremesWanted::of_x || !(from < to)) return;
     const Polynomial shift = s.shift(), base = s.forces ? s.forces->base : Polynomial{};
     const Oscillation& o = s.start;
+    if (wanted_ == ExtremesWanted::of_x) {
+        extremes_.x = scaled_peak(extremes_.x, 1, s.flow, o, sum(shift, base, -1), from, to);
+        return;
+    }
     // x''/-Omega^2 follows the same equation as x.
     const double Omega = s.flow.coefficients()[3], size = Omega * Omega;
     extremes_.x_acceleration = scaled_peak(

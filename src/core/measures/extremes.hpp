@@ -8,6 +8,7 @@
 namespace vines {
 
 struct Extremes {
+    double x = 0;               ///< of |x|, as EnergyBalance::peak, m; with ExtremesWanted::of_x
     double x_acceleration = 0;  ///< of |x''| between impacts, m per unit of tau squared
     double x_max_least = 0;     ///< smallest maximum of |x| in a forcing cycle, m
     double x_relative = 0;      ///< of |x - x_b|, x_b being the displacement of the base, m
@@ -28,8 +29,9 @@ enum class Objective {
     decay_time  ///< in which the energy of a free decay falls to a tenth, s
 };
 
-/// Those of impacts cost almost nothing, the others a quarter of the run.
-enum class ExtremesWanted { none, of_impacts, all };
+/// Those of impacts cost almost nothing, that of x little, the others a quarter of the run. All:
+/// but for x.
+enum class ExtremesWanted { none, of_impacts, of_x, all };
 
 /// Observer of the extremes over a window.
 class ExtremesRecord : public Observer {
@@ -39,7 +41,7 @@ public:
         ExtremesWanted wanted = ExtremesWanted::all)
         : parameters_(parameters),
           window_(window),
-          has_peaks_(wanted == ExtremesWanted::all) {}
+          wanted_(wanted) {}
 
     void on_stretch(const Stretch&) override;
     void on_impact(const Impact&) override;
@@ -61,7 +63,7 @@ private:
 
     const Parameters parameters_;
     const Interval window_;
-    const bool has_peaks_;
+    const ExtremesWanted wanted_;
     const double F_ = parameters_.load ? 0 : parameters_.epsilon * parameters_.G,
                  sin_phi_ = elementary::sin(parameters_.phi()),
                  cos_phi_ = elementary::cos(parameters_.phi());

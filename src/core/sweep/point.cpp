@@ -31,6 +31,9 @@ Outcome cycles_from(
 
 AnalysisRequest wanted_of(const Parameters& p, const State& start, const PointOptions& o) {
     const Interval window = measured_part(p, o);
+    // The integrals of the energy take a tenth of a run.
+    const bool has_energy = !o.amplitudes_alone || o.objective == Objective::x_rms ||
+                            o.objective == Objective::decay_time;
     return {
         .parameters = p,
         .start = start,
@@ -39,8 +42,10 @@ AnalysisRequest wanted_of(const Parameters& p, const State& start, const PointOp
         .window = window,
         .parts =
             {.section = o.section != SectionKind::none,
-             .energy = true,
-             .extremes = o.peaks ? ExtremesWanted::all : ExtremesWanted::of_impacts,
+             .energy = has_energy,
+             .extremes = o.peaks      ? ExtremesWanted::all
+                         : has_energy ? ExtremesWanted::of_impacts
+                                      : ExtremesWanted::of_x,
              .regime = !o.amplitudes_alone},
         .estimators = qr_alone,
         .settle_cycles = o.settle_cycles,
@@ -171,21 +176,25 @@ PointResult measure(
         if (known) return *known;
     }
     Analysis a = analyse(wanted_of(p, begin, options), {.run = stop});
-    const EnergyBalance& energy = a.energy->balance;
     r.outcome = a.outcome;
     r.measured = true;
     if (!options.amplitudes_alone) set_conclusions(r, a, p.cycle());
-    r.x_max = energy.peak;
-    r.x_rms = energy.rms;
-    r.x_rms_error = energy.rms_error;
-    r.share_impacts_error = energy.share_impacts_error;
     if (!p.load) r.x_free = free_amplitude(p);
-    r.x_rms_ratio = r.x_rms / reference_rms(p, begin, r.x_free, energy.window);
-    r.share_impacts = energy.share_impacts;
+    r.x_max = a.extremes.x;
+    if (a.energy) {
+        const EnergyBalance& energy = a.energy->balance;
+        r.x_max = energy.peak;
+        r.x_rms = energy.rms;
+        r.x_rms_error = energy.rms_error;
+        r.x_rms_ratio = r.x_rms / reference_rms(p, begin, r.x_free, energy.window);
+        r.share_impacts = energy.share_impacts;
+        r.share_impacts_error = energy.share_impacts_error;
+        if (a.energy->decay)
+            r.decay_tenth = a.energy->decay->with_absorber.tenth.value_or(infinity);
+    }
     r.impacts = r.outcome.impacts;
     r.sticks = a.stick_count;
     r.extremes = a.extremes;
-    if (a.energy->decay) r.decay_tenth = a.energy->decay->with_absorber.tenth.value_or(infinity);
     r.objective = objective_of(r, options.objective, options.units);
     if (a.sections) r.sections = std::move(*a.sections);
     if (options.carry) r.at_end = last_state(p, r.outcome, stop);

@@ -64,7 +64,8 @@ struct PointOptions {
     double section_phase = 0;          ///< stroboscopic section: rad after each whole cycle
     /// A neighbour continues from the last state: computes PointResult::at_end.
     bool carry = false;
-    bool amplitudes_alone = false;  ///< without exponents, verdict and regime
+    /// Only objective, impacts and their extremes; x_max without `peaks`, x_rms if it is asked for.
+    bool amplitudes_alone = false;
     Objective objective = Objective::x_max;
     bool peaks = false;  ///< Extremes::x_acceleration and x_relative, too
     ObjectiveUnits units = {};
@@ -91,11 +92,11 @@ struct PointResult {
     Regime regime;  ///< without its lists
     AttractorName name;
     /// m; m; x_rms over that of the steady motion (free decay: same start) without absorber.
-    double x_max, x_rms, x_rms_ratio;
-    Extremes extremes;                        ///< two of them with PointOptions::peaks
-    double decay_tenth = nan;                 ///< DecayTimes::tenth; infinity after the run's end
-    double objective;                         ///< by which motions are ranked
-    double x_rms_error, share_impacts_error;  ///< standard errors (EnergyBalance)
+    double x_max, x_rms = nan, x_rms_ratio = nan;
+    Extremes extremes;         ///< two of them with PointOptions::peaks
+    double decay_tenth = nan;  ///< DecayTimes::tenth; infinity after the run's end
+    double objective;          ///< by which motions are ranked
+    double x_rms_error = nan, share_impacts_error = nan;  ///< standard errors (EnergyBalance)
     /// Steady amplitude without absorber, m; empty at undamped resonance.
     std::optional<double> x_free;
     std::optional<double> share_impacts;  ///< fraction of dissipation; empty without dissipation

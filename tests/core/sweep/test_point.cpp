@@ -4,6 +4,7 @@
 #include <string>
 
 #include "../support.hpp"
+#include "core/motion/load.hpp"
 #include "core/sweep/point.hpp"
 
 using namespace vines;
@@ -48,6 +49,24 @@ TEST_CASE("a section keeps the last points in order of time, at whole cycles too
     const PointResult impacts = measure(p, default_state(p), options, {});
     CHECK(impacts.sections.impact.size() == static_cast<std::size_t>(impacts.impacts));
     CHECK(std::isnan(impacts.sections.impact[0].since));
+}
+
+TEST_CASE("an amplitude alone is that of the whole evaluation") {
+    Parameters harmonic = table1(0.015, Damping::closed_form), loaded = harmonic;
+    harmonic.R_plus = harmonic.R_minus = 0.1;  // sticks
+    loaded.G = 0, loaded.friction = 0.002;
+    loaded.load =
+        std::make_shared<const Load>(std::vector<LoadHarmonic>{{1.7e-4, 1, 0}, {1e-4, 3.3, 0.5}});
+    for (const Parameters& p : {harmonic, loaded})
+        for (const Objective objective : {Objective::x_max, Objective::x_rms}) {
+            PointOptions options{.transient_cycles = 10, .cycles = 40};
+            options.objective = objective;
+            const PointResult whole = measure(p, default_state(p), options, {});
+            options.amplitudes_alone = true;
+            const PointResult alone = measure(p, default_state(p), options, {});
+            CHECK(alone.objective == doctest::Approx(whole.objective).epsilon(1e-14).scale(0));
+            CHECK(alone.extremes.impulse == whole.extremes.impulse);
+        }
 }
 
 TEST_CASE("a point stops within 10000 impacts after a stop request") {
