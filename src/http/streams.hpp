@@ -8,8 +8,6 @@
 #include <mutex>
 #include <string>
 
-#include "api/continuation.hpp"
-#include "api/design.hpp"
 #include "api/format/sweep_table.hpp"
 #include "http/routes.hpp"
 
@@ -29,17 +27,18 @@ private:
     std::map<std::string, std::weak_ptr<LineComputation>> running_;
 };
 
-/// A sweep as a stream of NDJSON lines, or as a table. It ends after the sweep deadline: lines with
-/// the points so far, a table with a reset connection. Problem 413 for a table beyond the answer
-/// limit; 503 if the maximum number of sweeps is running. A small sweep of lines is computed once
-/// for all equal requests that come while it runs. The service must outlive the response.
+/// Sends a computation, which counts as a sweep, or, if is_shared, the lines of a running one of an
+/// equal request. It ends after the sweep deadline: lines with an error, a table with a reset
+/// connection. Problem 503 if the maximum number of sweeps is running. The service must outlive the
+/// response, which can be copied: the sweep's slot is released with the last copy, whether it was
+/// sent or not.
+Response stream_lines(
+    std::shared_ptr<api::LineStream> stream, const Request& asked, const Service& service,
+    bool is_shared = false);
+
+/// A sweep as NDJSON lines, or as a table; problem 413 for a table beyond the answer limit. A small
+/// sweep of lines is computed once for all equal requests that come while it runs.
 Response stream_sweep(
     api::SweepRequest request, api::Format format, const Request& asked, const Service& service);
-
-/// The branches of a continuation, or the absorbers of a design, as a stream of NDJSON lines, which
-/// counts as a sweep: the same slots, deadline and refusals.
-Response stream_continuation(
-    api::ContinueRequest request, const Request& asked, const Service& service);
-Response stream_design(api::DesignRequest request, const Request& asked, const Service& service);
 
 }  // namespace vines::http
