@@ -19,7 +19,13 @@ struct RouteOptions {
     PageOptions page = {};
 };
 
-class RunningStreams;
+class LineComputation;  // of a stream (streams.cpp)
+
+/// The running computations whose lines several clients can get, by their requests.
+struct RunningStreams {
+    std::mutex mutex;
+    std::map<std::string, std::weak_ptr<LineComputation>> streams;
+};
 
 struct Service {
     const RouteOptions options;

@@ -236,30 +236,22 @@ Response sweep_refusal(const AdmissionControl& admission) {
 
 }  // namespace
 
-std::shared_ptr<LineComputation> RunningStreams::find_or_begin(
-    const std::string& request, const std::function<std::shared_ptr<LineComputation>()>& begin) {
-    const std::lock_guard lock(mutex_);
-    std::erase_if(running_, [](const auto& entry) { return entry.second.expired(); });
-    std::weak_ptr<LineComputation>& running = running_[request];
-    if (auto found = running.lock()) return found;
-    auto begun = begin();
-    running = begun;
-    return begun;
-}
-
 Response stream_lines(
     std::shared_ptr<api::LineStream> stream, const Request& asked, const Service& service,
     bool is_shared) {
-    const auto begin = [&]() -> std::shared_ptr<LineComputation> {
+    const std::lock_guard lock(service.running->mutex);
+    auto& streams = service.running->streams;
+    std::erase_if(streams, [](const auto& entry) { return entry.second.expired(); });
+    std::weak_ptr<LineComputation> own;
+    // The body of a large sweep is not copied.
+    auto& running = is_shared ? streams[std::string(asked.head.path()) + asked.body] : own;
+    auto lines = running.lock();
+    if (!lines) {
         auto slot = service.admission.acquire_sweep(asked.sender.client());
-        if (!slot) return nullptr;
-        return std::make_shared<LineComputation>(
+        if (!slot) return sweep_refusal(service.admission);
+        running = lines = std::make_shared<LineComputation>(
             std::move(stream), asked, service, std::move(slot), is_shared);
-    };
-    const auto lines = is_shared ? service.running->find_or_begin(
-                                       std::string(asked.head.path()) + asked.body, begin)
-                                 : begin();
-    if (!lines) return sweep_refusal(service.admission);
+    }
     return {
         .content_type = api::sweep_format_names[0].media_type,
         .headers = {{"Cache-Control", "no-store"}, {"X-Accel-Buffering", "no"}},

@@ -2,30 +2,10 @@
 // compute slots as background work, and stop when their client leaves.
 #pragma once
 
-#include <functional>
-#include <map>
-#include <memory>
-#include <mutex>
-#include <string>
-
 #include "api/format/sweep_table.hpp"
 #include "http/routes.hpp"
 
 namespace vines::http {
-
-class LineComputation;  // of a stream
-
-/// The running computations whose lines several clients can get. Thread-safe.
-class RunningStreams {
-public:
-    /// The computation of an equal request, or else the result of `begin`, which can be null.
-    std::shared_ptr<LineComputation> find_or_begin(
-        const std::string& request, const std::function<std::shared_ptr<LineComputation>()>& begin);
-
-private:
-    std::mutex mutex_;
-    std::map<std::string, std::weak_ptr<LineComputation>> running_;
-};
 
 /// Sends a computation, which counts as a sweep, or, if is_shared, the lines of a running one of an
 /// equal request. It ends after the sweep deadline: lines with an error, a table with a reset

@@ -1,6 +1,6 @@
-// A field of a request, how its value is written in a query, and its check. Parsing, checks,
-// defaults, GET /v1/parameters, the OpenAPI document, the command line and the page's form all
-// follow from the tables of fields (tables.hpp).
+// A field of a request, its form in a query, and its check. Parsing, checks, defaults, GET
+// /v1/parameters, the OpenAPI document, the command line and the page's form all follow from the
+// tables of fields (tables.hpp).
 #pragma once
 
 #include <cstddef>
@@ -8,6 +8,7 @@
 #include <optional>
 #include <span>
 #include <string>
+#include <string_view>
 #include <type_traits>
 #include <utility>
 #include <vector>
@@ -121,6 +122,9 @@ Json value_of_text(FieldType type, const std::string& text);
 
 /// The parts of a separated list; none for an empty text.
 std::vector<std::string> split(const std::string& text, char separator);
+
+/// The text without blanks and tabs at its ends.
+std::string_view trimmed(std::string_view text);
 
 /// "one, two, three", for a sentence.
 std::string joined(const std::vector<std::string>& items);
