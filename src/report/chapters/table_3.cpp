@@ -8,7 +8,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <ranges>
 
 #include "report/claims.hpp"
 
@@ -154,7 +153,7 @@ double rise_over_error(const Rows& rows, Damping damping) {
 /// responses, and for Type I, which is in the same table and where they fall.
 void order(Report& report, const Rows& rows) {
     std::vector<double> printed, here, other;  // in ascending order of b
-    for (const Row& row : rows | std::views::reverse) {
+    for (const Row& row : Rows(rows.rbegin(), rows.rend())) {
         printed.push_back(row.printed.lambda1);
         here.push_back(row.here.lambda(0).mean);
         other.push_back(row.by_equation.lambda(0).mean);
