@@ -20,7 +20,7 @@
 #include <utility>
 #include <vector>
 
-#include "api/schema/json.hpp"
+#include "api/schema/field.hpp"
 #include "core/motion/simulate.hpp"
 
 namespace vines {

@@ -1,6 +1,7 @@
 #include "api/continuation.hpp"
 
 #include <algorithm>
+#include <atomic>
 #include <numbers>
 
 #include "api/describe.hpp"
@@ -75,17 +76,65 @@ constexpr EndText end_texts[] = {
     {"not_decided", "not decided: Newton's method does not converge, however short the step"}};
 static_assert(std::size(end_texts) == static_cast<std::size_t>(BranchEnd::not_decided) + 1);
 
-class ContinuationLines : public BranchSink {
-public:
-    ContinuationLines(
-        const ContinueRequest& r, ContinuationCount& count,
-        const std::function<void(const std::string&)>& take)
-        : r_(r),
-          count_(count),
-          take_(take) {}
+/// The special points of a kind, instead of lines.
+struct PointsOfKind : BranchSink {
+    explicit PointsOfKind(SpecialKind wanted) : kind(wanted) {}
+    void point(int, const OrbitPoint&) override {}
+    void special(int, const SpecialPoint& special) override {
+        if (special.kind == kind && special.on.equations) found.push_back(special);
+    }
+    const SpecialKind kind;
+    std::vector<SpecialPoint> found;
+};
 
+class ContinuationLines : public LineStream, BranchSink {
+public:
+    explicit ContinuationLines(ContinueRequest r) : r_(std::move(r)) {}
+
+    std::string begin() const override {
+        const auto& [from, to] = r_.plan.family.ranges[0];
+        return json_line(
+            {{"type", "start"},
+             {"version", version()},
+             {"commit", commit()},
+             {"parameter", r_.parameter},
+             {"from", from},
+             {"to", to},
+             {"parameters", describe_system(r_.base.system)},
+             {"warnings", r_.base.system.notes},
+             {"request", r_.given}});
+    }
+    bool compute(int, RunControl& control, const Take& take) override {
+        const ComputePermit permit(control);
+        take_ = take;
+        bool stopped = false;
+        follow([&] { return stopped = stopped || control.stop_or_yield(); });
+        ++control.runs;
+        complete_ = !stopped;
+        return complete_;
+    }
+    std::string progress(std::size_t, const RunControl&, double seconds) const override {
+        const std::size_t done = points_;
+        return json_line(
+            {{"type", "progress"},
+             {"done", done},
+             {"per_second", seconds > 0 ? static_cast<double>(done) / seconds : 0}});
+    }
+    std::string end() override {
+        if (!complete_) return "";
+        return json_line(
+            {{"type", "done"},
+             {"points", points_.load()},
+             {"specials", specials_},
+             {"branches", branches_}});
+    }
+    const char* remedy() const override {
+        return "continue from the state of a last point, with orbit \"stated\"";
+    }
+
+private:
     void branch(const BranchStart& b) override {
-        ++count_.branches;
+        ++branches_;
         send(
             {{"type", "branch"},
              {"branch", b.number},
@@ -94,11 +143,11 @@ public:
              {"direction", b.direction > 0 ? "up" : "down"}});
     }
     void point(int branch, const OrbitPoint& point) override {
-        ++count_.points;
+        ++points_;
         send(place("point", branch, point));
     }
     void special(int branch, const SpecialPoint& s) override {
-        ++count_.specials;
+        ++specials_;
         Json line = place("special", branch, s.orbit);
         line["kind"] = name_of(s.kind);
         if (s.end) {
@@ -112,7 +161,7 @@ public:
     }
     /// Reports why the continuation has no first orbit or no point for a curve.
     void no_orbit(const char* reason, const std::string& detail) {
-        ++count_.specials;
+        ++specials_;
         send(
             {{"type", "special"},
              {"branch", nullptr},
@@ -121,8 +170,6 @@ public:
              {"reason", reason},
              {"detail", detail}});
     }
-
-private:
     Json place(const char* type, int branch, const OrbitPoint& point) const {
         Json line = {{"type", type}, {"branch", branch}, {r_.parameter, point.parameters[0]}};
         if (point.parameters.size() > 1) line[r_.second] = point.parameters[1];
@@ -131,66 +178,65 @@ private:
         line["state"] = describe(properties::start, point.measures.at_whole_cycle);
         return line;
     }
-    void send(Json line) const { take_(json_text(std::move(line))); }
+    void send(Json line) const { take_(json_line(std::move(line))); }
 
-    const ContinueRequest& r_;
-    ContinuationCount& count_;
-    const std::function<void(const std::string&)>& take_;
+    /// The orbit on which the base settles, or that it states; otherwise reports why there is none.
+    std::optional<PeriodicOrbit> first_orbit(const vines::StopRequest& stop) {
+        const Parameters& p = r_.base.system.parameters;
+        std::optional<PeriodicOrbit> orbit;
+        if (r_.settles) {
+            const PointResult settled = measure(p, r_.base.start, r_.settling, stop);
+            if (stop()) return std::nullopt;
+            if (settled.measured) orbit = settled.regime.orbit;
+        } else {
+            const State& s = r_.base.start;
+            orbit = find_orbit(p, s, r_.period_cycles, scale_of(p, {&s, 1}), stated_reach, stop);
+        }
+        if (!orbit)
+            no_orbit(
+                "no_orbit",
+                r_.settles
+                    ? "the base does not settle on a periodic orbit within cycles; state one: "
+                      "orbit \"stated\" with its state as start"
+                    : "Newton's method finds no orbit of period_cycles next to the start");
+        else if (orbit->impacts == 0)
+            no_orbit("no_impacts", "the first orbit has no impacts: there is nothing to follow");
+        else return orbit;
+        return std::nullopt;
+    }
+    void follow(const vines::StopRequest& stop) {
+        const auto orbit = first_orbit(stop);
+        if (!orbit) return;
+        const Parameters& p = r_.base.system.parameters;
+        const double length = scale_of(p, whole_cycle_states(p, *orbit)).x;
+        const auto start = orbit_start(p, *orbit, length, r_.plan.family, {r_.at});
+        r_.plan.stop = stop;
+        if (!start)
+            no_orbit("not_decided", "not decided: the first orbit's impacts are not periodic");
+        else if (r_.curve) follow_curves(*start);
+        else follow_branches(r_.plan, *start, *this);
+    }
+    /// Curves through the special points of the branch.
+    void follow_curves(const OrbitGuess& start) {
+        PointsOfKind points(*r_.curve);
+        if (!follow_branches(r_.plan, start, points)) return;
+        if (points.found.empty())
+            no_orbit("no_such_point", "the branch has no special point of the kind of curve");
+        BranchPlan curve = r_.plan;
+        curve.family = r_.curve_family;
+        int number = 0;
+        for (const SpecialPoint& point : points.found) {
+            if (!follow_curve(curve, point, r_.second_at, number, *this)) return;
+            number += 2;
+        }
+    }
+
+    ContinueRequest r_;
+    Take take_;
+    std::atomic<std::size_t> points_ = 0;
+    std::size_t specials_ = 0, branches_ = 0;
+    bool complete_ = false;
 };
-
-/// The special points of a kind, instead of lines.
-struct PointsOfKind : BranchSink {
-    explicit PointsOfKind(SpecialKind wanted) : kind(wanted) {}
-    void point(int, const OrbitPoint&) override {}
-    void special(int, const SpecialPoint& special) override {
-        if (special.kind == kind && special.on.equations) found.push_back(special);
-    }
-    const SpecialKind kind;
-    std::vector<SpecialPoint> found;
-};
-
-/// Curves through the special points of the branch. False if stopped.
-bool follow_curves(
-    const ContinueRequest& r, const BranchPlan& plan, const OrbitGuess& start,
-    ContinuationLines& lines) {
-    PointsOfKind points(*r.curve);
-    if (!follow_branches(plan, start, points)) return false;
-    if (points.found.empty())
-        lines.no_orbit("no_such_point", "the branch has no special point of the kind of curve");
-    BranchPlan curve = plan;
-    curve.family = r.curve_family;
-    int number = 0;
-    for (const SpecialPoint& point : points.found) {
-        if (!follow_curve(curve, point, r.second_at, number, lines)) return false;
-        number += 2;
-    }
-    return true;
-}
-
-/// The orbit on which the base settles, or that it states; otherwise reports why there is none.
-std::optional<PeriodicOrbit> first_orbit(
-    const ContinueRequest& r, const vines::StopRequest& stop, ContinuationLines& lines) {
-    const Parameters& p = r.base.system.parameters;
-    std::optional<PeriodicOrbit> orbit;
-    if (r.settles) {
-        const PointResult settled = measure(p, r.base.start, r.settling, stop);
-        if (stop && stop()) return std::nullopt;
-        if (settled.measured) orbit = settled.regime.orbit;
-    } else {
-        const State& s = r.base.start;
-        orbit = find_orbit(p, s, r.period_cycles, scale_of(p, {&s, 1}), stated_reach, stop);
-    }
-    if (!orbit)
-        lines.no_orbit(
-            "no_orbit",
-            r.settles ? "the base does not settle on a periodic orbit within cycles; state one: "
-                        "orbit \"stated\" with its state as start"
-                      : "Newton's method finds no orbit of period_cycles next to the start");
-    else if (orbit->impacts == 0)
-        lines.no_orbit("no_impacts", "the first orbit has no impacts: there is nothing to follow");
-    else return orbit;
-    return std::nullopt;
-}
 
 SpecialKind kind_of(const std::string& name) {
     int kind = 0;
@@ -303,56 +349,8 @@ ContinueRequest read_continue_request(const Json& object) {
     return r;
 }
 
-Json continuation_start(const ContinueRequest& r) {
-    const auto& [from, to] = r.plan.family.ranges[0];
-    return {
-        {"type", "start"},
-        {"version", version()},
-        {"commit", commit()},
-        {"parameter", r.parameter},
-        {"from", from},
-        {"to", to},
-        {"parameters", describe_system(r.base.system)},
-        {"warnings", r.base.system.notes},
-        {"request", r.given}};
-}
-
-std::string continuation_progress(const ContinuationCount& count, double seconds) {
-    const std::size_t done = count.points;
-    return json_line(
-        {{"type", "progress"},
-         {"done", done},
-         {"per_second", seconds > 0 ? static_cast<double>(done) / seconds : 0}});
-}
-
-std::string continuation_done(const ContinuationCount& count) {
-    return json_text(
-        {{"type", "done"},
-         {"points", count.points.load()},
-         {"specials", count.specials.load()},
-         {"branches", count.branches.load()}});
-}
-
-bool run_continuation(
-    const ContinueRequest& r, RunControl& control, ContinuationCount& count,
-    const std::function<void(const std::string& line)>& take) {
-    const ComputePermit permit(control);
-    bool stopped = false;
-    const auto stop = [&] { return stopped = stopped || control.stop_or_yield(); };
-    ContinuationLines lines(r, count, take);
-    const auto orbit = first_orbit(r, stop, lines);
-    ++control.runs;
-    if (!orbit) return !stopped;
-    const Parameters& p = r.base.system.parameters;
-    const double length = scale_of(p, whole_cycle_states(p, *orbit)).x;
-    const auto start = orbit_start(p, *orbit, length, r.plan.family, {r.at});
-    BranchPlan plan = r.plan;
-    plan.stop = stop;
-    if (!start) {
-        lines.no_orbit("not_decided", "not decided: the first orbit's impacts are not periodic");
-        return true;
-    }
-    return r.curve ? follow_curves(r, plan, *start, lines) : follow_branches(plan, *start, lines);
+std::shared_ptr<LineStream> continuation_lines(ContinueRequest request) {
+    return std::make_shared<ContinuationLines>(std::move(request));
 }
 
 }  // namespace vines::api

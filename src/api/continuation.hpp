@@ -1,14 +1,10 @@
-// Requests of /v1/continue, and the lines of its NDJSON stream: start, branch, point, special,
-// progress, done, error.
+// Requests of /v1/continue, and the lines of its NDJSON stream.
 #pragma once
 
-#include <atomic>
-#include <functional>
-
+#include "api/line_stream.hpp"
 #include "api/properties.hpp"
 #include "api/system.hpp"
 #include "core/continuation/branch.hpp"
-#include "core/sweep/sweep.hpp"
 
 namespace vines::api {
 
@@ -30,24 +26,8 @@ struct ContinueRequest {
 /// Problem 422 naming every invalid field.
 ContinueRequest read_continue_request(const Json& object);
 
-/// Numbers of lines so far; another thread can read them.
-struct ContinuationCount {
-    std::atomic<std::size_t> branches = 0, points = 0, specials = 0;
-};
-
-/// Computes on the calling thread, with one permit. Passes each line of the result, without line
-/// end, to take(). False if stopped before the end.
-bool run_continuation(
-    const ContinueRequest& request, vines::RunControl& control, ContinuationCount& count,
-    const std::function<void(const std::string& line)>& take);
-
-/// {type: start, version, commit, parameter, from, to, parameters, warnings, request}.
-Json continuation_start(const ContinueRequest& request);
-
-/// {type: progress, done, per_second}: points so far. With line end.
-std::string continuation_progress(const ContinuationCount& count, double seconds);
-/// {type: done, points, specials, branches}.
-std::string continuation_done(const ContinuationCount& count);
+/// Lines start, branch, point, special, progress, done; computed on one thread.
+std::shared_ptr<LineStream> continuation_lines(ContinueRequest request);
 
 namespace properties {
 

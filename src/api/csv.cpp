@@ -21,12 +21,6 @@ constexpr char by_blanks = ' ';
 // Longest line in cells.
 constexpr std::size_t most_cells = 1000;
 
-std::string_view trimmed(std::string_view text) {
-    const std::size_t first = text.find_first_not_of(blanks);
-    if (first == std::string_view::npos) return {};
-    return text.substr(first, text.find_last_not_of(blanks) - first + 1);
-}
-
 struct CsvLine {
     std::size_t number = 0;  ///< from 1
     std::string_view text;
@@ -180,18 +174,8 @@ bool has_number(const std::vector<Cell>& cells, char separator) {
     return std::any_of(cells.begin(), cells.end(), is_number_by(separator));
 }
 
-/// A cheap test of the first character and of the presence of a separator: it rejects most lines of
-/// text without splitting them.
-bool may_be_numbers(std::string_view line, std::optional<char> declared) {
-    line = trimmed(line);
-    constexpr std::string_view of_a_first_cell = "0123456789+-.,\"iInN";  // also inf and nan
-    return !line.empty() && of_a_first_cell.find(line[0]) != line.npos &&
-           (declared || line.find_first_of(";\t, ") != line.npos);
-}
-
 /// The separator that splits the line into two or more numbers.
 std::optional<char> separator_of_numbers(std::string_view line, std::optional<char> declared) {
-    if (!may_be_numbers(line, declared)) return std::nullopt;
     std::vector<Cell> cells;
     std::string separators = declared ? std::string(1, *declared) : ";\t,";
     if (!declared) separators += by_blanks;

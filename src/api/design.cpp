@@ -3,9 +3,11 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <atomic>
 
 #include "api/describe.hpp"
 #include "api/json_text.hpp"
+#include "api/properties.hpp"
 #include "api/schema/enum_names.hpp"
 #include "api/version.hpp"
 #include "core/sweep/basins.hpp"
@@ -199,49 +201,53 @@ Json described(const DesignRequest& r, const Design& d) {
     return line;
 }
 
+class DesignLines : public LineStream {
+public:
+    explicit DesignLines(DesignRequest r) : r_(std::move(r)) {}
+
+    std::string begin() const override {
+        return json_line(
+            {{"type", "start"},
+             {"version", version()},
+             {"commit", commit()},
+             {"runs_of", design_runs(r_.plan)},
+             {"b_from", r_.plan.b.from},
+             {"b_to", r_.plan.b.to},
+             {"host", describe(properties::host, r_.host)},
+             {"request", r_.given}});
+    }
+    bool compute(int threads, RunControl& control, const Take& take) override {
+        design_ = find_design(
+            r_.plan, threads, control,
+            [&](const DesignPoint& p) {
+                Json line = {{"type", "point"}};
+                line.update(described(r_, p));
+                take(json_line(std::move(line)));
+                ++count_;
+            },
+            [&](const ToleranceSample& s) { take(json_line(sample_line(r_, s))); });
+        return design_ && design_->complete;
+    }
+    std::string progress(std::size_t, const RunControl& control, double) const override {
+        return json_line(
+            {{"type", "progress"},
+             {"done", count_.load()},
+             {"runs", control.runs.load()},
+             {"runs_of", std::max(design_runs(r_.plan), control.runs.load())}});
+    }
+    std::string end() override { return design_ ? json_line(described(r_, *design_)) : ""; }
+    const char* remedy() const override { return "request fewer R, b_count, f_count or cycles"; }
+
+private:
+    const DesignRequest r_;
+    std::optional<Design> design_;
+    std::atomic<std::size_t> count_ = 0;
+};
+
 }  // namespace
 
-Json design_start(const DesignRequest& r) {
-    const SiParameters& h = r.host;
-    return {
-        {"type", "start"},
-        {"version", version()},
-        {"commit", commit()},
-        {"runs_of", design_runs(r.plan)},
-        {"b_from", r.plan.b.from},
-        {"b_to", r.plan.b.to},
-        {"host",
-         {{"m1", h.m1},
-          {"c1", h.c1},
-          {"k1", h.k1},
-          {"f0", h.f0()},
-          {"damping_ratio", h.damping_ratio()}}},
-        {"request", r.given}};
-}
-
-std::string design_progress(
-    const DesignRequest& r, const DesignCount& count, const vines::RunControl& control) {
-    return json_line(
-        {{"type", "progress"},
-         {"done", count.load()},
-         {"runs", control.runs.load()},
-         {"runs_of", std::max(design_runs(r.plan), control.runs.load())}});
-}
-
-bool run_design(
-    const DesignRequest& r, int threads, vines::RunControl& control, DesignCount& count,
-    const std::function<void(const std::string&)>& take) {
-    const auto design = find_design(
-        r.plan, threads, control,
-        [&](const DesignPoint& p) {
-            Json line = {{"type", "point"}};
-            line.update(described(r, p));
-            take(json_text(std::move(line)));
-            ++count;
-        },
-        [&](const ToleranceSample& s) { take(json_text(sample_line(r, s))); });
-    if (design) take(json_text(described(r, *design)));
-    return design && design->complete;
+std::shared_ptr<LineStream> design_lines(DesignRequest request) {
+    return std::make_shared<DesignLines>(std::move(request));
 }
 
 }  // namespace vines::api

@@ -1,9 +1,7 @@
-// Requests of /v1/design, and the lines of its NDJSON stream: start, point, progress, done, error.
+// Requests of /v1/design, and the lines of its NDJSON stream.
 #pragma once
 
-#include <atomic>
-#include <functional>
-
+#include "api/line_stream.hpp"
 #include "api/system.hpp"
 #include "core/design/design.hpp"
 
@@ -31,19 +29,8 @@ DesignRequest read_design_request(const Json& object);
 /// The name of a value with a tolerance: of an amplitude, that of the load's field.
 const char* name_in(const DesignRequest& request, Toleranced what);
 
-/// Number of absorbers so far; another thread can read it.
-using DesignCount = std::atomic<std::size_t>;
-
-/// Passes each line of the result, without line end, to take(); the last one is `done`. False if
-/// stopped before the end: `done` then holds what is known, with complete false.
-bool run_design(
-    const DesignRequest& request, int threads, vines::RunControl& control, DesignCount& count,
-    const std::function<void(const std::string& line)>& take);
-
-/// {type: start, version, commit, runs_of, host, request}.
-Json design_start(const DesignRequest& request);
-/// {type: progress, done, runs, runs_of}: absorbers and motions so far. With line end.
-std::string design_progress(
-    const DesignRequest& request, const DesignCount& count, const vines::RunControl& control);
+/// Lines start, point, sample, progress, done. An early end has a line done, too: what is known,
+/// with complete false.
+std::shared_ptr<LineStream> design_lines(DesignRequest request);
 
 }  // namespace vines::api

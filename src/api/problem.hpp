@@ -4,7 +4,7 @@
 #include <stdexcept>
 #include <string_view>
 
-#include "api/schema/check.hpp"
+#include "api/schema/field.hpp"
 
 namespace vines::api {
 

@@ -65,6 +65,15 @@ inline constexpr Property<SiParameters> derived_si[] = {
      [](const SiParameters& si) { return Json(1 / si.f); }},
 };
 
+/// The host of a design.
+inline constexpr Property<SiParameters> host[] = {
+    {{"m1", "mass, kg"}, at<&SiParameters::m1>},
+    {{"c1", "damping, N s/m"}, at<&SiParameters::c1>},
+    {{"k1", "stiffness, N/m"}, at<&SiParameters::k1>},
+    {{"f0", "frequency, Hz"}, at<&SiParameters::f0>},
+    {{"damping_ratio", "damping ratio"}, at<&SiParameters::damping_ratio>},
+};
+
 // Energy.
 
 inline constexpr Property<EnergyBalance> balance[] = {

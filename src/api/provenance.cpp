@@ -1,5 +1,6 @@
 #include "api/provenance.hpp"
 
+#include <fmt/ranges.h>
 #include <openssl/evp.h>
 
 #include <algorithm>
@@ -12,8 +13,6 @@ namespace vines::api {
 
 namespace {
 
-constexpr std::string_view before_provenance = ",\"provenance\":";
-
 // A longer form of a list is replaced by its hash, which is as long.
 constexpr std::size_t longest_form = 64;
 
@@ -23,27 +22,21 @@ constexpr double largest_whole = 9007199254740992;
 /// SHA-256 of a text in pieces.
 class Sha256 {
 public:
-    Sha256() {
-        if (!context_ || EVP_DigestInit_ex(context_.get(), method(), nullptr) != 1)
-            throw std::runtime_error("libcrypto: SHA-256");
-    }
+    Sha256() { check(context_ && EVP_DigestInit_ex(context_.get(), method(), nullptr)); }
     void add(std::string_view text) {
-        if (EVP_DigestUpdate(context_.get(), text.data(), text.size()) != 1)
-            throw std::runtime_error("libcrypto: SHA-256");
+        check(EVP_DigestUpdate(context_.get(), text.data(), text.size()));
     }
     std::string end() {
         std::array<unsigned char, EVP_MAX_MD_SIZE> bytes;
         unsigned int size = 0;
-        if (EVP_DigestFinal_ex(context_.get(), bytes.data(), &size) != 1)
-            throw std::runtime_error("libcrypto: SHA-256");
-        std::string digits;
-        for (unsigned int k = 0; k < size; ++k)
-            for (const int half : {bytes[k] >> 4, bytes[k] & 15})
-                digits += "0123456789abcdef"[half];
-        return digits;
+        check(EVP_DigestFinal_ex(context_.get(), bytes.data(), &size));
+        return fmt::format("{:02x}", fmt::join(bytes.data(), bytes.data() + size, ""));
     }
 
 private:
+    static void check(bool succeeded) {
+        if (!succeeded) throw std::runtime_error("libcrypto: SHA-256");
+    }
     /// Fetched once, which takes longer than hashing a small answer.
     static const EVP_MD* method() {
         static const EVP_MD* const fetched = EVP_MD_fetch(nullptr, "SHA256", nullptr);
@@ -144,11 +137,6 @@ void add_lists(const Json& value, ContentHash& hash) {
     if (value.is_binary()) hash.add(value, list_in_memory(value));
     if (value.is_structured())
         for (const Json& part : value) add_lists(part, hash);
-}
-
-/// The hash of provenances of early 0.2.0: of the text before the provenance, followed by }.
-std::string text_sha256(std::string_view sealed) {
-    return sha256(std::string(sealed.substr(0, sealed.rfind(before_provenance))) + "}");
 }
 
 }  // namespace
@@ -252,7 +240,7 @@ std::string write_sealed(
     std::string hashed;
     if (hash) {
         hashed = hash->end();
-        take(before_provenance);
+        take(R"(,"provenance":)");
         take(json_text(describe(*provenance, hashed)));
         take("}");
     }
@@ -271,7 +259,7 @@ std::optional<Unsealed> unsealed(std::string_view sealed) {
                         p["request"].is_object() && p.contains("sha256");
     if (!is_one) return std::nullopt;
     parts.sha256 = content_sha256(parts.answer);
-    parts.is_unmodified = p["sha256"] == parts.sha256 || p["sha256"] == text_sha256(sealed);
+    parts.is_unmodified = p["sha256"] == parts.sha256;
     return parts;
 }
 

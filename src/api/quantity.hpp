@@ -10,7 +10,7 @@
 #include <bit>
 #include <cstdint>
 
-#include "api/schema/json.hpp"
+#include "api/schema/field.hpp"
 #include "core/motion/parameters.hpp"
 
 namespace vines::api {

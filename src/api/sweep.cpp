@@ -245,37 +245,10 @@ Json sweep_start(const SweepRequest& r) {
         {"request", r.given}};
 }
 
-std::string start_line(const SweepRequest& r) {
-    Json start = sweep_start(r);
-    start["of"] = r.plan.lines.size();
-    return json_line(std::move(start));
-}
-
-std::string progress_line(
-    const SweepRequest& r, std::size_t done, const RunControl& control, double seconds) {
-    const std::size_t of = r.plan.lines.size(), runs = control.runs, runs_of = r.plan.runs(),
-                      runs_left = done < of ? runs_of - std::min(runs, runs_of) : 0;
-    return json_line(
-        {{"type", "progress"},
-         {"done", done},
-         {"of", of},
-         {"per_second", seconds > 0 ? static_cast<double>(done) / seconds : 0},
-         {"seconds_left",
-          runs > 0 ? Json(static_cast<double>(runs_left) * seconds / static_cast<double>(runs))
-                   : Json(nullptr)},
-         {"runs", runs},
-         {"runs_of", runs_of}});
-}
-
-std::string done_line(std::size_t points, const SweepRequest* r) {
+std::string done_line(std::size_t points, const SweepRequest& r) {
     Json line = {{"type", "done"}, {"points", points}};
-    if (r && r->basins) line.update(describe_basins(*r));
+    if (r.basins) line.update(describe_basins(r));
     return json_line(std::move(line));
-}
-
-std::string error_line(int status, const std::string& detail, std::size_t points) {
-    return json_line(
-        {{"type", "error"}, {"status", status}, {"detail", detail}, {"points", points}});
 }
 
 std::string run_sweep(

@@ -1,10 +1,7 @@
-// Requests of /v1/sweep and /v1/basins, read into the plan that the core executes, and the lines of
-// their NDJSON stream: start, point, progress, warning, done, error.
+// Requests of /v1/sweep and /v1/basins, read into the plan that the core executes, and their lines.
 #pragma once
 
-#include <functional>
-#include <memory>
-
+#include "api/line_stream.hpp"
 #include "api/system.hpp"
 #include "core/sweep/basins.hpp"
 
@@ -73,8 +70,6 @@ SweepRequest read_basins_request(const Json& object, std::size_t most_points);
 std::vector<std::size_t> shard_of(
     const SweepRequest& request, std::size_t shard, std::size_t shards);
 
-using vines::RunControl;
-
 /// Computes the requested lines on `threads` threads. Calls take(index, line) with {type: point,
 /// index, ...} without line end, in order of completion, from one thread at a time. Returns a
 /// warning about the whole sweep; empty if there is none.
@@ -86,22 +81,9 @@ std::string run_sweep(
 /// parts of a sweep.
 Json sweep_start(const SweepRequest& request);
 
-// The functions below return lines of a stream, with line end.
-
-/// sweep_start() with {of}: the count of requested lines.
-std::string start_line(const SweepRequest& request);
-
-/// {type: progress, done, of, per_second, seconds_left, runs, runs_of} after `done` lines. The runs
-/// determine the remaining time.
-std::string progress_line(
-    const SweepRequest& request, std::size_t done, const RunControl& control, double seconds);
-
-/// {type: done, points}: the sweep is complete, with `points` lines of points. With a request of
-/// basins also describe_basins().
-std::string done_line(std::size_t points, const SweepRequest* request = nullptr);
-/// {type: error, status, detail, points}: some points are missing. status 503: a request for the
-/// missing points can succeed; 500: the server failed.
-std::string error_line(int status, const std::string& detail, std::size_t points);
+/// The line {type: done, points}: the sweep is complete, with `points` lines of points. With a
+/// request of basins also describe_basins().
+std::string done_line(std::size_t points, const SweepRequest& request);
 
 /// The first members of each line: {type, index, values of the axes, start}, without a reduced
 /// axis.

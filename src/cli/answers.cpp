@@ -2,7 +2,6 @@
 // limits. `vines continue` and `design`: lines that are written as they are computed. After a
 // signal a run gives the answer up to that time, a continuation ends with the lines so far, a
 // design with the best absorber so far.
-#include <functional>
 #include <memory>
 #include <optional>
 #include <string>
@@ -95,44 +94,17 @@ int identify(const RequestOptions& o) {
 
 // --- Lines ---
 
-using TakeLine = std::function<void(const std::string& line)>;
-
-/// Writes `start` and the lines that compute() passes on. Returns the exit code; compute() returns
-/// false if a signal has stopped it.
-int write_lines(
-    const std::string& path, api::Json start,
-    const std::function<bool(SignalControl& control, const TakeLine& take)>& compute) {
-    Output out(path);
+/// Writes the lines as they are computed. Returns the exit code.
+int write_lines(const RequestOptions& o, api::LineStream& stream) {
+    Output out(o.output);
     const Stoppable stoppable;
     SignalControl control;
-    const TakeLine take = [&out](const std::string& line) { out.write(line + "\n"); };
-    take(api::json_text(std::move(start)));
-    const bool is_complete = compute(control, take);
+    out.write(stream.begin());
+    const bool is_complete = stream.compute(
+        o.thread_count(), control, [&out](const std::string& text) { out.write(text); });
+    out.write(stream.end());
     out.end();
     return is_complete ? complete : stopped_code();
-}
-
-int continue_branches(const RequestOptions& o) {
-    const api::ContinueRequest request =
-        api::read_continue_request(read_request(o, api::continue_fields()));
-    return write_lines(
-        o.output, api::continuation_start(request),
-        [&request](SignalControl& control, const TakeLine& take) {
-            api::ContinuationCount count;
-            const bool is_complete = api::run_continuation(request, control, count, take);
-            if (is_complete) take(api::continuation_done(count));
-            return is_complete;
-        });
-}
-
-int design_absorber(const RequestOptions& o) {
-    const api::DesignRequest request =
-        api::read_design_request(read_request(o, api::design_fields()));
-    return write_lines(
-        o.output, api::design_start(request), [&](SignalControl& control, const TakeLine& take) {
-            api::DesignCount count;
-            return api::run_design(request, o.thread_count(), control, count, take);
-        });
 }
 
 }  // namespace
@@ -183,7 +155,12 @@ Command add_continue(CLI::App& app) {
         app.add_subcommand("continue", "branches of periodic orbits: POST /v1/continue");
     add_request(*command, *options);
     return with_exit_codes(
-        command, [options] { return continue_branches(*options); },
+        command,
+        [options] {
+            return write_lines(
+                *options, *api::continuation_lines(api::read_continue_request(
+                              read_request(*options, api::continue_fields()))));
+        },
         "vines continue -p b=0.015 -p damping=closed_form -p parameter=b -p from=0.004 -p to=0.02\n"
         "vines continue request.json -p switch=2 -o branches.ndjson\n"
         "jq -c 'select(.type == \"special\") | {kind, b, reason}' branches.ndjson");
@@ -196,7 +173,12 @@ Command add_design(CLI::App& app) {
     add_request(*command, *options);
     add_threads(*command, *options);
     return with_exit_codes(
-        command, [options] { return design_absorber(*options); },
+        command,
+        [options] {
+            return write_lines(
+                *options, *api::design_lines(api::read_design_request(
+                              read_request(*options, api::design_fields()))));
+        },
         "vines design -p m1=2 -p f0=8 -p damping_ratio=0.01 -p m2=0.04 -p f=7,9 \\\n"
         "  -p acceleration=5 | jq -r 'select(.type == \"done\") | .sentence'\n"
         "vines design machine.json -p objective=x_acceleration_max -o design.ndjson");

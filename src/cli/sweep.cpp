@@ -271,7 +271,7 @@ std::string compute_in_order(
         write(text);
         done += static_cast<std::size_t>(std::ranges::count(text, '\n'));
     };
-    write(api::json_text(api::sweep_start(run.request)) + "\n");
+    write(api::json_line(api::sweep_start(run.request)));
     std::string warning = compute(run, [&](std::size_t index, const std::string& line) {
         pass(lines.add(index, line + "\n"));
     });
@@ -288,7 +288,7 @@ int sweep_to_stream(SweepRun run, Destination to) {
     const Stoppable stoppable([&] { print_stopped(written, run.total); });
     const std::string warning =
         compute_in_order(run, written, [&](const std::string& text) { out.write(text); });
-    if (written == run.total) out.write(api::done_line(run.total, &run.request));
+    if (written == run.total) out.write(api::done_line(run.total, run.request));
     out.end();
     return conclude(warning, written, run.total);
 }

@@ -46,7 +46,7 @@ void fail_in_line(const std::string& name, long number, const std::string& fault
 std::string SweepFile::text(const api::SweepRequest& request) const {
     std::string all = start + "\n";
     for (const auto& [index, line] : points) all += line.text + "\n";
-    return all + api::done_line(points.size(), &request);
+    return all + api::done_line(points.size(), request);
 }
 
 SweepFile parse_sweep_file(const std::string& text, const std::string& name, LineChecks checks) {

@@ -1,5 +1,7 @@
 #include "http/routes.hpp"
 
+#include "api/continuation.hpp"
+#include "api/design.hpp"
 #include "api/format/answer_request.hpp"
 #include "api/parse.hpp"
 #include "api/schema/tables.hpp"
@@ -349,12 +351,14 @@ Response sweep(Request& r, const Service& service, Stopwatch& watch) {
 }
 
 Response continuation(Request& r, const Service& service, Stopwatch& watch) {
-    return stream_continuation(
-        read_body(r, service, watch, api::read_continue_request), r, service);
+    return stream_lines(
+        api::continuation_lines(read_body(r, service, watch, api::read_continue_request)), r,
+        service);
 }
 
 Response design(Request& r, const Service& service, Stopwatch& watch) {
-    return stream_design(read_body(r, service, watch, api::read_design_request), r, service);
+    return stream_lines(
+        api::design_lines(read_body(r, service, watch, api::read_design_request)), r, service);
 }
 
 }  // namespace vines::http

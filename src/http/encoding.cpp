@@ -2,8 +2,6 @@
 
 #include <fmt/chrono.h>
 
-#include <cstring>
-
 #include "api/schema/field.hpp"
 #include "http/connection.hpp"
 
@@ -118,14 +116,7 @@ bool accepts_gzip(std::string_view accept_encoding) {
 }
 
 std::string entity_tag(const std::string& body) {
-    std::uint64_t hash = 0xcbf29ce484222325 ^ body.size();
-    for (std::size_t at = 0; at < body.size(); at += sizeof hash) {
-        std::uint64_t word = 0;
-        std::memcpy(&word, body.data() + at, std::min(sizeof word, body.size() - at));
-        hash = (hash ^ word) * 0x100000001b3;
-        hash ^= hash >> 32;  // a product mixes bits upwards only
-    }
-    return fmt::format("W/\"{:016x}\"", hash);
+    return fmt::format("W/\"{:.16}\"", api::sha256(body));
 }
 
 bool matches_tag(std::string_view if_none_match, std::string_view tag) {

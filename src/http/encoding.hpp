@@ -43,7 +43,7 @@ private:
 /// prefer the uncompressed body. An empty header does not accept it.
 bool accepts_gzip(std::string_view accept_encoding);
 
-/// A weak ETag: a 64-bit hash of the body derived from FNV-1a, not safe against forgery.
+/// A weak ETag: the first 64 bits of the body's SHA-256.
 std::string entity_tag(const std::string& body);
 
 /// True if If-None-Match (RFC 9110, 13.1.2) lists the tag. The caller handles "*".

@@ -8,8 +8,11 @@
 #include <string>
 #include <vector>
 
+#include "api/schema/field.hpp"
+
 namespace vines::http {
 
+using api::trimmed;
 using Header = std::pair<std::string, std::string>;
 
 struct Head {
@@ -64,12 +67,6 @@ private:
 /// to 64 letters, digits, ".", "_" or "-"; else the trace-id of a traceparent (W3C Trace Context);
 /// else 16 random hexadecimal digits.
 std::string request_id(const Head& head);
-
-inline std::string_view trimmed(std::string_view text) {
-    constexpr std::string_view blanks = " \t";
-    text.remove_prefix(std::min(text.size(), text.find_first_not_of(blanks)));
-    return text.substr(0, text.find_last_not_of(blanks) + 1);
-}
 
 /// Removes the part before the separator from a text; returns it without surrounding blanks.
 inline std::string_view next_part(std::string_view& text, char separator) {

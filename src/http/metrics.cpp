@@ -10,7 +10,6 @@
 #include <filesystem>
 #include <fstream>
 #include <sstream>
-#include <unordered_map>
 
 #include "api/version.hpp"
 
@@ -57,23 +56,6 @@ std::vector<double> process_status() {
     return fields;
 }
 
-/// Members of a metric family by one key: a look-up by labels takes as long as a small request.
-template <class Member>
-class LabelCache {
-public:
-    template <class Make>
-    Member& at(const std::string& word, Make make) {
-        const std::lock_guard lock(mutex_);
-        Member*& member = known_[word];
-        if (!member) member = &make();
-        return *member;
-    }
-
-private:
-    std::mutex mutex_;
-    std::unordered_map<std::string, Member*> known_;
-};
-
 }  // namespace
 
 struct Metrics::Implementation {
@@ -100,11 +82,9 @@ struct Metrics::Implementation {
 
     prometheus::Family<prometheus::Counter>& requests =
         counters("vines_http_requests_total", "Requests answered, by route, method and status.");
-    LabelCache<prometheus::Counter> of_requests;
     prometheus::Family<prometheus::Histogram>& taken = histograms(
         "vines_http_request_duration_seconds",
         "Time from a request's last byte to its answer's, by route.");
-    LabelCache<prometheus::Histogram> of_taken;
     prometheus::Counter& bytes = counter("vines_http_sent_bytes_total", "Bytes of answers.");
     prometheus::Counter& left =
         counter("vines_http_clients_left_total", "Answers whose client left before their end.");
@@ -128,18 +108,10 @@ Metrics::~Metrics() = default;
 
 void Metrics::count_answer(const std::string& method, const Outcome& outcome) {
     Implementation& all = *implementation_;
-    const std::string label = method_label(method), code = std::to_string(outcome.status);
-    all.of_requests
-        .at(outcome.route + ' ' + label + ' ' + code,
-            [&]() -> auto& {
-                return all.requests.Add(
-                    {{"route", outcome.route}, {"method", label}, {"code", code}});
-            })
+    const std::string code = std::to_string(outcome.status);
+    all.requests.Add({{"route", outcome.route}, {"method", method_label(method)}, {"code", code}})
         .Increment();
-    all.of_taken
-        .at(outcome.route,
-            [&]() -> auto& { return all.taken.Add({{"route", outcome.route}}, durations); })
-        .Observe(outcome.ms / 1000);
+    all.taken.Add({{"route", outcome.route}}, durations).Observe(outcome.ms / 1000);
     all.bytes.Increment(static_cast<double>(outcome.bytes));
     if (outcome.left) all.left.Increment();
     if (!outcome.lacking.empty()) all.unavailable.Add({{"reason", outcome.lacking}}).Increment();

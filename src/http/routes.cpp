@@ -68,8 +68,8 @@ constexpr std::size_t largest_sweep = 5 << 20;
 std::vector<Route> make_routes(
     const RouteOptions& options, AdmissionControl& admission, Metrics& metrics) {
     std::vector<Route> routes;
-    const auto service = std::make_shared<const Service>(Service{
-        options, admission, metrics, std::make_shared<RunningStreams>(options.most_followers)});
+    const auto service = std::make_shared<const Service>(
+        Service{options, admission, metrics, std::make_shared<RunningStreams>()});
     const auto compute = [&](const char* method, const char* path, Computation* computation) {
         routes.push_back(
             {.method = method, .path = path, .answer = [computation, service](Request& r) {

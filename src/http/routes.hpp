@@ -16,11 +16,19 @@ struct RouteOptions {
     /// A JSON answer that lists more impacts is streamed; the columns of impacts are then generated
     /// while it is sent.
     std::size_t most_kept_impacts = api::most_kept_impacts;
-    int most_followers = 32;  ///< of sweeps, see RunningStreams
+    int most_followers = 32;  ///< at once, see RunningStreams
     PageOptions page = {};
 };
 
-class RunningStreams;
+class LineComputation;  // of a stream (streams.cpp)
+
+/// The running computations whose lines several clients can get, by their requests.
+struct RunningStreams {
+    std::mutex mutex;
+    std::map<std::string, std::weak_ptr<LineComputation>> streams;
+    /// Requests that get the lines of another one's computation; each takes a thread.
+    std::atomic<int> followers = 0;
+};
 
 struct Service {
     const RouteOptions options;

@@ -75,23 +75,6 @@ private:
     bool finished_ = false;
 };
 
-/// A computation whose lines, or parts of a table, are sent while it runs.
-struct LineWork {
-    using Push = std::function<void(const std::string& text)>;
-
-    const char* path;  ///< for the log
-    std::string begin;
-    /// Passes on each line with its end, or a part of a table. False if it was stopped.
-    std::function<bool(api::RunControl& control, const Push& push)> compute;
-    /// Line of progress after `done` lines; empty function for a table.
-    std::function<std::string(std::size_t done, const api::RunControl& control, double seconds)>
-        progress;
-    /// Last lines after progress; empty function if the computation sends them.
-    std::function<std::string(std::size_t done)> complete;
-    const char* how_to_go_on = "";  ///< after an early end; null for a table, which is then cut off
-    bool is_shared = false;         ///< equal requests get the lines of one computation
-};
-
 }  // namespace
 
 /// Computes lines on other threads while those of its clients' requests send them. Its threads take
@@ -99,17 +82,19 @@ struct LineWork {
 /// they compute. It begins with the first client and stops when the last one has left.
 class LineComputation : public api::RunControl {
 public:
-    /// `first`: the first request, for the log. The service must outlive the object.
+    /// `first`: the first request, for the log. The service must outlive the object. is_shared:
+    /// equal requests get its lines, too.
     LineComputation(
-        LineWork work, const Request& first, const Service& service,
-        AdmissionControl::SweepSlot sweep_slot)
-        : work_(std::move(work)),
+        std::shared_ptr<api::LineStream> stream, const Request& first, const Service& service,
+        AdmissionControl::SweepSlot sweep_slot, bool is_shared)
+        : stream_(std::move(stream)),
+          path_(first.head.path()),
           deadline_(service.options.sweep_deadline),
           id_(first.id),
           admission_(service.admission),
           metrics_(service.metrics),
           sweep_slot_(std::move(sweep_slot)),
-          lines_(work_.is_shared) {}
+          lines_(is_shared) {}
     ~LineComputation() override {
         stop_.request_stop();
         if (is_complete_.valid()) is_complete_.wait();
@@ -122,7 +107,7 @@ public:
         const SweepEnd end = send_all(out);
         leave(client);
         metrics_.count_sweep(end);
-        return work_.how_to_go_on ? end != SweepEnd::client_left : end == SweepEnd::complete;
+        return stream_->remedy() ? end != SweepEnd::client_left : end == SweepEnd::complete;
     }
 
     /// True if it has ended without all lines.
@@ -187,7 +172,9 @@ private:
                 is_cut_off_ = !whole;
                 lines_.finish();
             });
-            whole = work_.compute(*this, [this](const std::string& text) { lines_.push(text); });
+            whole = stream_->compute(admission_.threads(), *this, [this](const std::string& text) {
+                lines_.push(text);
+            });
             return whole;
         });
     }
@@ -195,16 +182,16 @@ private:
     SweepEnd send_all(Writer& out) {
         std::call_once(is_started_, [this] { start(); });
         std::size_t done = 0;
-        if (!out.write(work_.begin) || !send_lines(out, done)) return SweepEnd::client_left;
+        if (!out.write(stream_->begin()) || !send_lines(out, done)) return SweepEnd::client_left;
         SweepEnd end = SweepEnd::complete;
         try {
             if (!is_complete_.get())
                 end = is_late(Clock::now()) ? SweepEnd::deadline : SweepEnd::stopping;
         } catch (...) {
-            log_failure(work_.path, id_);
+            log_failure(path_, id_);
             end = SweepEnd::failed;
         }
-        return out.connected() && out.write(last_line(end, done)) ? end : SweepEnd::client_left;
+        return out.connected() && out.write(last_lines(end, done)) ? end : SweepEnd::client_left;
     }
 
     /// Sends lines as they come, and progress between them; counts them. False if the client left.
@@ -215,13 +202,9 @@ private:
         do {
             taken = lines_.take(read, client_check_interval);
             const auto now = Clock::now();
-            const bool due =
-                taken.finished ? bool(work_.complete) : now - reported >= report_interval;
-            if (work_.progress && due) {
+            if (taken.finished || now - reported >= report_interval) {
                 const std::chrono::duration<double> seconds = now - started_;
-                const std::string line = work_.progress(taken.count, *this, seconds.count());
-                // The last line can be among them.
-                taken.text.insert(work_.complete ? taken.text.size() : 0, line);
+                taken.text += stream_->progress(taken.count, *this, seconds.count());
                 reported = now;
             }
             if (!out.connected() || !out.write(taken.text)) return false;
@@ -230,22 +213,26 @@ private:
         return true;
     }
 
-    /// The last line of a stream, or the end of a table; an incomplete table has none.
-    std::string last_line(SweepEnd end, std::size_t done) const {
-        if (end == SweepEnd::complete) return work_.complete ? work_.complete(done) : "";
-        if (!work_.how_to_go_on) return "";
-        if (end == SweepEnd::failed)
-            return api::error_line(500, "the server failed; the reason is in its log", done);
-        const bool late = end == SweepEnd::deadline;
-        return api::error_line(
-            503,
-            fmt::format(
-                "the {}; {}", late ? "time limit of one sweep is reached" : "server is stopping",
-                work_.how_to_go_on),
-            done);
+    /// The end of the result, and of a stream of lines the reason of an early end.
+    std::string last_lines(SweepEnd end, std::size_t done) const {
+        const std::string last = end == SweepEnd::failed ? "" : stream_->end();
+        if (end == SweepEnd::complete || !stream_->remedy()) return last;
+        const bool failed = end == SweepEnd::failed, late = end == SweepEnd::deadline;
+        const std::string detail =
+            failed ? "the server failed; the reason is in its log"
+                   : fmt::format(
+                         "the {}; {}",
+                         late ? "time limit of one sweep is reached" : "server is stopping",
+                         stream_->remedy());
+        return last + api::json_line(
+                          {{"type", "error"},
+                           {"status", failed ? 500 : 503},
+                           {"detail", detail},
+                           {"points", done}});
     }
 
-    const LineWork work_;
+    const std::shared_ptr<api::LineStream> stream_;
+    const std::string path_;
     const std::chrono::duration<double> deadline_;
     const std::string id_;
     AdmissionControl& admission_;
@@ -280,138 +267,54 @@ Response sweep_refusal(const Service& service, bool is_begun) {
     return response;
 }
 
-/// Sends a computation, which counts as a sweep, or the lines of a running one of an equal request.
-/// The response can be copied: the sweep's slot is released with the last copy, whether it was sent
-/// or not.
-Response stream_lines(LineWork work, const Request& asked, const Service& service) {
-    bool is_begun = true;
-    const auto begin = [&]() -> std::shared_ptr<LineComputation> {
-        is_begun = false;
+}  // namespace
+
+Response stream_lines(
+    std::shared_ptr<api::LineStream> stream, const Request& asked, const Service& service,
+    bool is_shared) {
+    const std::lock_guard lock(service.running->mutex);
+    auto& streams = service.running->streams;
+    std::erase_if(streams, [](const auto& entry) { return entry.second.expired(); });
+    std::weak_ptr<LineComputation> own;
+    // The body of a large sweep is not copied.
+    auto& running = is_shared ? streams[std::string(asked.head.path()) + asked.body] : own;
+    auto lines = running.lock();
+    std::shared_ptr<void> following;
+    if (lines && !lines->is_cut_off()) {
+        if (service.running->followers >= service.options.most_followers)
+            return sweep_refusal(service, true);
+        ++service.running->followers;
+        following = {nullptr, [all = service.running](void*) { --all->followers; }};
+    } else {
         auto slot = service.admission.acquire_sweep(asked.sender.client());
-        if (!slot) return nullptr;
-        return std::make_shared<LineComputation>(std::move(work), asked, service, std::move(slot));
-    };
-    const auto lines =
-        work.is_shared ? service.running->find_or_begin(work.path + asked.body, begin) : begin();
-    if (!lines) return sweep_refusal(service, is_begun);
+        if (!slot) return sweep_refusal(service, false);
+        running = lines = std::make_shared<LineComputation>(
+            std::move(stream), asked, service, std::move(slot), is_shared);
+    }
     return {
         .content_type = api::sweep_format_names[0].media_type,
         .headers = {{"Cache-Control", "no-store"}, {"X-Accel-Buffering", "no"}},
-        .stream = [lines, client = asked.sender.client()](Writer& out) {
+        .stream = [lines, following, client = asked.sender.client()](Writer& out) {
             return lines->send(out, client);
         }};
 }
 
-/// A sweep's lines, or the rows of `table` unless it is null.
-LineWork work_of(
-    const std::shared_ptr<const api::SweepRequest>& request,
-    const std::shared_ptr<api::SweepTable>& table, int threads) {
-    const auto warning = std::make_shared<std::string>();
-    LineWork work{
-        request->basins ? "/v1/basins" : "/v1/sweep",
-        table ? table->begin() : api::start_line(*request),
-        [=](api::RunControl& control, const LineWork::Push& push) {
-            std::size_t lines = 0;
-            *warning = api::run_sweep(
-                *request, threads, control, [&](std::size_t index, const std::string& line) {
-                    push(table ? table->add(index, line) : line + '\n');
-                    ++lines;
-                });
-            return lines == request->plan.lines.size();
-        },
-        {},
-        [=](std::size_t done) {
-            if (table) return table->end(*warning);
-            std::string last = api::done_line(done, request.get());
-            if (warning->empty()) return last;
-            return api::json_line({{"type", "warning"}, {"message", *warning}}) + last;
-        },
-        table ? nullptr : "request the missing indices again"};
-    if (table) return work;
-    const PointOptions& options = request->plan.options;
-    const std::size_t lines = request->plan.lines.size(),
-                      each = options.section == SectionKind::none ? 0 : options.section_points;
-    work.is_shared = lines <= most_shared_lines && lines * each <= most_shared_points;
-    work.progress = [=](std::size_t done, const api::RunControl& control, double seconds) {
-        return api::progress_line(*request, done, control, seconds);
-    };
-    return work;
-}
-
-}  // namespace
-
-std::shared_ptr<LineComputation> RunningStreams::find_or_begin(
-    const std::string& request, const std::function<std::shared_ptr<LineComputation>()>& begin) {
-    const std::lock_guard lock(mutex_);
-    std::erase_if(running_, [](const auto& entry) { return entry.second.expired(); });
-    std::weak_ptr<LineComputation>& running = running_[request];
-    if (auto found = running.lock(); found && !found->is_cut_off()) {
-        if (followers_ >= most_followers_) return nullptr;
-        ++followers_;
-        LineComputation* const followed = found.get();
-        return {followed, [this, found](LineComputation*) mutable {
-                    found.reset();
-                    --followers_;
-                }};
-    }
-    auto begun = begin();
-    running = begun;
-    return begun;
-}
-
 Response stream_sweep(
     api::SweepRequest request, api::Format format, const Request& asked, const Service& service) {
-    request.plan.in_order = format == api::Format::csv;
-    const auto shared = std::make_shared<const api::SweepRequest>(std::move(request));
-    std::shared_ptr<api::SweepTable> table;
-    if (format != api::Format::json)
-        table = std::make_shared<api::SweepTable>(*shared, format, service.options.answer_limit);
-    Response response =
-        stream_lines(work_of(shared, table, service.admission.threads()), asked, service);
-    if (table && response.stream) {
+    const PointOptions& options = request.plan.options;
+    const std::size_t lines = request.plan.lines.size(),
+                      each = options.section == SectionKind::none ? 0 : options.section_points;
+    const bool is_shared = format == api::Format::json && lines <= most_shared_lines &&
+                           lines * each <= most_shared_points;
+    const auto stream = std::make_shared<api::SweepStream>(
+        std::move(request), format, service.options.answer_limit);
+    Response response = stream_lines(stream, asked, service, is_shared);
+    if (stream->table() && response.stream) {
         response.content_type = api::name_of(format).media_type;
-        response.held = 2 * table->bytes();
+        response.held = 2 * stream->table()->bytes();
         response.silent = format != api::Format::csv;
     }
     return response;
-}
-
-Response stream_continuation(
-    api::ContinueRequest request, const Request& asked, const Service& service) {
-    const auto shared = std::make_shared<const api::ContinueRequest>(std::move(request));
-    const auto count = std::make_shared<api::ContinuationCount>();
-    return stream_lines(
-        {"/v1/continue", api::json_text(api::continuation_start(*shared)) + '\n',
-         [=](api::RunControl& control, const LineWork::Push& push) {
-             return api::run_continuation(
-                 *shared, control, *count, [&](const std::string& line) { push(line + '\n'); });
-         },
-         [=](std::size_t, const api::RunControl&, double seconds) {
-             return api::continuation_progress(*count, seconds);
-         },
-         [=](std::size_t) { return api::continuation_done(*count) + '\n'; },
-         "continue from the state of a last point, with orbit \"stated\""},
-        asked, service);
-}
-
-Response stream_design(api::DesignRequest request, const Request& asked, const Service& service) {
-    const auto shared = std::make_shared<const api::DesignRequest>(std::move(request));
-    const auto count = std::make_shared<api::DesignCount>();
-    return stream_lines(
-        {"/v1/design",
-         api::json_text(api::design_start(*shared)) + '\n',
-         [shared, count, threads = service.admission.threads()](
-             api::RunControl& control, const LineWork::Push& push) {
-             return api::run_design(
-                 *shared, threads, control, *count,
-                 [&](const std::string& line) { push(line + '\n'); });
-         },
-         [=](std::size_t, const api::RunControl& control, double) {
-             return api::design_progress(*shared, *count, control);
-         },
-         {},
-         "request fewer R, b_count, f_count or cycles"},
-        asked, service);
 }
 
 }  // namespace vines::http

@@ -50,10 +50,16 @@ struct Result {
     std::string statistic{};  ///< "median", if the number is one of several runs
 
     Result(double here, std::string in_words) : number(here), words(std::move(in_words)) {}
-    Result(double here, double other, std::string in_words)
-        : number(here),
-          by_equation(other),
-          words(std::move(in_words)) {}
+    Result(double here, double other, std::string in_words) : Result(here, std::move(in_words)) {
+        by_equation = other;
+    }
+    // The words as a format and its values.
+    template <class... Values>
+    Result(double here, fmt::format_string<Values...> form, Values&&... values)
+        : Result(here, fmt::format(form, std::forward<Values>(values)...)) {}
+    template <class... Values>
+    Result(double here, double other, fmt::format_string<Values...> form, Values&&... values)
+        : Result(here, other, fmt::format(form, std::forward<Values>(values)...)) {}
 };
 /// A result whose words are only its numbers.
 inline Result result(fmt::format_string<double&> form, double here) {

@@ -9,7 +9,7 @@
 #include "api/cancellation.hpp"
 #include "api/parse.hpp"
 #include "api/presets.hpp"
-#include "api/schema/check.hpp"
+#include "api/schema/field.hpp"
 #include "api/schema/tables.hpp"
 #include "support.hpp"
 

@@ -32,7 +32,7 @@ std::map<std::size_t, std::string> basins_lines(const SweepRequest& request, int
 }
 
 Json basins_result(const SweepRequest& request) {
-    return Json::parse(done_line(request.plan.lines.size(), &request));
+    return Json::parse(done_line(request.plan.lines.size(), request));
 }
 
 /// Pointers of the fields at fault.

@@ -13,13 +13,12 @@ namespace {
 std::vector<Json> lines_of(const std::string& text) {
     std::vector<Json> lines;
     RunControl control;
-    ContinuationCount count;
-    CHECK(run_continuation(
-        read_continue_request(parse_object(text)), control, count,
-        [&](const std::string& line) { lines.push_back(Json::parse(line)); }));
+    const auto stream = continuation_lines(read_continue_request(parse_object(text)));
+    CHECK(stream->compute(
+        1, control, [&](const std::string& line) { lines.push_back(Json::parse(line)); }));
     std::size_t points = 0;
     for (const Json& line : lines) points += line["type"] == "point";
-    CHECK(count.points == points);
+    CHECK(Json::parse(stream->end())["points"] == points);
     return lines;
 }
 

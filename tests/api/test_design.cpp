@@ -67,10 +67,9 @@ TEST_CASE("under a load a design has neither frequency nor amplitude") {
     const DesignRequest r = read_design_request(request);
     CHECK(r.objective == "x_relative_max");
     vines::RunControl control;
-    DesignCount count = 0;
-    Json last;
-    CHECK(run_design(
-        r, 2, control, count, [&](const std::string& line) { last = Json::parse(line); }));
+    const auto stream = design_lines(r);
+    CHECK(stream->compute(2, control, [](const std::string&) {}));
+    const Json last = Json::parse(stream->end());
     CHECK(last["best"]["f"].is_null());
     CHECK(last["best"]["load_factor"] == 1);
     CHECK(last["best"]["activation"].is_null());
@@ -141,10 +140,10 @@ TEST_CASE("tolerances yield a line for each sample, quantiles and probabilities 
     const auto lines_of = [](const Json& of) {
         std::vector<Json> lines;
         vines::RunControl control;
-        DesignCount count;
-        run_design(read_design_request(of), 2, control, count, [&](const std::string& line) {
-            lines.push_back(Json::parse(line));
-        });
+        const auto stream = design_lines(read_design_request(of));
+        const auto take = [&](const std::string& line) { lines.push_back(Json::parse(line)); };
+        stream->compute(2, control, take);
+        take(stream->end());
         return lines;
     };
     std::vector<Json> samples(9);

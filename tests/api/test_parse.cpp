@@ -10,7 +10,7 @@
 #include "api/identify.hpp"
 #include "api/parse.hpp"
 #include "api/presets.hpp"
-#include "api/schema/check.hpp"
+#include "api/schema/field.hpp"
 #include "api/schema/tables.hpp"
 #include "support.hpp"
 

@@ -10,7 +10,7 @@
 #include <string_view>
 
 #include "api/problem.hpp"
-#include "api/schema/json.hpp"
+#include "api/schema/field.hpp"
 
 namespace vines::fuzz {
 

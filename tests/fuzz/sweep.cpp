@@ -34,7 +34,8 @@ void check_line(std::size_t index, const std::string& text) {
 
 void check_sweep(const api::SweepRequest& request) {
     const std::vector<std::size_t>& wanted = request.plan.lines;
-    fuzz::require(api::Json::accept(api::start_line(request)), "the first line is JSON");
+    fuzz::require(
+        api::Json::accept(api::json_line(api::sweep_start(request))), "the first line is JSON");
     ShortControl control;
     std::set<std::size_t> seen;
     api::SweepTable table(request, api::Format::csv);

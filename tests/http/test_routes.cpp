@@ -3,7 +3,7 @@
 
 #include <string>
 
-#include "api/schema/json.hpp"
+#include "api/schema/field.hpp"
 #include "http/access.hpp"
 #include "http/encoding.hpp"
 #include "http/routes.hpp"

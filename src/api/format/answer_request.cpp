@@ -5,7 +5,7 @@
 #include <utility>
 
 #include "api/problem.hpp"
-#include "api/schema/check.hpp"
+#include "api/schema/field.hpp"
 #include "api/schema/tables.hpp"
 
 namespace vines::api {

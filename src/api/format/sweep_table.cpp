@@ -146,4 +146,56 @@ std::size_t SweepTable::bytes() const {
     return others + of_row * request_.plan.lines.size();
 }
 
+SweepStream::SweepStream(SweepRequest request, Format format, std::size_t most_bytes)
+    : request_(std::move(request)) {
+    request_.plan.in_order = format == Format::csv;
+    if (format != Format::json) table_.emplace(request_, format, most_bytes);
+}
+
+std::string SweepStream::begin() const {
+    if (table_) return table_->begin();
+    Json start = sweep_start(request_);
+    start["of"] = request_.plan.lines.size();
+    return json_line(std::move(start));
+}
+
+bool SweepStream::compute(int threads, RunControl& control, const Take& take) {
+    warning_ =
+        run_sweep(request_, threads, control, [&](std::size_t index, const std::string& line) {
+            take(table_ ? table_->add(index, line) : line + '\n');
+            ++lines_;
+        });
+    return lines_ == request_.plan.lines.size();
+}
+
+std::string SweepStream::progress(
+    std::size_t done, const RunControl& control, double seconds) const {
+    if (table_) return "";
+    const std::size_t of = request_.plan.lines.size(), runs = control.runs,
+                      runs_of = request_.plan.runs(),
+                      runs_left = done < of ? runs_of - std::min(runs, runs_of) : 0;
+    return json_line(
+        {{"type", "progress"},
+         {"done", done},
+         {"of", of},
+         {"per_second", seconds > 0 ? static_cast<double>(done) / seconds : 0},
+         {"seconds_left",
+          runs > 0 ? Json(static_cast<double>(runs_left) * seconds / static_cast<double>(runs))
+                   : Json(nullptr)},
+         {"runs", runs},
+         {"runs_of", runs_of}});
+}
+
+std::string SweepStream::end() {
+    if (lines_ < request_.plan.lines.size()) return "";
+    if (table_) return table_->end(warning_);
+    const std::string last = done_line(lines_, request_);
+    if (warning_.empty()) return last;
+    return json_line({{"type", "warning"}, {"message", warning_}}) + last;
+}
+
+const char* SweepStream::remedy() const {
+    return table_ ? nullptr : "request the missing indices again";
+}
+
 }  // namespace vines::api

@@ -68,4 +68,27 @@ private:
     LinesInOrder rows_;  ///< of CSV
 };
 
+/// A sweep as a stream: its lines, or its points as a table.
+class SweepStream : public LineStream {
+public:
+    /// Format::json: lines. Problem 413 as SweepTable.
+    SweepStream(
+        SweepRequest request, Format format, std::size_t most_bytes = SweepTable::most_of_npz);
+
+    std::string begin() const override;
+    bool compute(int threads, RunControl& control, const Take& take) override;
+    std::string progress(
+        std::size_t done, const RunControl& control, double seconds) const override;
+    std::string end() override;
+    const char* remedy() const override;
+
+    const std::optional<SweepTable>& table() const { return table_; }
+
+private:
+    SweepRequest request_;
+    std::optional<SweepTable> table_;
+    std::size_t lines_ = 0;  ///< computed
+    std::string warning_;    ///< about all points
+};
+
 }  // namespace vines::api

@@ -343,19 +343,13 @@ void add_design_lines(Json& schemas) {
     schemas["DesignLine"] = any_line(
         {"DesignStart", "DesignPoint", "DesignSample", "DesignProgress", "DesignDone",
          "SweepError"});
-    const Json host = object_of(
-        {{"m1", number, "mass, kg"},
-         {"c1", number, "damping, N s/m"},
-         {"k1", number, "stiffness, N/m"},
-         {"f0", number, "frequency, Hz"},
-         {"damping_ratio", number, "damping ratio"}});
     schemas["DesignStart"] = line_of(
         "start", {{"version", word, "version of the program"},
                   {"commit", word, "commit of the program; empty if unknown"},
                   {"runs_of", whole, "motions of the first map and of the samples"},
                   {"b_from", number, "smallest clearance, m"},
                   {"b_to", number, "largest clearance, m"},
-                  {"host", host, "the machine without absorber"},
+                  {"host", object_of(values_of(properties::host)), "the machine without absorber"},
                   {"request", reference("DesignRequest"), "the request"}});
     schemas["DesignPoint"] = line_of("point", absorber_keys());
     schemas["DesignSample"] = line_of(

@@ -6,7 +6,7 @@
 // tests/openapi/openapi.test.mjs.
 #pragma once
 
-#include "api/schema/json.hpp"
+#include "api/schema/field.hpp"
 
 namespace vines::api {
 

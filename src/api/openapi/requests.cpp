@@ -8,8 +8,8 @@
 #include "api/continuation.hpp"
 #include "api/design.hpp"
 #include "api/format/answer_request.hpp"
+#include "api/format/sweep_table.hpp"
 #include "api/openapi/parts.hpp"
-#include "api/sweep.hpp"
 
 namespace vines::api::document {
 
@@ -167,40 +167,24 @@ Json answer_to(const char* operation, const char* route) {
     return Json::parse(encoded(std::move(answer.json), Format::json, answer.provenance));
 }
 
+/// The first line of a type of a stream.
+Json line_of(const std::shared_ptr<LineStream>& stream, const char* type) {
+    Json found;
+    RunControl control;
+    const auto take = [&](const std::string& text) {
+        Json line = Json::parse(text);
+        if (found.is_null() && line["type"] == type) found = std::move(line);
+    };
+    stream->compute(1, control, take);
+    if (found.is_null()) take(stream->end());
+    return found;
+}
+
 /// The line of a point of the first sweep or of the first basins.
 Json point_line(const char* operation, decltype(read_sweep_request)& read, std::size_t index) {
     Json request = first_request(operation);
     request["indices"] = {index};
-    Json point;
-    RunControl control;
-    run_sweep(read(request, 100), 1, control, [&](std::size_t, const std::string& line) {
-        point = Json::parse(line);
-    });
-    return point;
-}
-
-/// The first special point of the first continuation.
-Json special_line() {
-    Json special;
-    RunControl control;
-    ContinuationCount count;
-    run_continuation(
-        read_continue_request(first_request("continue")), control, count,
-        [&](const std::string& line) {
-            if (special.is_null() && count.specials > 0) special = Json::parse(line);
-        });
-    return special;
-}
-
-/// The last line of the first design.
-Json design_line() {
-    Json last;
-    RunControl control;
-    DesignCount count;
-    run_design(
-        read_design_request(first_request("design")), 1, control, count,
-        [&](const std::string& line) { last = Json::parse(line); });
-    return last;
+    return line_of(std::make_shared<SweepStream>(read(request, 100), Format::json), "point");
 }
 
 }  // namespace
@@ -251,8 +235,9 @@ Json answer_example(const std::string& schema) {
         {"Manifold", answer_to("manifold", "/v1/manifold")},
         {"SweepLine", point_line("sweep", read_sweep_request, 3)},
         {"BasinsLine", point_line("basins", read_basins_request, 0)},
-        {"ContinueLine", special_line()},
-        {"DesignLine", design_line()},
+        {"ContinueLine",
+         line_of(continuation_lines(read_continue_request(first_request("continue"))), "special")},
+        {"DesignLine", line_of(design_lines(read_design_request(first_request("design"))), "done")},
         {"Identification", answer_to("identify", "/v1/identify")},
         {"Version",
          {{"name", "vines"},

@@ -1,4 +1,4 @@
-#include "api/schema/check.hpp"
+#include "api/schema/field.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -126,6 +126,12 @@ Json value_of_text(FieldType type, const std::string& text) {
     return nullptr;
 }
 
+std::string_view trimmed(std::string_view text) {
+    constexpr std::string_view blanks = " \t";
+    text.remove_prefix(std::min(text.size(), text.find_first_not_of(blanks)));
+    return text.substr(0, text.find_last_not_of(blanks) + 1);
+}
+
 std::string joined(const std::vector<std::string>& items) {
     return fmt::format("{}", fmt::join(items, ", "));
 }

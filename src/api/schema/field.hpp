@@ -1,18 +1,22 @@
-// A field of a request, and how its value is written in a query. Parsing, checks, defaults, GET
+// A field of a request, its form in a query, and its check. Parsing, checks, defaults, GET
 // /v1/parameters, the OpenAPI document, the command line and the page's form all follow from the
 // tables of fields (tables.hpp).
 #pragma once
 
+#include <cstddef>
+#include <nlohmann/json.hpp>
 #include <optional>
 #include <span>
 #include <string>
+#include <string_view>
 #include <type_traits>
 #include <utility>
 #include <vector>
 
-#include "api/schema/json.hpp"
-
 namespace vines::api {
+
+/// The JSON type of requests and responses, which keeps the order of the keys.
+using Json = nlohmann::ordered_json;
 
 enum class FieldType {
     number,
@@ -119,7 +123,33 @@ Json value_of_text(FieldType type, const std::string& text);
 /// The parts of a separated list; none for an empty text.
 std::vector<std::string> split(const std::string& text, char separator);
 
+/// The text without blanks and tabs at its ends.
+std::string_view trimmed(std::string_view text);
+
 /// "one, two, three", for a sentence.
 std::string joined(const std::vector<std::string>& items);
+
+// The check of a request, and the errors that it reports (check.cpp).
+
+/// One invalid field of a request.
+struct FieldError {
+    std::string pointer;  ///< JSON Pointer to the field
+    Json value;           ///< value in the request, abbreviated by beginning_of()
+    Json range;           ///< [minimum, maximum], a list of choices, or null
+    std::string detail;   ///< a sentence
+};
+
+/// Errors listed per request; further ones are only counted.
+inline constexpr std::size_t most_errors = 20;
+
+/// The errors that each field shows on its own, up to most_errors.
+std::vector<FieldError> check(const FieldTable& table, const Json& object);
+
+/// Bytes of an invalid value that a response repeats.
+inline constexpr std::size_t longest_echo = 200;
+
+/// The first part of a value: its text agrees with that of the whole value over the first
+/// 2 longest_echo bytes. Takes time and memory independent of the size of the value.
+Json beginning_of(const Json& value);
 
 }  // namespace vines::api

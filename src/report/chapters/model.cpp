@@ -84,8 +84,8 @@ void closed_form(Report& report, const Parameters& p) {
         {"Eqs. (8) to (11)",
          "factor k of the damping in x'' + k epsilon lambda x' + x = ..., which they satisfy",
          "1, eq. (1)"},
-        {std::abs(least - 1) > std::abs(most - 1) ? least : most,
-         fmt::format("{:.5f} to {:.5f} at six times", least, most)},
+        {std::abs(least - 1) > std::abs(most - 1) ? least : most, "{:.5f} to {:.5f} at six times",
+         least, most},
         {{0.999, 1.001}, "the finite differences give x' and x'' to 1e-4"}, not_reproduced);
     report.paragraph(fmt::format(
         "The equation of motion (1) has 2 zeta = epsilon lambda; the closed form (8)-(11), "
@@ -131,11 +131,11 @@ void trajectory_difference(Report& report) {
              size, wanted.tau_end),
          "the transfer matrix"},
         {largest,
-         fmt::format(
-             "{:.0e} through {} impacts, {} of them at x - y = -b, while the distance grows "
-             "{:.0f}-fold",
-             largest, run.impacts.size(), std::ranges::count(run.impacts, -1, &Impact::side),
-             second.distance.back() / size)},
+
+         "{:.0e} through {} impacts, {} of them at x - y = -b, while the distance grows "
+         "{:.0f}-fold",
+         largest, run.impacts.size(), std::ranges::count(run.impacts, -1, &Impact::side),
+         second.distance.back() / size},
         {{0, 1e-3},
          "exact to first order: the error is of the size of the distance, plus rounding"});
 }

@@ -105,11 +105,11 @@ void symmetric_impacts(Report& report, const BranchCurves& here) {
          "b at which two symmetric impacts per cycle cease to attract (end of Type III), mm",
          "III at 15, II at 16.5"},
         {end, other_end,
-         fmt::format(
-             "{:.6f}: a pair {:.4f} +- {:.4f}i leaves the unit circle, as at a torus bifurcation; "
-             "{}; by eq. (1) {:.6f}",
-             end, std::cos(half_angle), std::sin(half_angle), compared_with_runs(end / 1000),
-             other_end)},
+
+         "{:.6f}: a pair {:.4f} +- {:.4f}i leaves the unit circle, as at a torus bifurcation; "
+         "{}; by eq. (1) {:.6f}",
+         end, std::cos(half_angle), std::sin(half_angle), compared_with_runs(end / 1000),
+         other_end},
         {{15, 16.5}, "between the two"}, by_closed_form);
     report.paragraph(fmt::format(
         "Where two symmetric impacts per cycle (Fig. 11) become asymmetric (Fig. 12), a multiplier "
@@ -179,8 +179,7 @@ void borders(Report& report) {
     report.add(
         {"Table 3", "31 to 34 mm in steps of .25, runs of 17,000: lowest b of Type I",
          "II at 31, I at 34"},
-        {lowest(here), lowest(other),
-         fmt::format("at {}; by eq. (1) {}", listed(here), listed(other))},
+        {lowest(here), lowest(other), "at {}; by eq. (1) {}", listed(here), listed(other)},
         {{31.25, 34}, "between the two"}, by_closed_form);
     // "Then b is decreased to 0.004 m, three impacts per cycle is obtained": the b at which it is.
     const auto where = [](Damping damping) {

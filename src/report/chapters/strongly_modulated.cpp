@@ -62,9 +62,9 @@ void figure_3(Report& report, const BothRuns& runs) {
     report.add(
         {"Table 2", "first impact, tau_s (Fig. 3)", "18.1300"},
         {tau, other,
-         fmt::format(
-             "{:.4f}; {:.4f} with epsilon and lambda as printed; by eq. (1) {:.4f}", tau,
-             run_until(rounded, 30, {.impacts = true}).run.impacts.front().tau, other)},
+
+         "{:.4f}; {:.4f} with epsilon and lambda as printed; by eq. (1) {:.4f}", tau,
+         run_until(rounded, 30, {.impacts = true}).run.impacts.front().tau, other},
         {{18.12995, 18.13005},
          "the printed digits; in part: a tenth of a per cent",
          Band{18.1119, 18.1481}},
@@ -184,8 +184,7 @@ void starting_time(Report& report, const PaperRun& r) {
              "over its standard error",
              later),
          "the starting time \"will not influence the ultimate goal\""},
-        {change,
-         fmt::format("{:.2f}: {:.4f}, {:.4f} from the first impact", change, second, first)},
+        {change, "{:.2f}: {:.4f}, {:.4f} from the first impact", change, second, first},
         {{0, 1}, "less than the uncertainty of the exponent"});
 }
 
@@ -228,7 +227,7 @@ void spikes(Report& report, const PaperRun& r) {
              "neighbouring impacts",
              deepest),
          "\"u_i is equal or close to zero\""},
-        {largest, fmt::format("{:.0e} to {:.0e}", smallest, largest)},
+        {largest, "{:.0e} to {:.0e}", smallest, largest},
         {{0, 0.1},
          "a tenth or less: close to zero compared with its neighbours, since the product grows"});
     report.paragraph(fmt::format(
@@ -270,10 +269,10 @@ void transient_exponents(Report& report, RunCache& runs) {
         {"Fig. 5", "sum of the exponents (qr), from a start without a sticking phase",
          "positive, if all four are", rounding_cause},
         {sum_of(product.qr()), sum_of(other.qr()),
-         fmt::format(
-             "{:.4f} {}: -2 zeta + 2 z_T ln R to {:.0e}, z_T impacts per unit of tau; by eq. (1) "
-             "{:.4f}",
-             sum_of(product.qr()), from, product.sum_rule_residual(), sum_of(other.qr()))},
+
+         "{:.4f} {}: -2 zeta + 2 z_T ln R to {:.0e}, z_T impacts per unit of tau; by eq. (1) "
+         "{:.4f}",
+         sum_of(product.qr()), from, product.sum_rule_residual(), sum_of(other.qr())},
         {{0, infinity}, "positive"}, not_reproduced);
     limits_of_the_computer(report, y, product);
     starting_time(report, both.here);
@@ -307,11 +306,11 @@ void lambda1(Report& report, const BothEnsembles& windows) {
         {"Table 2", "lambda1 of the three windows together: sd above the mean of many",
          ".1093, .1143, .1197"},
         {joint, other_joint,
-         fmt::format(
-             "{} over {} windows of 1690; {:.1f} sd each (of windows of the same length), {:.1f} "
-             "together, sum of squares {:.1f}; eq. (1): {:.3f}, {:.0f} together",
-             here.in_words(4), windows.here.windows.size(), fmt::join(each, ", "), joint,
-             sum_of_squares(each), other.mean, other_joint)},
+
+         "{} over {} windows of 1690; {:.1f} sd each (of windows of the same length), {:.1f} "
+         "together, sum of squares {:.1f}; eq. (1): {:.3f}, {:.0f} together",
+         here.in_words(4), windows.here.windows.size(), fmt::join(each, ", "), joint,
+         sum_of_squares(each), other.mean, other_joint},
         {{-1.96, 1.96},
          "chance exceeds it once in 20 times; in part: once in 1000. All three lie on "
          "one side, which the sum of their squares (.115 to 11.3) would not show",
@@ -319,7 +318,7 @@ void lambda1(Report& report, const BothEnsembles& windows) {
         partly_by_closed_form);
     report.add(
         {"Table 2", "lambda1 of many windows: sd over mean", "\"vary a little\""},
-        {here.scatter(), other.scatter(), fmt::format("{:.3f}", here.scatter())},
+        {here.scatter(), other.scatter(), "{:.3f}", here.scatter()},
         {{0, 0.05}, "a twentieth, like the printed values (.045); in part: a fifth", Band{0, 0.2}},
         partly);
 }
@@ -344,11 +343,11 @@ void lambda3(Report& report, const Ensemble& e) {
          "squared deviations from the median in sd",
          "42.3, 42.5, 34.0"},
         {squares,
-         fmt::format(
-             "{:.1f}; {} windows: median {:.1f}, nine in ten from {:.1f} to {:.1f}: sd {:.1f}; by "
-             "qr {:.0f}",
-             squares, spreads.size(), middle, low, high, deviation,
-             (e.lambda(0).mean - here.mean) * window_tau)},
+
+         "{:.1f}; {} windows: median {:.1f}, nine in ten from {:.1f} to {:.1f}: sd {:.1f}; by "
+         "qr {:.0f}",
+         squares, spreads.size(), middle, low, high, deviation,
+         (e.lambda(0).mean - here.mean) * window_tau},
         {{0, 7.8},
          "chance exceeds it once in 20 times (chi squared with three degrees of "
          "freedom); in part: once in 1000. The sd is that of the middle nine tenths: "

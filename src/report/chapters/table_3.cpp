@@ -8,7 +8,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <ranges>
 
 #include "report/claims.hpp"
 
@@ -80,9 +79,9 @@ void exponents(Report& report, const Rows& rows) {
          "the ten lambda1 together: sum of squared deviations in sd, of windows of 400 contacts",
          "ten values"},
         {sum, other_sum,
-         fmt::format(
-             "{:.1f}; by eq. (1) {:.0f} over the {} that are chaotic with it", sum, other_sum,
-             other.size())},
+
+         "{:.1f}; by eq. (1) {:.0f} over the {} that are chaotic with it", sum, other_sum,
+         other.size()},
         {{2.6, 23.2}, "98 % of chi squared with ten degrees of freedom"}, by_closed_form);
     report.bottom_line.insert(
         0,
@@ -154,7 +153,7 @@ double rise_over_error(const Rows& rows, Damping damping) {
 /// responses, and for Type I, which is in the same table and where they fall.
 void order(Report& report, const Rows& rows) {
     std::vector<double> printed, here, other;  // in ascending order of b
-    for (const Row& row : rows | std::views::reverse) {
+    for (const Row& row : Rows(rows.rbegin(), rows.rend())) {
         printed.push_back(row.printed.lambda1);
         here.push_back(row.here.lambda(0).mean);
         other.push_back(row.by_equation.lambda(0).mean);
@@ -163,9 +162,9 @@ void order(Report& report, const Rows& rows) {
         {"Section 4.2", "lambda1 rises with b, Type II (16.5 to 31 mm): steps at which it falls",
          fmt::format("increases ({} of the printed steps fall)", falls_in_type_II(printed))},
         {falls_in_type_II(here), falls_in_type_II(other),
-         fmt::format(
-             "{} of {}; by eq. (1) {}", falls_in_type_II(here), of_type_II - 1,
-             falls_in_type_II(other))},
+
+         "{} of {}; by eq. (1) {}", falls_in_type_II(here), of_type_II - 1,
+         falls_in_type_II(other)},
         {exactly(0), "none"}, by_closed_form);
     report.add(
         {"Table 3", "the higher lambda1 of Type I (34 and 40 mm) minus that of 31 mm",
@@ -173,9 +172,9 @@ void order(Report& report, const Rows& rows) {
              "{:.4f} as printed, against section 4.2's \"increase\"", rise_to_type_I(printed))},
         {rise_over_error(rows, Damping::closed_form),
          rise_over_error(rows, Damping::equation_of_motion),
-         fmt::format(
-             "{:.4f}, {:.1f} standard errors; by eq. (1) {:.4f}", rise_to_type_I(here),
-             rise_over_error(rows, Damping::closed_form), rise_to_type_I(other))},
+
+         "{:.4f}, {:.1f} standard errors; by eq. (1) {:.4f}", rise_to_type_I(here),
+         rise_over_error(rows, Damping::closed_form), rise_to_type_I(other)},
         {{-infinity, -2.58},
          "a fall, as printed: of the means over windows, in standard errors, by more "
          "than chance gives once in 100 times"},
@@ -211,9 +210,8 @@ void durations(Report& report, RunCache& runs) {
                  "synchronised stretch",
                  what),
              paper},
-            {correlation, fmt::format(
-                              "{:.2f}: {:.0f} at 16.5 mm, {:.0f} at 31 mm", correlation,
-                              duration.back(), duration.front())},
+            {correlation, "{:.2f}: {:.0f} at 16.5 mm, {:.0f} at 31 mm", correlation,
+             duration.back(), duration.front()},
             {{-infinity, -0.9}, "in order except for neighbours"});
     };
     find("Section 4", "the distance of z from two", "z closer to two, longer", from_two);

@@ -266,9 +266,9 @@ void where_chaos_comes_from(Report& report, RunCache& runs) {
         {"Section 4.2", "Type II (16.5 to 31 mm): " + quantity + ", the largest of the eight b",
          "the same"},
         {largest, largest_other,
-         fmt::format(
-             "{:.2f}; above a tenth at {:g} mm; by eq. (1) {:.2f}", largest,
-             fmt::join(mm_above, ", "), largest_other)},
+
+         "{:.2f}; above a tenth at {:g} mm; by eq. (1) {:.2f}", largest, fmt::join(mm_above, ", "),
+         largest_other},
         nearly_all, by_equation_of_motion);
     report.paragraph(fmt::format(
         "Growth of ln of the largest deviation (qr) per unit of tau, while synchronised and while "
@@ -359,7 +359,7 @@ void example_of_area_2(Report& report, const PaperRun& r) {
     report.add(
         {"Fig. 9, area 2", "synchronised stretches in whose first half it is always below 1",
          "less than one (a typical example)"},
-        {examples / stretches, fmt::format("{} of {}", examples, stretches)},
+        {examples / stretches, "{} of {}", examples, stretches},
         {{0.9, 1},
          "nine in ten, if typical; in part: one. The half stands for \"area 2\", whose "
          "extent the paper does not state",
@@ -384,9 +384,8 @@ void area_3(Report& report, const std::vector<PaperRun>& neighbours) {
          "fraction of runs from neighbouring starts whose largest T is in the modulation with the "
          "highest amplitude",
          "in area3, the largest value is observed; \"a close relation to the maximal amplitude\""},
-        {runs, fmt::format(
-                   "{:.2f} of {} runs, {} that from the paper's start", runs, is_highest.size(),
-                   is_highest.front() ? "also" : "but not")},
+        {runs, "{:.2f} of {} runs, {} that from the paper's start", runs, is_highest.size(),
+         is_highest.front() ? "also" : "but not"},
         {{0.9, 1}, "nine in ten; in part: more than half", Band{0.5, 1}}, partly);
     const PaperRun r = run_until(
         neighbours[0].parameters, 10 * window_end,
@@ -398,9 +397,8 @@ void area_3(Report& report, const std::vector<PaperRun>& neighbours) {
         {"Fig. 9, area 3",
          "rank correlation of T's largest modulus and the amplitude, over the modulations",
          "a close relation"},
-        {correlation, fmt::format(
-                          "{:.2f} over the {} modulations up to tau = {:g}", correlation, T.size(),
-                          r.run.outcome.tau)},
+        {correlation, "{:.2f} over the {} modulations up to tau = {:g}", correlation, T.size(),
+         r.run.outcome.tau},
         {{0.8, 1},
          "close; in part: more than chance gives once in 100 times, 2.58 over the root "
          "of their number less one",
