@@ -302,8 +302,8 @@ void EventLoop::expire() {
         if (c && !c->is_delivering() &&
             now > (c->is_closing() ? c->deadline() : std::min(c->deadline(scarce), idle_until_)))
             time_out(*c);
-    if (memory_.bytes() >= much_held) is_memory_to_return_ = true;
-    else if (is_memory_to_return_ && with_workers_ == 0) {
+    is_memory_to_return_ |= memory_.take_most() >= much_held;
+    if (is_memory_to_return_ && memory_.bytes() < much_held && with_workers_ == 0) {
         is_memory_to_return_ = false;
         trim_memory();
     }

@@ -4,11 +4,13 @@
 
 #include <cstdlib>  // __GLIBC__
 
+#include <algorithm>
 #include <atomic>
 #include <cstddef>
 #include <map>
 #include <mutex>
 #include <string>
+#include <utility>
 
 #ifdef __GLIBC__
 #include <malloc.h>
@@ -29,6 +31,11 @@ public:
         return is_full() || (own != clients_.end() && own->second >= limit_ / 2);
     }
     std::size_t bytes() const { return held_; }
+    /// The largest bytes() since the last call.
+    std::size_t take_most() {
+        const std::lock_guard lock(mutex_);
+        return std::exchange(most_, held_);
+    }
 
     struct Counted {
         std::string client;
@@ -36,8 +43,9 @@ public:
     };
     /// Counts these bytes of a client instead of what was counted.
     void count(Counted& counted, const std::string& client, std::size_t bytes) {
-        held_ += bytes - counted.bytes;
         const std::lock_guard lock(mutex_);
+        held_ += bytes - counted.bytes;
+        most_ = std::max(most_, held_.load());
         if (counted.bytes > 0) {
             const auto before = clients_.find(counted.client);
             if ((before->second -= counted.bytes) == 0) clients_.erase(before);
@@ -50,6 +58,7 @@ private:
     const std::size_t limit_;
     std::atomic<std::size_t> held_ = 0;
     mutable std::mutex mutex_;
+    std::size_t most_ = 0;
     std::map<std::string, std::size_t> clients_;  // bytes of each
 };
 

@@ -711,14 +711,14 @@ test("the memory for requests is limited over all clients", async (t) => {
   for (const {socket} of slow) socket.destroy();
 });
 
-test("the memory for unread answers is limited over all clients", async (t) => {
+test("the memory for unread answers is limited over all clients, and half of it for each", async (t) => {
   const one = await serviceFor(t, ["--memory-limit", "40000000"]);
-  // Answers of 8 MB: five are held, the next one is refused.
+  // Answers of 8 MB: five are held, of one client three, the next one is refused.
   const large =
     '{"damping": "closed_form", "tau_end": 2000, "max_points": 100000, "samples_per_cycle": 200}';
   const slow = [];
   for (let i = 0; i < 6; ++i) {
-    const connection = await connect(one.url);
+    const connection = await connect(one.url, {localAddress: `127.0.0.${1 + (i % 2)}`});
     connection.socket.write(simulation(large));
     await until(() => connection.text().length > 0);
     connection.socket.pause();

@@ -116,9 +116,13 @@ void HalfCycles::pass(const Stretch& stretch, double from, double to) {
         path_ += path_length(flow, stretch.start, shift, from, to);
         return;
     }
+    const double y_ddot = stretch.forces ? stretch.forces->y_ddot : 0;
+    if (y_ddot == 0) {
+        path_ += std::abs(stretch.y_dot) * (to - from);
+        return;
+    }
     // Gravity and friction turn the ball once at most.
-    const double y_ddot = stretch.forces ? stretch.forces->y_ddot : 0,
-                 turn = y_ddot == 0 ? from : std::clamp(-stretch.y_dot / y_ddot, from, to);
+    const double turn = std::clamp(-stretch.y_dot / y_ddot, from, to);
     path_ += std::abs(stretch.at(turn).y - stretch.at(from).y) +
              std::abs(stretch.at(to).y - stretch.at(turn).y);
 }
