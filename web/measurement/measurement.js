@@ -8,10 +8,8 @@ import {ImpactList} from "./impact_list.js";
 import {summariseMeasurement} from "./measurement_summary.js";
 import * as views from "./measurement_views.js";
 import {
-  afterReload,
   asJson,
   columnsOf,
-  keep,
   oscillatorOf,
   parse,
   recordOf,
@@ -107,17 +105,8 @@ export class MeasurementTab extends RequestTab {
     if (asQuery(fields) === this.asked) return;
     const {preset = given.size ? "" : firstSample, ...rest} = fields;
     this.choosePreset(preset, rest);
-    if (!this.opened) this.readFirst(given.size === 0);
+    if (!this.opened && !given.size) this.readSample(firstSample);
     this.opened = true;
-  }
-
-  /** Reads the record of before a reload or, if wanted, a sample. */
-  async readFirst(sample) {
-    const isNewest = this.beginRecord();
-    const file = await afterReload();
-    if (!isNewest()) return;
-    if (file) this.readFile(file);
-    else if (sample) this.readSample(firstSample);
   }
 
   /** Selects an oscillator; more: further fields. */
@@ -286,7 +275,6 @@ export class MeasurementTab extends RequestTab {
       });
       if (!isNewest()) return;
       this.parsed = parsed;
-      keep(file);
       const {names, columns} = parsed;
       $("measure-columns").replaceChildren(...names.map((value) => dom.element("option", {value})));
       dom.setTexts({"measure-about": `${about}, ${columns[0]?.length ?? 0} samples`});

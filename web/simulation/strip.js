@@ -8,7 +8,6 @@ import {levels} from "../shared/marks.js";
 import {clamp, digits, joined, nearest, withError} from "../shared/numbers.js";
 import {Plot} from "../shared/plot.js";
 import {quantities, regimeText, verdictColour, verdicts} from "../shared/quantities.js";
-import {read, write} from "../shared/store.js";
 import {Layers, receive, SweepData} from "../sweep/data.js";
 import {dotsOf, lineOf, regimesOf, sectionOf} from "../sweep/points.js";
 import {run} from "./run.js";
@@ -24,9 +23,6 @@ const band = 13; // px, height of the regime band
 
 const menu = $("strip-quantity");
 const say = (text) => setTexts({"strip-trouble": text});
-
-/** The key in the browser's store: a build's address is its own. */
-const stored = (key) => `${import.meta.url} ${key}`;
 
 const lambdaOf = (p) => p?.lambda?.[0];
 const errorOf = (p) => p.standard_error?.[0];
@@ -90,10 +86,7 @@ export class Strip extends Plot {
         say("");
         this.soon();
       }),
-    show: () => {
-      this.keep();
-      write("strips", stored(this.key), this.layers.base.file());
-    },
+    show: () => this.keep(),
     fail: ({message}) => {
       this.layers = null;
       say(message);
@@ -131,26 +124,10 @@ export class Strip extends Plot {
     const known = this.kept.get(key);
     this.markStale(!known);
     if (known) this.layers = known;
-    else this.find(fields);
+    else this.waiting = setTimeout(() => this.job.start(this.sweep(fields)), pause);
     say("");
     const {symbol, unit} = this.slider;
     setTexts({"strip-parameter": unit ? `${symbol} (${unit})` : symbol});
-  }
-
-  /** Takes the sweep from the browser's store, or requests it. */
-  async find(fields) {
-    const {key} = this;
-    this.waiting = setTimeout(() => this.job.start(this.sweep(fields)), pause);
-    const file = await read("strips", stored(key));
-    const text = await file?.text();
-    if (!text || this.key !== key) return;
-    clearTimeout(this.waiting);
-    this.job.cancel();
-    this.layers = new Layers(this.sweep(fields));
-    this.layers.base.takeAll(text);
-    this.keep();
-    this.markStale(false);
-    this.soon();
   }
 
   /** Keeps the complete sweep that is drawn. */
