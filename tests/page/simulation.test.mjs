@@ -760,7 +760,7 @@ test("the regime strip is a slider of the parameter changed last: a click and th
     await page.textContent("#strip-tip"),
     /^b = 2\d\.\d mm: II, .*chaotic, λ₁ = 0\.\d+ ± /,
   );
-  await page.focus("#strip");
+  await page.focus(".strip .marker");
   await after(page, () => page.keyboard.press("ArrowRight"));
   assert.ok(Number(await page.inputValue(number("b"))) > b);
   await after(page, () => turn(page, "R", 0.7));
