@@ -1,7 +1,6 @@
 // The design tab: the best absorber over a band, beside none and a tuned mass damper of its mass.
 import {linesOf} from "../shared/api.js";
 import {$, cards, countUp, keyOf, setTexts, tableOf} from "../shared/dom.js";
-import {addExportButton} from "../shared/export.js";
 import {Form, queryOf, unknownText} from "../shared/form.js";
 import {makeAccessible} from "../shared/gestures.js";
 import {RequestTab} from "../shared/job.js";
@@ -45,10 +44,9 @@ export class DesignTab extends RequestTab {
     };
     this.form = new Form($("design-fields"), fields, {prefix: "design-", grouped});
     $("design-fields").oninput = () => this.markStale();
-    this.response = new LinePlot($("plot-design-response"), new Viewport());
-    this.map = new ScatterPlot($("plot-design-map"), new Viewport());
-    for (const plot of ["response", "map"])
-      addExportButton($(`figure-design-${plot}`), this[plot], () => this.about(plot));
+    this.response = new LinePlot($("figure-design-response"), new Viewport());
+    this.map = new ScatterPlot($("figure-design-map"), new Viewport());
+    for (const plot of ["response", "map"]) this[plot].about = () => this.about(plot);
     $("design-simulate").onclick = () => simulate(this.worstCase());
   }
 

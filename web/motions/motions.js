@@ -1,7 +1,6 @@
 // The motions tab: motions that the system settles on, and continuations of periodic orbits.
 import {linesOf} from "../shared/api.js";
 import {$, button, countUp, element, setTexts, tableOf} from "../shared/dom.js";
-import {addExportButton} from "../shared/export.js";
 import {BaseForm, defaultSet, unknownText} from "../shared/form.js";
 import {makeAccessible} from "../shared/gestures.js";
 import {RequestTab} from "../shared/job.js";
@@ -46,11 +45,11 @@ export class MotionsTab extends RequestTab {
       const {base, parameter} = this.motions.request;
       simulate({...base, [parameter]: value, ...state, cycles: cyclesOfOrbit});
     };
-    this.plot = new MotionsPlot($("plot-motions"), {open, place: (value) => this.place(value)});
+    this.plot = new MotionsPlot($("figure-motions"), {open, place: (value) => this.place(value)});
+    this.plot.about = () => this.about();
     this.quantity = $("motions-quantity");
     this.quantity.onchange = () => this.draw();
     this.results.addEventListener("click", ({target}) => target.orbit && open(target.orbit));
-    addExportButton($("figure-motions"), this.plot, () => this.about());
     $("motions-example").onchange = ({target}) => {
       const {query} = target.selectedOptions[0].dataset;
       if (query) this.open(new URLSearchParams(query));

@@ -22,8 +22,8 @@ export class MotionsPlot extends ZoomablePlot {
   marked = null; // the marker's value
 
   /** open(orbit): simulates a motion; place(value): called when the marker moves. */
-  constructor(container, {open, place}) {
-    super(container);
+  constructor(figure, {open, place}) {
+    super(figure);
     Object.assign(this, {open, place});
     const move = (value) => {
       this.marked = value;

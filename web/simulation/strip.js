@@ -87,7 +87,8 @@ export class Strip extends Plot {
   });
 
   constructor() {
-    super($("strip"));
+    super($("regimes"));
+    this.canvas.id = "strip";
     const turn = (value, dragging) =>
       moveSlider(this.slider, Math.max(value, this.least), dragging);
     const ariaLabel = "The parameter, over the regimes";
