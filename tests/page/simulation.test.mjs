@@ -1043,7 +1043,7 @@ test("the skip link leads to the plots, and a frame for another page can be copi
   const page = await still("?preset=fig11");
   await page.keyboard.press("Tab");
   await page.keyboard.press("Enter");
-  await page.waitForFunction(() => document.activeElement?.id === "plot-x");
+  await page.waitForFunction(() => document.activeElement?.id === "figure-x");
   await browser.context.grantPermissions(["clipboard-read", "clipboard-write"]);
   await page.click("#copies >> text=embed");
   await page.waitForFunction(() => document.getElementById("message").textContent === "copied");

@@ -333,17 +333,19 @@ export class SimulationTab extends RequestTab {
 
 /** One plot is large, by a click on it, Enter or its chip; on small screens the others are hidden. */
 function startPlots() {
-  const buttons = [...document.querySelectorAll("#switch button")];
   const figures = [...document.querySelectorAll("#plots figure")];
-  const enlarge = (name) => {
-    dom.press(buttons, ({dataset}) => dataset.plot === name);
-    for (const {id, classList} of figures) classList.toggle("chosen", id === `figure-${name}`);
+  const buttons = figures.map((figure) =>
+    dom.button(figure.dataset.short, () => enlarge(figure), {className: "chip"}),
+  );
+  const enlarge = (chosen) => {
+    dom.press(buttons, (one) => figures[buttons.indexOf(one)] === chosen);
+    for (const figure of figures) figure.classList.toggle("chosen", figure === chosen);
   };
-  for (const one of buttons) one.onclick = () => enlarge(one.dataset.plot);
+  $("switch").append(...buttons);
+  enlarge(figures[0]);
   const act = ({target, key = "Enter"}) => {
     const figure = target.closest("figure");
-    if (figure && key === "Enter" && !target.closest("button"))
-      enlarge(figure.id.replace("figure-", ""));
+    if (figure && key === "Enter" && !target.closest("button")) enlarge(figure);
   };
   dom.on($("plots"), {click: act, keydown: act});
 }
