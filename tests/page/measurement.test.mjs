@@ -324,15 +324,21 @@ test("a chosen record is identified, its plots are tagged with the paper's figur
   await page.close();
 });
 
+const column = (quantity) =>
+  `#measure-fields [aria-describedby='measure-error-${quantity}_column']`;
+
 test("a file with unknown column names is identified once its columns are chosen", async () => {
   const text = (await regular()).replace(/^.*\n/, "clock,wire,piezo\n");
   const page = await visit("?tab=measurement&preset=fig15");
   await page.setInputFiles("#measure-file", asFile(text));
-  await page.waitForSelector("#measure-pick-time:enabled");
+  await page.waitForSelector(column("time"));
   assert.match(await page.textContent("#measure-message"), /choose which column is the time/);
-  await page.selectOption("#measure-pick-displacement", "wire");
-  await page.selectOption("#measure-pick-acceleration", "piezo");
-  await page.selectOption("#measure-pick-time", "clock");
+  const names = await page.$$eval("#measure-columns option", (all) => all.map(({value}) => value));
+  assert.deepEqual(names, ["clock", "wire", "piezo"]);
+  await page.fill(column("displacement"), "wire");
+  await page.fill(column("acceleration"), "piezo");
+  await page.fill(column("time"), "clock");
+  await page.press(column("time"), "Tab");
   await identified(page, 1);
   assert.match(await page.textContent("#measure-summary"), /impacts68 0 left out/);
   assert.match(page.url(), /time_column=clock/);
@@ -449,7 +455,9 @@ test("the newer of two samples is identified, and a new oscillator keeps the cho
   await identified(page, 1);
   assert.match(await page.textContent("#measure-about"), /sample-fig20/);
   assert.match(await page.textContent("#measure-summary"), /verdictchaotic/);
-  await page.selectOption("#measure-pick-displacement", "displacement_m");
+  await page.click("#measure-group-record > summary");
+  await page.fill(column("displacement"), "displacement_m");
+  await page.press(column("displacement"), "Tab");
   await identified(page, 2);
   await page.selectOption("#measure-preset", "fig15");
   assert.match(page.url(), /displacement_column=displacement_m/);
