@@ -1,7 +1,7 @@
 // The design tab: the best absorber over a band, beside none and a tuned mass damper of its mass.
 import {linesOf} from "../shared/api.js";
 import {$, cards, countUp, keyOf, setTexts, tableOf} from "../shared/dom.js";
-import {Form, queryOf, unknownText} from "../shared/form.js";
+import {Form} from "../shared/form.js";
 import {makeAccessible} from "../shared/gestures.js";
 import {RequestTab} from "../shared/job.js";
 import {dots, line} from "../shared/marks.js";
@@ -58,23 +58,11 @@ export class DesignTab extends RequestTab {
     return {name, ...objectives[name]};
   }
 
-  request() {
-    const {base, own} = this.form.parted();
-    return {base, ...own};
-  }
-
-  /** The query of the form's request, the machine first. */
-  formQuery() {
-    const {base, ...own} = this.request();
-    return queryOf({...base, ...own});
-  }
-
   /** Shows the form of a query, or an example; only a query is computed at once. */
   open(given) {
     const standard = new URLSearchParams($("design-form").dataset.query);
     const fields = Object.fromEntries(given.size ? given : standard);
-    setTexts({"design-note": unknownText(this.form.unknown(fields))});
-    this.form.set(this.form.parse(fields));
+    this.fill(fields);
     if (given.size && this.formQuery() !== this.asked) this.send();
   }
 

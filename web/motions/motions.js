@@ -1,7 +1,7 @@
 // The motions tab: motions that the system settles on, and continuations of periodic orbits.
 import {linesOf} from "../shared/api.js";
 import {$, button, countUp, element, setTexts, tableOf} from "../shared/dom.js";
-import {BaseForm, defaultSet, unknownText} from "../shared/form.js";
+import {BaseForm, defaultSet} from "../shared/form.js";
 import {makeAccessible} from "../shared/gestures.js";
 import {RequestTab} from "../shared/job.js";
 import {count, joined, short} from "../shared/numbers.js";
@@ -75,10 +75,8 @@ export class MotionsTab extends RequestTab {
     $("motions-fields").oninput = () => this.markStale();
   }
 
-  /** {base, parameter, from, to, ...} of the form. */
   request() {
-    const {base, own} = this.form.parted();
-    return {parameter: "b", base, ...own};
+    return {parameter: "b", ...super.request()};
   }
 
   /** Shows the motions of a query, or of the first example. */
@@ -86,8 +84,7 @@ export class MotionsTab extends RequestTab {
     const [, {dataset}] = $("motions-example").options;
     const fields = Object.fromEntries(given.size ? given : new URLSearchParams(dataset.query));
     this.form.scale(ends, fields.parameter ?? "b");
-    this.form.set(fields);
-    setTexts({"motions-note": unknownText(this.form.unknown(fields))});
+    this.fill(fields);
     if (this.formQuery() !== this.asked) this.send();
   }
 

@@ -28,7 +28,7 @@ export const line = kind((c, frame, {x, y, colour, width = 1, dash, dense}) => {
   const to = Math.min(firstFrom(x, max) + 1, x.length);
   ink(c, colour, width, dash);
   c.beginPath();
-  const {add, end} = dense || to - from > 4 * frame.width ? envelope(c, width) : path(c);
+  const {add, end} = dense || to - from > 4 * frame.width ? envelope(c) : path(c);
   for (let i = from; i < to; ++i) add(frame.px(x[i]), isThere(y[i]) ? frame.py(y[i]) : null);
   end();
 });
@@ -45,29 +45,24 @@ function path(c) {
   return {add, end: () => c.stroke()};
 }
 
-/** Joins minimum and maximum of each pixel to the previous pixel: spikes stay, without gaps. */
-function envelope(c, width) {
+/** Joins minimum and maximum of the points in each pixel: spikes stay. */
+function envelope(c) {
+  const joined = path(c);
   let column = null;
-  let low; // px, downwards
-  let high;
-  let before = null;
-  const end = () => {
-    if (column === null) return;
-    before ??= {low, high};
-    const top = Math.min(high, before.low);
-    const bottom = Math.max(low, before.high);
-    c.fillRect(column, top - width / 2, 1, bottom - top + width);
-    before = {low, high};
+  let ends; // px, downwards
+  const flush = () => {
+    if (column !== null) for (const py of ends) joined.add(column + 0.5, py);
   };
   const add = (px, py) => {
     if (py === null) return;
     const at = Math.floor(px);
-    if (at !== column) {
-      end();
-      column = at;
-      low = high = py;
-    } else if (py > low) low = py;
-    else if (py < high) high = py;
+    if (at !== column) flush();
+    ends = at === column ? [Math.min(ends[0], py), Math.max(ends[1], py)] : [py, py];
+    column = at;
+  };
+  const end = () => {
+    flush();
+    joined.end();
   };
   return {add, end};
 }

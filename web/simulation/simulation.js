@@ -126,8 +126,11 @@ export class SimulationTab extends RequestTab {
     dom.onFile($("panel-simulation"), $("load"), (file) => this.readLoad(file));
     $("measure-this").onclick = () => run && measure(run.answer);
     const texts = formsOf("v1/simulate", () => request.fields());
-    for (const one of $("copies").children)
-      one.onclick = () => dom.copy(texts[one.textContent](), this.say);
+    const copies = Object.entries(texts).map(([form, text]) => {
+      const more = {className: "small", title: `copy this run as ${form}`};
+      return dom.button(form, () => dom.copy(text(), this.say), more);
+    });
+    $("copies").append(...copies);
   }
 
   ask(fields, signal) {
