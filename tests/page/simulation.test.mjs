@@ -777,6 +777,7 @@ test("the strip shows lambda1, the largest |x| or the impacts, and keeps what it
     page.waitForFunction((n) => Number(document.getElementById("strip").dataset.done) >= n, n);
   await strip(1);
   sweeps.splice(0);
+  await painted(page);
   const pictures = [await hash(page, "#strip")];
   await page.selectOption("#strip-quantity", "x_max");
   await painted(page);
