@@ -27,30 +27,29 @@ export const redraw = () => plots.refresh();
 const optionsOf = {load, x: displacement, relative, lambda: exponents, section, largest, manifold};
 const deferredPlots = ["largest", "manifold"];
 
-/** Functions that draw the plots; those that need the deferred answer are marked until then. */
-function stepsOf(...names) {
+function drawOf(names) {
+  // Those that need the deferred answer are marked until then.
   for (const name of deferredPlots) $(`figure-${name}`).classList.toggle("pending", !run.deferred);
-  return [...names.map((name) => () => plots.draw(name, optionsOf[name]())), tell];
+  for (const name of names) plots.draw(name, optionsOf[name]());
+  tell();
 }
 
-export function drawing() {
+export function draw() {
   traced = null;
   byWall = impactsByWall(run.motion.impacts);
   plots.common = commonOptions(run.answer);
   reveal({"figure-load": run.load});
   const first = [...(run.load ? ["load"] : []), "x", "relative", "lambda", "section"];
-  return stepsOf(...first, ...(run.deferred ? deferredPlots : []));
+  drawOf([...first, ...(run.deferred ? deferredPlots : [])]);
 }
 
 /** Draws the deferred answer: eigenvalues, raw product, manifold. */
-export function showDeferred() {
-  for (const step of stepsOf("lambda", ...deferredPlots)) step();
-}
+export const showDeferred = () => drawOf(["lambda", ...deferredPlots]);
 
 /** Sets or clears the run to compare with. */
 export function pin(other) {
   pinned = other;
-  if (run) for (const step of drawing()) step();
+  if (run) draw();
 }
 
 /** Ratio of the pinned run's tau to the shown run's; on a common axis in seconds the two differ. */
