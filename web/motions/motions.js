@@ -50,10 +50,6 @@ export class MotionsTab extends RequestTab {
     this.quantity = $("motions-quantity");
     this.quantity.onchange = () => this.draw();
     this.results.addEventListener("click", ({target}) => target.orbit && open(target.orbit));
-    $("motions-example").onchange = ({target}) => {
-      const {query} = target.selectedOptions[0].dataset;
-      if (query) this.open(new URLSearchParams(query));
-    };
   }
 
   makeForm(tables) {
@@ -81,18 +77,11 @@ export class MotionsTab extends RequestTab {
 
   /** Shows the motions of a query, or of the first example. */
   open(given) {
-    const [, {dataset}] = $("motions-example").options;
+    const {dataset} = this.examples.options[1];
     const fields = Object.fromEntries(given.size ? given : new URLSearchParams(dataset.query));
     this.form.scale(ends, fields.parameter ?? "b");
     this.fill(fields);
     if (this.formQuery() !== this.asked) this.send();
-  }
-
-  send() {
-    super.send();
-    const isShown = ({dataset: {query}}) =>
-      query && String(new URLSearchParams(query)) === this.asked;
-    $("motions-example").value = [...$("motions-example").options].find(isShown)?.value ?? "";
   }
 
   /** Sweep and continuation from the base; then continuations of what no branch explains. */

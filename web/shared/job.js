@@ -111,6 +111,13 @@ export class RequestTab extends Job {
       this.submit();
     };
     this.noteElement = $(`${prefix}note`);
+    this.examples = $(`${prefix}example`);
+    this.examples?.addEventListener("change", () => {
+      const {query} = this.examples.selectedOptions[0].dataset;
+      if (!query) return;
+      this.open(new URLSearchParams(query));
+      this.scrollToResults();
+    });
     this.cancelButton = $(`${prefix}cancel`);
     this.cancelButton.onclick = () => this.cancel();
   }
@@ -177,7 +184,22 @@ export class RequestTab extends Job {
     this.markStale();
   }
 
+  /** The part of a query that is the request. */
+  requestOf(query) {
+    return String(new URLSearchParams(query));
+  }
+
+  /** Selects the example that the form shows, if any: its option has the query. */
+  showExample() {
+    const [own, ...examples] = this.examples.options;
+    const shown = this.requestOf(this.formQuery());
+    const example = examples.find(({dataset}) => this.requestOf(dataset.query) === shown);
+    (example ?? own).selected = true;
+  }
+
+  /** Marks the results if the form differs from their request. */
   markStale(busy = false) {
+    if (this.examples) this.showExample();
     this.results.classList.toggle("stale", this.isStale(busy));
   }
 
