@@ -1496,7 +1496,8 @@ for (const width of [390, 360])
     const top = await page.$eval("#figure-x", (node) => node.getBoundingClientRect().top);
     assert.ok(top < 500, `the plot begins at ${top}`);
     for (const name of [...overTime.slice(1), ...planes]) {
-      await page.click(`#switch [data-plot=${name}]`);
+      const short = await page.getAttribute(`#figure-${name}`, "data-short");
+      await page.click(`#switch button:text-is("${short}")`);
       assert.deepEqual(await visible(), [`figure-${name}`]);
       const canvas = planes.includes(name) ? `#plot-${name}` : `#plot-${name} canvas`;
       await painted(page);

@@ -58,22 +58,23 @@ export class SimulationTab extends RequestTab {
   lastMoved = "b"; // name of the slider moved last
 
   deferred = new Job({
-    ask: (fields, signal) =>
+    ask: ({fields, parts}, signal) =>
       Promise.all([
-        simulate({...fields, ...deferredParts}, signal),
+        simulate({...fields, ...parts}, signal),
         run.motion.exact === false &&
           simulate({max_points: mostSamples, ...fields, ...lightParts}, signal),
       ]),
-    show: ([answer, without], fields) => {
+    show: ([answer, without], {fields}) => {
       if (fields !== run.fields) return;
       run.deferred = answer;
       if (without) run.motion.without = motionOf(without, run.load);
       machine.redraw();
       remark(run.answer, answer);
       mainPlots.showDeferred();
-      details.follow();
+      details.show();
       dom.countUp(this.results);
     },
+    busy: details.busy,
     fail: ({message}) =>
       this.say(`T, the raw product and the manifold are missing: ${message}`, true),
   });
@@ -85,7 +86,7 @@ export class SimulationTab extends RequestTab {
     mainPlots.start();
     player.start();
     sliders.start(this);
-    details.start(this.request.fieldOf);
+    details.start(this.request.fieldOf, () => this.requestMore(run.fields));
     const read = (query) => {
       this.request.read(query);
       this.note();
@@ -120,7 +121,7 @@ export class SimulationTab extends RequestTab {
       if (!run) return;
       run.units = unitsOf(run.answer.parameters);
       this.draw();
-      details.follow();
+      details.show();
     });
     dom.onFile($("panel-simulation"), $("load"), (file) => this.readLoad(file));
     $("measure-this").onclick = () => run && measure(run.answer);
@@ -195,7 +196,12 @@ export class SimulationTab extends RequestTab {
     this.draw(fresh);
     dom.countUp(this.results, "shown");
     clearTimeout(this.deferring);
-    this.deferring = setTimeout(() => this.deferred.start(fields), idle);
+    this.deferring = setTimeout(() => this.requestMore(fields), idle);
+  }
+
+  /** Requests the deferred parts of the run, or all for the open details. */
+  requestMore(fields) {
+    this.deferred.start({fields, parts: details.wanted() ?? deferredParts});
   }
 
   /** Draws the run in the chosen units. */
