@@ -3,7 +3,7 @@
 import {element} from "./dom.js";
 import {font} from "./frame.js";
 import {drawText, ink, rgb, stroke} from "./ink.js";
-import {clamp, firstFrom, lastUpTo} from "./numbers.js";
+import {clamp, firstFrom} from "./numbers.js";
 
 /** A kind of mark from draw(c, frame, options). */
 export const kind =
@@ -49,9 +49,10 @@ function path(c) {
 function envelope(c) {
   const joined = path(c);
   let column = null;
-  let ends; // px, downwards
+  let ends = []; // px, downwards
   const flush = () => {
-    if (column !== null) for (const py of ends) joined.add(column + 0.5, py);
+    // Upwards and downwards in turn, so that the joints are short.
+    for (const py of column % 2 ? ends : ends.toReversed()) joined.add(column + 0.5, py);
   };
   const add = (px, py) => {
     if (py === null) return;
@@ -175,23 +176,29 @@ const many = 5000; // points above which the density is drawn
 
 /**
  * Symbols at points in any order; without y a point is not drawn. size: half the width, px; tints:
- * colour of each point in place of a common one; errors: half lengths of paler bars.
+ * colour of each point in place of a common one; errors: half lengths of paler bars; fitted: smaller
+ * if many are visible, and those beyond the range of y lie at the edge.
  */
 export const dots = kind((c, frame, options) => {
-  const {x, y, tints, errors = [], shape = "square", size = 1.2, width = 1.2} = options;
+  const {x, y, tints, errors = [], shape = "square", size = 1.2, width = 1.2, fitted} = options;
   if (!tints && x.length > many) return pointDensity(c, frame, options);
+  const {left, top, right, bottom} = frame.box;
+  const at = Array.from(x, (v, i) => [frame.px(v), y[i] == null ? NaN : frame.py(y[i])]);
+  const isVisible = ([px, py]) => px >= left && px <= right && !Number.isNaN(py);
+  const room = fitted ? frame.width / (3 * at.filter(isVisible).length) : 1;
+  const r = Math.max(size * Math.min(Math.sqrt(room), 1), 0.75);
   const alpha = c.globalAlpha;
   c.globalAlpha = 0.45 * alpha;
   errors.forEach((error, i) => {
     if (!error || y[i] == null) return;
     ink(c, tints[i], Math.max(1, size / 2));
-    const end = (sign) => clamp(frame.py(y[i] + sign * error), frame.box.top, frame.box.bottom);
-    stroke(c, ...[-1, 1].map((sign) => [frame.px(x[i]), end(sign)]));
+    const end = (sign) => clamp(frame.py(y[i] + sign * error), top, bottom);
+    stroke(c, ...[-1, 1].map((sign) => [at[i][0], end(sign)]));
   });
   c.globalAlpha = alpha;
   let colour = null;
-  for (let i = 0; i < x.length; ++i) {
-    if (y[i] == null) continue;
+  at.forEach(([px, py], i) => {
+    if (!isVisible(at[i])) return;
     const own = tints?.[i] ?? options.colour;
     if (own !== colour) {
       if (colour) finish(c, shape);
@@ -199,41 +206,17 @@ export const dots = kind((c, frame, options) => {
       c.beginPath();
       colour = own;
     }
-    symbol(c, shape, frame.px(x[i]), frame.py(y[i]), size);
-  }
+    symbol(c, shape, px, fitted ? clamp(py, top, bottom) : py, r);
+  });
   if (colour) finish(c, shape);
 });
 
-/** Symbols at ascending x, smaller if many; those out of range lie at the edge or are `clipped`. */
-export const symbols = kind(
-  (c, frame, {x, y, colour, shape, size = 4, width = 1.3, clipped}) => {
-    const {top, bottom} = frame.box;
-    const [min, max] = frame.x.range;
-    const [from, to] = [firstFrom(x, min), lastUpTo(x, max) + 1];
-    const room = Math.sqrt(frame.width / (3 * Math.max(to - from, 1)));
-    const r = Math.max(size * Math.min(room, 1), 0.75);
-    const crowded = to - from > (shape === "dot" ? 100 : 2000); // a path of many discs is slow
-    const drawn = new Set(); // half pixels: a symbol on top of another is invisible
-    frame.clip(c, clipped ? 0 : r);
-    ink(c, colour, width);
-    c.beginPath();
-    for (let i = from; i < to; ++i) {
-      if (y[i] == null) continue;
-      const px = frame.px(x[i]);
-      const py = clamp(frame.py(y[i]), top, bottom);
-      const place = Math.round(2 * py) * 1e5 + Math.round(2 * px);
-      if (drawn.has(place)) continue;
-      drawn.add(place);
-      symbol(c, crowded ? "square" : shape, px, py, crowded ? 0.85 * r : r);
-    }
-    finish(c, shape);
-    c.restore();
-  },
-  {above: true},
-);
+/** Symbols of a series over x, such as impacts. */
+export const symbols = (options) =>
+  dots({fitted: true, above: true, size: 4, width: 1.3, ...options});
 
-/** Dots over ascending x as a series, cut at the edge of the plot. */
-export const beads = (options) => symbols({shape: "dot", clipped: true, ...options});
+/** Dots of a series, cut at the edge of the plot. */
+export const beads = (options) => dots({fitted: true, shape: "dot", ...options});
 
 /** Names of series in their colours, for pictures without a legend. */
 export const names = kind(
