@@ -7,7 +7,6 @@ import {RequestTab} from "../shared/job.js";
 import {dots, line} from "../shared/marks.js";
 import {percent, shortTo} from "../shared/numbers.js";
 import {LinePlot, ScatterPlot} from "../shared/plot.js";
-import {Viewport} from "../shared/viewport.js";
 
 const inMm = {unit: "mm", factor: 1000};
 /** What the design makes small: name and unit. */
@@ -44,8 +43,8 @@ export class DesignTab extends RequestTab {
     };
     this.form = new Form($("design-fields"), fields, {prefix: "design-", grouped});
     $("design-fields").oninput = () => this.markStale();
-    this.response = new LinePlot($("figure-design-response"), new Viewport());
-    this.map = new ScatterPlot($("figure-design-map"), new Viewport());
+    this.response = new LinePlot($("figure-design-response"));
+    this.map = new ScatterPlot($("figure-design-map"));
     for (const plot of ["response", "map"]) this[plot].about = () => this.about(plot);
     $("design-simulate").onclick = () => simulate(this.worstCase());
   }

@@ -27,7 +27,6 @@ export function start(shown) {
       name: `measured-${name}`,
     }),
     moments: () => shown().answer?.impacts.time_s ?? [],
-    planeKeys: false,
   });
   plots.common = {x: {label: "t (s)", factor: 1}};
 }

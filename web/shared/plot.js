@@ -305,15 +305,15 @@ function sameScale(axes, {width, height}) {
 /** The plots in the figures of an element by name: planes, and lines over time. */
 export class PlotGroup {
   /** about(name): summary, caption and file name of an export; moments(): times of the impacts. */
-  constructor(container, viewport, {prefix = "figure-", about, moments, planeKeys = true}) {
+  constructor(container, viewport, {prefix = "figure-", about, moments}) {
     this.all = {};
     for (const figure of container.querySelectorAll("[data-plot]")) {
-      const isPlane = figure.dataset.plot === "plane";
       const {title} = captionOf(figure);
-      const plot = new (isPlane ? ScatterPlot : LinePlot)(figure, viewport);
+      const Kind = figure.dataset.plot === "plane" ? ScatterPlot : LinePlot;
+      const plot = new Kind(figure, viewport);
       const name = figure.id.replace(prefix, "");
       plot.about = () => ({title, ...about(name)});
-      makeAccessible(plot, title, moments, isPlane && !planeKeys ? null : viewport);
+      makeAccessible(plot, title, moments, viewport);
       this.all[name] = plot;
     }
   }
