@@ -1015,7 +1015,7 @@ test("a run is copied as a link, curl command, Python program and JSON, and each
   await browser.context.grantPermissions(["clipboard-read", "clipboard-write"]);
   const page = await still("?preset=fig9&b=0.021");
   const copied = async (form) => {
-    await page.click(`#copies >> text=${form}`);
+    await page.selectOption("#copies", form);
     await page.waitForFunction(() => document.getElementById("message").textContent === "copied");
     return page.evaluate(() => navigator.clipboard.readText());
   };
@@ -1046,7 +1046,7 @@ test("the skip link leads to the plots, and a frame for another page can be copi
   await page.keyboard.press("Enter");
   await page.waitForFunction(() => document.activeElement?.id === "figure-x");
   await browser.context.grantPermissions(["clipboard-read", "clipboard-write"]);
-  await page.click("#copies >> text=embed");
+  await page.selectOption("#copies", "embed");
   await page.waitForFunction(() => document.getElementById("message").textContent === "copied");
   assert.match(
     await page.evaluate(() => navigator.clipboard.readText()),

@@ -126,11 +126,12 @@ export class SimulationTab extends RequestTab {
     dom.onFile($("panel-simulation"), $("load"), (file) => this.readLoad(file));
     $("measure-this").onclick = () => run && measure(run.answer);
     const texts = formsOf("v1/simulate", () => request.fields());
-    const copies = Object.entries(texts).map(([form, text]) => {
-      const more = {className: "small", title: `copy this run as ${form}`};
-      return dom.button(form, () => dom.copy(text(), this.say), more);
-    });
-    $("copies").append(...copies);
+    const forms = Object.keys(texts).map((form) => [form]);
+    dom.fillMenu($("copies"), [["", "copy as …"], ...forms]);
+    $("copies").onchange = ({target}) => {
+      dom.copy(texts[target.value](), this.say);
+      target.value = "";
+    };
   }
 
   ask(fields, signal) {
