@@ -54,6 +54,9 @@ const rows = (page) =>
     ),
   );
 
+const column = (quantity) =>
+  `#measure-fields [aria-describedby='measure-error-${quantity}_column']`;
+
 test("a chosen record is drawn and identified; its impacts, section, exponents and verdict are shown", async () => {
   const page = await visit("?tab=measurement&preset=fig15");
   await page.setInputFiles("#measure-file", asFile(await regular(12)));
@@ -116,9 +119,9 @@ test("a link keeps the form's fields, switching tabs keeps the record, and other
     .replaceAll(".", ",");
   const page = await visit("?tab=measurement&preset=fig15");
   await page.setInputFiles("#measure-file", asFile(text));
-  await page.click("#measure-group-record > summary");
-  await page.fill("[aria-describedby='measure-error-time_column']", "zeit");
-  await page.fill("[aria-describedby='measure-error-displacement_column']", "Weg");
+  await page.waitForSelector(column("time"));
+  await page.fill(column("time"), "zeit");
+  await page.fill(column("displacement"), "Weg");
   await page.fill("[aria-describedby='measure-error-threshold']", "7");
   await page.click("#measure-run");
   await identified(page, 1);
@@ -135,10 +138,7 @@ test("a link keeps the form's fields, switching tabs keeps the record, and other
   await page.waitForSelector("#plot-measured-a canvas");
   assert.equal(await page.getAttribute("#measure-results", "data-done"), "1");
   const again = await open(browser.context, page.url());
-  assert.equal(
-    await again.inputValue("[aria-describedby='measure-error-displacement_column']"),
-    "Weg",
-  );
+  assert.equal(await again.inputValue(column("displacement")), "Weg");
   assert.equal(await again.inputValue("#measure-group-system label:has-text('b, mm') input"), "9");
   assert.deepEqual(browser.complaints, []);
   await page.close();
@@ -323,9 +323,6 @@ test("a chosen record is identified, its plots are tagged with the paper's figur
   assert.deepEqual(browser.complaints, []);
   await page.close();
 });
-
-const column = (quantity) =>
-  `#measure-fields [aria-describedby='measure-error-${quantity}_column']`;
 
 test("a file with unknown column names is identified once its columns are chosen", async () => {
   const text = (await regular()).replace(/^.*\n/, "clock,wire,piezo\n");

@@ -233,17 +233,31 @@ function between(list, t) {
   return list[i].map((v, k) => Math.round(v + (list[i + 1][k] - v) * part));
 }
 
+/** The next round number away from 0. */
+function rounded(v) {
+  if (v === 0) return 0;
+  const power = 10 ** Math.floor(Math.log10(Math.abs(v)));
+  const steps = [1, 1.2, 1.5, 2, 2.5, 3, 4, 5, 6, 8, 10];
+  const step = steps.find((s) => s * power >= Math.abs(v) * (1 - 1e-9));
+  return Number((Math.sign(v) * step * power).toPrecision(3));
+}
+
 const spare = 0.02; // fraction of the values at either end that can lie beyond the scale
 
-/** Ends of the colour scale, with two digits, beyond which a few outliers can lie. */
+/** Round ends of the colour scale, beyond which a few outliers can lie. */
 function endsOf({diverging, from0}, values) {
-  if (!values.length) return [0, 1];
   const sorted = Float64Array.from(values).sort();
-  const at = (share) => sorted[Math.round(share * (sorted.length - 1))];
-  const held = diverging || from0 ? [0] : [];
-  const ends = [Math.min(at(spare), ...held), Math.max(at(1 - spare), ...held)];
-  const [low, high] = ends.map((v) => Number(v.toPrecision(2)));
-  return [low, low < high ? high : low + (Math.abs(low) / 10 || 1)];
+  const n = sorted.length;
+  if (!n) return [0, 1];
+  const [low, high] = [spare, 1 - spare].map((q) => sorted[Math.round(q * (n - 1))]);
+  if (diverging) {
+    const ends = [rounded(Math.min(low, 0)), rounded(Math.max(high, 0))];
+    return ends[0] < ends[1] ? ends : [-1, 1];
+  }
+  if (from0) return [0, rounded(high) || 1];
+  const step = rounded((high - low) / 10 || Math.abs(low) / 10 || 0.1);
+  const ends = [Math.floor(low / step + 1e-9) * step, Math.ceil(high / step - 1e-9) * step];
+  return ends[0] < ends[1] ? ends : [ends[0], ends[0] + step];
 }
 
 /** {at(value): colour as bytes, ends, beyond: whether at() got values below and above the ends}. */
