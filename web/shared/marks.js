@@ -45,14 +45,17 @@ function path(c) {
   return {add, end: () => c.stroke()};
 }
 
-/** Joins minimum and maximum of the points in each pixel: spikes stay. */
+/** Joins minimum and maximum of each pixel, up to those of the previous one: spikes stay. */
 function envelope(c) {
-  const joined = path(c);
   let column = null;
-  let ends = []; // px, downwards
+  let ends = null; // [minimum, maximum], px
+  let before = null;
   const flush = () => {
-    // Upwards and downwards in turn, so that the joints are short.
-    for (const py of column % 2 ? ends : ends.toReversed()) joined.add(column + 0.5, py);
+    if (!ends) return;
+    const [[low, high], [from, to]] = [ends, before ?? ends];
+    c.moveTo(column + 0.5, Math.min(low, to) - 0.5);
+    c.lineTo(column + 0.5, Math.max(high, from) + 0.5);
+    before = ends;
   };
   const add = (px, py) => {
     if (py === null) return;
@@ -63,7 +66,7 @@ function envelope(c) {
   };
   const end = () => {
     flush();
-    joined.end();
+    c.stroke();
   };
   return {add, end};
 }
