@@ -468,6 +468,7 @@ test("system fields over an example's preset, or swept, leave its damping unless
   await page.click("#sweep-group-SI > summary");
   await page.fill("#sweep-group-SI .field-m1 input", "12");
   assert.equal(await page.inputValue(damping), "closed_form");
+  assert.ok(await page.isDisabled(`${epsilon} input`));
   await page.close();
 });
 

@@ -229,6 +229,10 @@ const types = {
 };
 const typeOf = ({type}) => types[type] ?? types.number;
 
+// Pairs of fields that express the same quantity: when one is filled, the other follows from it.
+const pairs = Object.entries({...equivalents, cycles: "tau_end"});
+const others = Object.fromEntries([...pairs, ...pairs.map((pair) => pair.toReversed())]);
+
 function rounded(value) {
   if (Array.isArray(value)) return value.map(rounded);
   return typeof value === "number" ? Number(value.toPrecision(6)) : value;
@@ -257,6 +261,7 @@ export const smallScreen = matchMedia("(max-width: 60rem)").matches;
 
 export class Form {
   parts = new Map(); // <details> of the groups
+  replaced = [];
 
   /**
    * prefix: of ids; grouped: the groups to show. `fields` holds the shown ones, whose `label`
@@ -280,6 +285,7 @@ export class Form {
       this.parts.set(group, details);
       container.append(details);
     }
+    container.addEventListener("input", () => this.updateDisabled());
   }
 
   row(field) {
@@ -342,6 +348,7 @@ export class Form {
   set(values) {
     for (const field of this.fields) setField(field, fromQuery(values[field.name]));
     this.unfold(values);
+    this.updateDisabled();
     this.showErrors([]);
   }
 
@@ -364,12 +371,14 @@ export class Form {
 
   /** Disables exactly the fields that are set elsewhere. */
   disable(names) {
-    for (const {name, input} of this.fields) input.disabled = names.includes(name);
+    this.replaced = names;
+    this.updateDisabled();
   }
 
   /** Sets a value and clears its origin. */
   replace(name, value) {
     setField(this.named.get(name), value);
+    this.updateDisabled();
   }
 
   /** The names among those of `fields` that the form does not have. */
@@ -379,6 +388,25 @@ export class Form {
 
   filled(name) {
     return Boolean(this.named.get(name)?.input.value?.trim());
+  }
+
+  /** The group that no field can be given of: a system is given either in SI or reduced. */
+  get excludedGroup() {
+    const given = (f) => this.filled(f.name) || this.replaced.includes(f.name);
+    const isGiven = (group) => this.fields.some((f) => f.group === group && given(f));
+    const [si, reduced] = ["SI", "reduced"].map(isGiven);
+    if (si === reduced) return null;
+    return si ? "reduced" : "SI";
+  }
+
+  /** Disables fields that are set elsewhere, follow from another field or cannot be combined. */
+  updateDisabled() {
+    const {excludedGroup} = this;
+    for (const {name, group, input} of this.fields) {
+      const other = others[name];
+      const follows = !this.filled(name) && (this.filled(other) || group === excludedGroup);
+      input.disabled = follows || [name, other].some((each) => this.replaced.includes(each));
+    }
   }
 
   /** The field of an error, also in the base of a request or in its only axis. */
