@@ -142,6 +142,20 @@ test("trying an example shows status, time and the first lines of the response",
   await page.close();
 });
 
+test("a response of the size limit is complete, a larger one truncated", async () => {
+  const page = await visit("#healthz");
+  for (const [bytes, said] of [
+    [1 << 20, "1048.6 kB"],
+    [(1 << 20) + 1, "more than 1048.6 kB, truncated"],
+  ]) {
+    await page.route("**/healthz", (route) => route.fulfill({body: "x".repeat(bytes)}));
+    const {status} = await tried(page, "healthz");
+    assert.match(status, new RegExp(`^200 OK · \\d+ ms · ${said} · beginning`));
+    await page.unroute("**/healthz");
+  }
+  await page.close();
+});
+
 test("an example asks for a required key, sends it, and all commands then contain it", async (t) => {
   const folder = await mkdtemp(join(tmpdir(), "vines-docs-"));
   const file = join(folder, "keys");

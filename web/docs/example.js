@@ -3,7 +3,8 @@ import {asCurl, hasKey, post, sendRequest} from "../shared/api.js";
 import {button, copy, element} from "../shared/dom.js";
 import {count} from "../shared/numbers.js";
 
-const maxLines = 60; // of a response that are shown
+const maxBytes = 1 << 20; // of a response that is shown completely
+const maxLines = 60;
 const maxCharacters = 6000;
 
 /** A request as curl command, without buffering for streams. flags: further ones. */
@@ -14,28 +15,40 @@ export const commandOf = (request, flags = "") =>
 export const pretty = (value) =>
   JSON.stringify(value, null, 2).replace(/\[[^[\]{}]*\]/g, (list) => list.replace(/\s+/g, " "));
 
+/** Reads until the body ends or exceeds maxBytes: {text, bytes, complete: the body ended}. */
+async function read(response) {
+  const reader = response.body?.getReader();
+  const decoder = new TextDecoder();
+  let text = "";
+  let bytes = 0;
+  while (reader && bytes <= maxBytes) {
+    const {done, value} = await reader.read();
+    if (done) return {text, bytes, complete: true};
+    bytes += value.length;
+    text += decoder.decode(value, {stream: true});
+  }
+  reader?.cancel().catch(() => {}); // the rest is not needed
+  return {text, bytes, complete: !reader};
+}
+
 const size = (bytes) => (bytes < 1000 ? `${bytes} bytes` : `${(bytes / 1000).toFixed(1)} kB`);
 
 /** Sends a request: {ok, status, text}, summary and beginning of the response, JSON indented. */
-async function send({path, type, body: given}, signal) {
+async function send({path, type, body}, signal) {
   const began = performance.now();
-  const response = await (given
-    ? post(path, JSON.stringify(given), signal, type)
+  const response = await (body
+    ? post(path, JSON.stringify(body), signal, type)
     : sendRequest(path, {signal}));
-  const body = await response.blob();
-  const text = await body.text();
+  const {text, bytes, complete} = await read(response);
   const took = Math.round(performance.now() - began);
   const isJson = /[/+]json\b/.test(response.headers.get("Content-Type") ?? "");
-  const shown = isJson && text ? pretty(JSON.parse(text)) : text;
+  const shown = isJson && complete && text ? pretty(JSON.parse(text)) : text;
   const lines = shown.trimEnd().split("\n");
   const first = lines.slice(0, maxLines).join("\n");
   const cut = lines.length > maxLines || first.length > maxCharacters;
-  const status = [
-    `${response.status} ${response.statusText}`.trim(),
-    `${took} ms`,
-    size(body.size),
-  ];
-  if (cut) status.push(`beginning of ${count(lines.length, "line")}`);
+  const status = [`${response.status} ${response.statusText}`.trim(), `${took} ms`];
+  status.push(complete ? size(bytes) : `more than ${size(bytes)}, truncated`);
+  if (cut) status.push(complete ? `beginning of ${count(lines.length, "line")}` : "beginning");
   const beginning = first.slice(0, maxCharacters) + (cut ? " …" : "");
   return {ok: response.ok, status: status.join(" · "), text: beginning};
 }
