@@ -27,29 +27,30 @@ export const redraw = () => plots.refresh();
 const optionsOf = {load, x: displacement, relative, lambda: exponents, section, largest, manifold};
 const deferredPlots = ["largest", "manifold"];
 
-function drawOf(names) {
-  // Those that need the deferred answer are marked until then.
+/** Functions that draw the plots; those that need the deferred answer are marked until then. */
+function stepsOf(...names) {
   for (const name of deferredPlots) $(`figure-${name}`).classList.toggle("pending", !run.deferred);
-  for (const name of names) plots.draw(name, optionsOf[name]());
-  tell();
+  return [...names.map((name) => () => plots.draw(name, optionsOf[name]())), tell];
 }
 
-export function draw() {
+export function drawing() {
   traced = null;
   byWall = impactsByWall(run.motion.impacts);
   plots.common = commonOptions(run.answer);
   reveal({"figure-load": run.load});
   const first = [...(run.load ? ["load"] : []), "x", "relative", "lambda", "section"];
-  drawOf([...first, ...(run.deferred ? deferredPlots : [])]);
+  return stepsOf(...first, ...(run.deferred ? deferredPlots : []));
 }
 
 /** Draws the deferred answer: eigenvalues, raw product, manifold. */
-export const showDeferred = () => drawOf(["lambda", ...deferredPlots]);
+export function showDeferred() {
+  for (const step of stepsOf("lambda", ...deferredPlots)) step();
+}
 
 /** Sets or clears the run to compare with. */
 export function pin(other) {
   pinned = other;
-  if (run) draw();
+  if (run) for (const step of drawing()) step();
 }
 
 /** Ratio of the pinned run's tau to the shown run's; on a common axis in seconds the two differ. */

@@ -28,6 +28,7 @@ const deferredParts = {
 };
 
 const mostSamples = 60000; // of a run that is drawn from samples
+const large = 20000; // impacts above which a run is drawn in several tasks
 const idle = 100; // ms without an edit before the deferred parts are requested
 
 /** The range first in view: the last cycles of a periodic motion, or else the window. */
@@ -120,7 +121,7 @@ export class SimulationTab extends RequestTab {
     onUnits(() => {
       if (!run) return;
       run.units = unitsOf(run.answer.parameters);
-      this.draw();
+      for (const step of this.drawing()) step();
       details.show();
     });
     dom.onFile($("panel-simulation"), $("load"), (file) => this.readLoad(file));
@@ -176,7 +177,10 @@ export class SimulationTab extends RequestTab {
     if ($("more").open) this.form.showOrigins(run.answer.parameters);
   }
 
-  show(answer, fields) {
+  /** Draws a run; a large one in several tasks, between which the browser handles events. */
+  async show(answer, fields) {
+    const pause = answer.impacts.tau.length > large ? dom.nextTask : null;
+    if (pause) await pause();
     const fresh = run === null || fields.fresh;
     const {forcing} = this.request.merged(fields);
     const load = [answer.parameters.forcing, forcing].find((given) => given?.time_s);
@@ -194,7 +198,11 @@ export class SimulationTab extends RequestTab {
     if (this.wantedView) viewport.range = this.wantedView;
     this.wantedView = null;
     dom.reveal({whole: viewport.zoomed});
-    this.draw(fresh);
+    for (const step of this.drawing(fresh)) {
+      if (pause) await pause();
+      if (run.answer !== answer) return;
+      step();
+    }
     dom.countUp(this.results, "shown");
     clearTimeout(this.deferring);
     this.deferring = setTimeout(() => this.requestMore(fields), idle);
@@ -205,22 +213,28 @@ export class SimulationTab extends RequestTab {
     this.deferred.start({fields, parts: details.wanted() ?? deferredParts});
   }
 
-  /** Draws the run in the chosen units. */
-  draw(fresh = false) {
+  /** The steps that draw the run in the chosen units. */
+  drawing(fresh = false) {
     const {request} = this;
     const {answer, fields, units} = run;
     const {parameters} = answer;
     const slider = sliders.sliderOf(this.lastMoved, parameters);
-    sliders.show(parameters, {fresh, dragged: fields.dragged}, slider);
-    showSentence(answer, slider, units);
-    machine.showReduction(answer.energy);
-    pin.compare();
-    mainPlots.draw();
-    player.show();
-    describe(answer, request.textOf(fields, parameters));
-    presetMenu.markPlots(request.edited ? null : request.preset);
-    dom.reveal({regimes: !parameters.forcing}); // which need a period
-    if (!parameters.forcing) this.strip.show(request.systemOf(fields), parameters, slider);
+    return [
+      () => {
+        sliders.show(parameters, {fresh, dragged: fields.dragged}, slider);
+        showSentence(answer, slider, units);
+        machine.showReduction(answer.energy);
+        pin.compare();
+      },
+      ...mainPlots.drawing(),
+      () => {
+        player.show();
+        describe(answer, request.textOf(fields, parameters));
+        presetMenu.markPlots(request.edited ? null : request.preset);
+        dom.reveal({regimes: !parameters.forcing}); // which need a period
+        if (!parameters.forcing) this.strip.show(request.systemOf(fields), parameters, slider);
+      },
+    ];
   }
 
   submit() {
