@@ -381,13 +381,21 @@ test("Measurement identifies the restitution and clearance of a simulated run", 
   await page.close();
 });
 
-test("the tab opens with a sample, and a record of one's own takes its place", async () => {
+test("the tab opens with a sample, and a record of one's own is shown again after a reload", async () => {
   const page = await visit("?tab=measurement");
   await identified(page, 1);
   assert.match(await page.textContent("#measure-about"), /^sample-fig20\.csv/);
   await page.setInputFiles("#measure-file", asFile(await regular(), "mine.csv"));
   await page.waitForFunction(() => document.getElementById("measure-results").dataset.done > 1);
+  const summary = await page.textContent("#measure-summary");
+  const impacts = /impacts(\d+)/;
+  await page.reload();
+  await identified(page, 1);
   assert.match(await page.textContent("#measure-about"), /^mine\.csv/);
+  assert.equal(
+    impacts.exec(await page.textContent("#measure-summary"))[1],
+    impacts.exec(summary)[1],
+  );
   assert.deepEqual(browser.complaints, []);
   await page.close();
 });

@@ -7,7 +7,16 @@ import {RequestTab} from "../shared/job.js";
 import {ImpactList} from "./impact_list.js";
 import {summariseMeasurement} from "./measurement_summary.js";
 import * as views from "./measurement_views.js";
-import {asJson, oscillatorOf, parse, recordOf, recordOfRun, spikeNear} from "./record.js";
+import {
+  afterReload,
+  asJson,
+  keep,
+  oscillatorOf,
+  parse,
+  recordOf,
+  recordOfRun,
+  spikeNear,
+} from "./record.js";
 
 const groups = {
   system: ["System", true],
@@ -93,8 +102,17 @@ export class MeasurementTab extends RequestTab {
     if (asQuery(fields) === this.asked) return;
     const {preset = given.size ? "" : firstSample, ...rest} = fields;
     this.choosePreset(preset, rest);
-    if (!this.opened && !given.size) this.readSample(firstSample);
+    if (!this.opened) this.readFirst(given.size === 0);
     this.opened = true;
+  }
+
+  /** Reads the record of before a reload or, if wanted, a sample. */
+  async readFirst(sample) {
+    const isNewest = this.beginRecord();
+    const file = await afterReload();
+    if (!isNewest()) return;
+    if (file) this.readFile(file);
+    else if (sample) this.readSample(firstSample);
   }
 
   /** Selects an oscillator; more: further fields. */
@@ -251,6 +269,7 @@ export class MeasurementTab extends RequestTab {
       });
       if (!isNewest()) return;
       this.parsed = parsed;
+      keep(file);
       const {names, columns} = parsed;
       $("measure-columns").replaceChildren(...names.map((value) => dom.element("option", {value})));
       dom.setTexts({"measure-about": `${about}, ${columns[0]?.length ?? 0} samples`});

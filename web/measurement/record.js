@@ -1,7 +1,8 @@
-// Records: read from a file by the rules of the service, and simulated from a run.
+// Records: read from a file by the rules of the service, simulated from a run, kept by the browser.
 import {nextTask} from "../shared/dom.js";
 import {Motion} from "../shared/motion.js";
 import {firstFrom, lastUpTo} from "../shared/numbers.js";
+import {read, write} from "../shared/store.js";
 
 const atOnce = 50000; // lines between two progress reports
 const encodings = ["utf-8", "utf-16le", "utf-16be", "windows-1252"];
@@ -251,6 +252,15 @@ export function spikeNear({t, a}, time, reach) {
   for (let i = from; i < Math.min(to, t.length); ++i)
     if (Math.abs(a[i] - centre) > Math.abs(a[best] - centre)) best = i;
   return best;
+}
+
+/** Keeps a file in place of the previous one. */
+export const keep = (file) => write("records", "last", file);
+
+/** The kept file if the page was reloaded, else undefined. */
+export async function afterReload() {
+  const [navigation] = performance.getEntriesByType("navigation");
+  return navigation?.type === "reload" ? read("records", "last") : undefined;
 }
 
 const samplesPerCycle = 245; // about 2 kHz at 8.35 Hz, the forcing of Li et al. (2018)

@@ -9,6 +9,7 @@ import {levels} from "../shared/marks.js";
 import {clamp, digits, joined, nearest, withError} from "../shared/numbers.js";
 import {Plot} from "../shared/plot.js";
 import {quantities, regimeText, verdictColour, verdicts} from "../shared/quantities.js";
+import {read, write} from "../shared/store.js";
 import {Layers, receive, SweepData} from "../sweep/data.js";
 import {dotsOf, lineOf, regimesOf, sectionOf} from "../sweep/points.js";
 import {run} from "./run.js";
@@ -24,6 +25,9 @@ const band = 13; // px, height of the regime band
 
 const menu = $("strip-quantity");
 const say = (text) => setTexts({"strip-trouble": text});
+
+/** The key in the browser's store: a build's address is its own. */
+const stored = (key) => `${import.meta.url} ${key}`;
 
 const lambdaOf = (p) => p?.lambda?.[0];
 const errorOf = (p) => p.standard_error?.[0];
@@ -77,7 +81,10 @@ export class Strip extends Plot {
         say("");
         this.soon();
       }),
-    show: () => this.keep(),
+    show: () => {
+      this.keep();
+      write("strips", stored(this.key), this.layers.base.file());
+    },
     fail: ({message}) => {
       this.layers = null;
       say(message);
@@ -122,10 +129,26 @@ export class Strip extends Plot {
     const known = this.kept.get(key);
     this.markStale(!known);
     if (known) this.layers = known;
-    else this.waiting = setTimeout(() => this.job.start(this.sweep(fields)), pause);
+    else this.find(fields);
     say("");
     const {symbol, unit} = this.slider;
     setTexts({"strip-parameter": unit ? `${symbol} (${unit})` : symbol});
+  }
+
+  /** Takes the sweep from the browser's store, or requests it. */
+  async find(fields) {
+    const {key} = this;
+    this.waiting = setTimeout(() => this.job.start(this.sweep(fields)), pause);
+    const file = await read("strips", stored(key));
+    const text = await file?.text();
+    if (!text || this.key !== key) return;
+    clearTimeout(this.waiting);
+    this.job.cancel();
+    this.layers = new Layers(this.sweep(fields));
+    this.layers.base.takeAll(text);
+    this.keep();
+    this.markStale(false);
+    this.soon();
   }
 
   /** Keeps the complete sweep that is drawn. */

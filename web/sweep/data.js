@@ -163,6 +163,11 @@ export class SweepData {
     };
   }
 
+  /** Takes all lines of a file(). */
+  takeAll(text) {
+    for (const line of text.trimEnd().split("\n")) this.take(JSON.parse(line), line);
+  }
+
   file() {
     return new Blob([...this.blobs, ...this.texts], {type: "application/x-ndjson"});
   }

@@ -1,0 +1,38 @@
+// Files and results that the browser keeps over reloads. Without permission to store, nothing is
+// kept: reading then resolves to undefined.
+
+const names = ["records", "strips"];
+const most = 50; // entries of a name, after which all of them are dropped
+
+/** Runs act(store) on a store and resolves to the result of the request it returns. */
+const within = (name, mode, act) =>
+  new Promise((resolve, reject) => {
+    const opening = indexedDB.open("vines", 2);
+    opening.onupgradeneeded = () => {
+      const {result} = opening;
+      for (const each of names)
+        if (!result.objectStoreNames.contains(each)) result.createObjectStore(each);
+    };
+    // An older page in another tab can block the upgrade.
+    opening.onerror = opening.onblocked = () => reject(opening.error);
+    opening.onsuccess = () => {
+      const request = act(opening.result.transaction(name, mode).objectStore(name));
+      request.onsuccess = () => resolve(request.result);
+      request.onerror = () => reject(request.error);
+      request.transaction.oncomplete = () => opening.result.close();
+    };
+  });
+
+export const read = (name, key) =>
+  within(name, "readonly", (store) => store.get(key)).catch(() => undefined);
+
+/** Stores a value, a Blob or what can be cloned, in place of the previous one of its key. */
+export async function write(name, key, value) {
+  try {
+    if ((await within(name, "readonly", (store) => store.count())) >= most)
+      await within(name, "readwrite", (store) => store.clear());
+    await within(name, "readwrite", (store) => store.put(value, key));
+  } catch {
+    // not permitted, or no space
+  }
+}
