@@ -175,7 +175,7 @@ function symbol(c, shape, x, y, r) {
 
 const finish = (c, shape) => (shape === "ring" || shape === "cross" ? c.stroke() : c.fill());
 
-const many = 5000; // points above which the density is drawn
+const many = 5000; // visible points above which the density is drawn
 
 /**
  * Symbols at points in any order; without y a point is not drawn. size: half the width, px; tints:
@@ -184,11 +184,11 @@ const many = 5000; // points above which the density is drawn
  */
 export const dots = kind((c, frame, options) => {
   const {x, y, tints, errors = [], shape = "square", size = 1.2, width = 1.2, fitted} = options;
-  if (!tints && x.length > many) return pointDensity(c, frame, options);
-  const {left, top, right, bottom} = frame.box;
-  const at = Array.from(x, (v, i) => [frame.px(v), y[i] == null ? NaN : frame.py(y[i])]);
-  const isVisible = ([px, py]) => px >= left && px <= right && !Number.isNaN(py);
-  const room = fitted ? frame.width / (3 * at.filter(isVisible).length) : 1;
+  const {top, bottom} = frame.box;
+  const [min, max] = frame.x.range;
+  const visible = [...x.keys()].filter((i) => x[i] >= min && x[i] <= max && isThere(y[i]));
+  if (!tints && visible.length > many) return pointDensity(c, frame, options, visible);
+  const room = fitted ? frame.width / (3 * visible.length) : 1;
   const r = Math.max(size * Math.min(Math.sqrt(room), 1), 0.75);
   const alpha = c.globalAlpha;
   c.globalAlpha = 0.45 * alpha;
@@ -196,12 +196,11 @@ export const dots = kind((c, frame, options) => {
     if (!error || y[i] == null) return;
     ink(c, tints[i], Math.max(1, size / 2));
     const end = (sign) => clamp(frame.py(y[i] + sign * error), top, bottom);
-    stroke(c, ...[-1, 1].map((sign) => [at[i][0], end(sign)]));
+    stroke(c, ...[-1, 1].map((sign) => [frame.px(x[i]), end(sign)]));
   });
   c.globalAlpha = alpha;
   let colour = null;
-  at.forEach(([px, py], i) => {
-    if (!isVisible(at[i])) return;
+  for (const i of visible) {
     const own = tints?.[i] ?? options.colour;
     if (own !== colour) {
       if (colour) finish(c, shape);
@@ -209,8 +208,9 @@ export const dots = kind((c, frame, options) => {
       c.beginPath();
       colour = own;
     }
-    symbol(c, shape, px, fitted ? clamp(py, top, bottom) : py, r);
-  });
+    const py = frame.py(y[i]);
+    symbol(c, shape, frame.px(x[i]), fitted ? clamp(py, top, bottom) : py, r);
+  }
   if (colour) finish(c, shape);
 });
 
@@ -316,12 +316,12 @@ export const density = kind((c, frame, {columns, colour}) => {
   });
 });
 
-/** Density of points, each 2 px wide. */
-function pointDensity(c, frame, {x, y, colour}) {
+/** Density of the visible points, each 2 px wide. */
+function pointDensity(c, frame, {x, y, colour}, visible) {
   const {left, top} = frame.box;
   drawDensity(c, frame, colour, (add, round) => {
     const size = Math.max(2, round(2));
-    for (let i = 0; i < x.length; ++i) {
+    for (const i of visible) {
       const column = round(frame.px(x[i]) - left) - (size >> 1);
       const row = round(frame.py(y[i]) - top) - (size >> 1);
       add(column, row, column + size, row + size);
