@@ -671,6 +671,19 @@ test("a dense periodic motion is drawn evenly and without gaps", async () => {
   await page.close();
 });
 
+test("the impacts in view are drawn the same in a run of many impacts and in a short one", async () => {
+  const [long, short] = await Promise.all(
+    [60000, 2000].map(async (end) => {
+      const page = await still(`?preset=fig3&window=20,300&tau_end=${end}&view=100,160`);
+      await painted(page);
+      const picture = await hash(page, "#plot-relative canvas");
+      await page.close();
+      return picture;
+    }),
+  );
+  assert.equal(long, short);
+});
+
 test("all plots and the machine share a cursor, and the nearest impact is ringed in each", async () => {
   const page = await still("?preset=fig11");
   await enlarge(page, "relative");
@@ -1152,9 +1165,9 @@ test("a dialog closed by Escape stores no key", (t) =>
 test("a printed page shows the results without the controls", async () => {
   const page = await still("?preset=fig9");
   await page.emulateMedia({media: "print"});
-  for (const hidden of ["#form", ".tabs", ".player", "footer"])
+  for (const hidden of ["#form", ".tabs", "#play", "#scrub", "footer"])
     assert.equal(await page.isVisible(hidden), false, hidden);
-  for (const shownOnPaper of ["#sentence", "#figure-x .params", ...instrument])
+  for (const shownOnPaper of ["#sentence", "#reduction", "#figure-x .params", ...instrument])
     assert.ok(await page.isVisible(shownOnPaper), shownOnPaper);
   for (const width of [1440, 718]) {
     await page.setViewportSize({width, height: 900});
