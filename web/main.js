@@ -1,7 +1,7 @@
 // The page: its tabs, and the address, which names the tab and holds its request.
 
 import {get} from "./shared/api.js";
-import {$, attributes, on, sayIn, setTexts} from "./shared/dom.js";
+import {$, element, sayIn, setTexts} from "./shared/dom.js";
 import {onColours} from "./shared/ink.js";
 import {joined} from "./shared/numbers.js";
 import "./shared/terms.js";
@@ -27,41 +27,31 @@ let current = null;
 const embedded = new URLSearchParams(location.search).has("embed");
 document.body.classList.toggle("embedded", embedded);
 
-const buttons = [...document.querySelectorAll("[role=tab]")];
-const nameOf = (button) => button.id.replace("tab-", "");
+const links = [...document.querySelectorAll(".tabs a")];
+const nameOf = (link) => link.id.replace("tab-", "");
 
 /** Shows the panel of a tab, scrolled as it was left. */
 function showPanel(name) {
   if (current === name) return;
   if (current) scrolled[current] = scrollY;
   current = name;
-  for (const button of buttons) {
-    const is = nameOf(button) === name;
-    attributes(button, {"aria-selected": is, tabindex: is ? 0 : -1});
-    $(button.getAttribute("aria-controls")).hidden = !is;
+  for (const link of links) {
+    const is = nameOf(link) === name;
+    link.ariaCurrent = is ? "page" : null;
+    $(`panel-${nameOf(link)}`).hidden = !is;
   }
   scrollTo(0, scrolled[name] ?? 0);
 }
 
-const moves = {ArrowRight: (i) => i + 1, ArrowLeft: (i) => i - 1, Home: () => 0, End: () => -1};
-
-/** Tabs are chosen by click, by arrow keys, and by Home and End. */
-function listenToButtons() {
-  for (const button of buttons)
-    on(button, {
-      click() {
-        const name = nameOf(button);
-        if (name !== current) navigate(name, queryOf(name));
-      },
-      keydown(event) {
-        const move = moves[event.key];
-        if (!move) return;
-        event.preventDefault();
-        const next = buttons.at(move(buttons.indexOf(button)) % buttons.length);
-        next.focus();
-        next.click();
-      },
-    });
+/** A tab shows its latest request; with a key its link opens another tab of the browser. */
+function listenToLinks() {
+  for (const link of links)
+    link.onclick = (event) => {
+      if (event.ctrlKey || event.metaKey || event.shiftKey) return;
+      event.preventDefault();
+      const name = nameOf(link);
+      if (name !== current) navigate(name, queryOf(name));
+    };
 }
 
 const address = (name, query) =>
@@ -154,12 +144,14 @@ function fail(text) {
 }
 
 async function start() {
+  for (const figure of document.querySelectorAll("[data-plot]"))
+    figure.append(element("figcaption", {}, ...figure.childNodes));
   // Keys and bars have the colour that they name.
   for (const {style, dataset} of document.querySelectorAll("[data-colour]"))
     style.setProperty("--key", `var(--${dataset.colour})`);
   const [fields, {presets}] = await Promise.all([get("v1/parameters"), get("v1/presets")]);
   tables = {...fields, presets};
-  listenToButtons();
+  listenToLinks();
   $("story").onchange = ({target}) => {
     tell(target.value);
     target.value = "";

@@ -54,6 +54,9 @@ const rows = (page) =>
     ),
   );
 
+const column = (quantity) =>
+  `#measure-fields [aria-describedby='measure-error-${quantity}_column']`;
+
 test("a chosen record is drawn and identified; its impacts, section, exponents and verdict are shown", async () => {
   const page = await visit("?tab=measurement&preset=fig15");
   await page.setInputFiles("#measure-file", asFile(await regular(12)));
@@ -116,9 +119,9 @@ test("a link keeps the form's fields, switching tabs keeps the record, and other
     .replaceAll(".", ",");
   const page = await visit("?tab=measurement&preset=fig15");
   await page.setInputFiles("#measure-file", asFile(text));
-  await page.click("#measure-group-record > summary");
-  await page.fill("[aria-describedby='measure-error-time_column']", "zeit");
-  await page.fill("[aria-describedby='measure-error-displacement_column']", "Weg");
+  await page.waitForSelector(column("time"));
+  await page.fill(column("time"), "zeit");
+  await page.fill(column("displacement"), "Weg");
   await page.fill("[aria-describedby='measure-error-threshold']", "7");
   await page.click("#measure-run");
   await identified(page, 1);
@@ -135,10 +138,7 @@ test("a link keeps the form's fields, switching tabs keeps the record, and other
   await page.waitForSelector("#plot-measured-a canvas");
   assert.equal(await page.getAttribute("#measure-results", "data-done"), "1");
   const again = await open(browser.context, page.url());
-  assert.equal(
-    await again.inputValue("[aria-describedby='measure-error-displacement_column']"),
-    "Weg",
-  );
+  assert.equal(await again.inputValue(column("displacement")), "Weg");
   assert.equal(await again.inputValue("#measure-group-system label:has-text('b, mm') input"), "9");
   assert.deepEqual(browser.complaints, []);
   await page.close();
@@ -328,11 +328,14 @@ test("a file with unknown column names is identified once its columns are chosen
   const text = (await regular()).replace(/^.*\n/, "clock,wire,piezo\n");
   const page = await visit("?tab=measurement&preset=fig15");
   await page.setInputFiles("#measure-file", asFile(text));
-  await page.waitForSelector("#measure-pick-time:enabled");
+  await page.waitForSelector(column("time"));
   assert.match(await page.textContent("#measure-message"), /choose which column is the time/);
-  await page.selectOption("#measure-pick-displacement", "wire");
-  await page.selectOption("#measure-pick-acceleration", "piezo");
-  await page.selectOption("#measure-pick-time", "clock");
+  const names = await page.$$eval("#measure-columns option", (all) => all.map(({value}) => value));
+  assert.deepEqual(names, ["clock", "wire", "piezo"]);
+  await page.fill(column("displacement"), "wire");
+  await page.fill(column("acceleration"), "piezo");
+  await page.fill(column("time"), "clock");
+  await page.press(column("time"), "Tab");
   await identified(page, 1);
   assert.match(await page.textContent("#measure-summary"), /impacts68 0 left out/);
   assert.match(page.url(), /time_column=clock/);
@@ -457,7 +460,9 @@ test("the newer of two samples is identified, and a new oscillator keeps the cho
   await identified(page, 1);
   assert.match(await page.textContent("#measure-about"), /sample-fig20/);
   assert.match(await page.textContent("#measure-summary"), /verdictchaotic/);
-  await page.selectOption("#measure-pick-displacement", "displacement_m");
+  await page.click("#measure-group-record > summary");
+  await page.fill(column("displacement"), "displacement_m");
+  await page.press(column("displacement"), "Tab");
   await identified(page, 2);
   await page.selectOption("#measure-preset", "fig15");
   assert.match(page.url(), /displacement_column=displacement_m/);

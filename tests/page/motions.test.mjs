@@ -45,7 +45,7 @@ test("the marker lists the motions at its place, and each opens in Simulation fr
   const at = () => page.textContent("#motions-at");
   assert.match(await at(), /^At b = 15 mm: *stable, largest \|x\| 2\.6\d* mm/);
   await page.focus("#plot-motions .grip");
-  for (let k = 0; k < 30; ++k) await page.keyboard.press("ArrowRight");
+  for (let k = 0; k < 150; ++k) await page.keyboard.press("ArrowRight");
   assert.match(await at(), /^At b = 16\.2 mm:.*stable.*unstable, largest \|x\| 5\.\d+ mm/);
   await page.click("#motions-at button:has-text('unstable')");
   await drawn(page, 1);

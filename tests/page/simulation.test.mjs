@@ -671,6 +671,19 @@ test("a dense periodic motion is drawn evenly and without gaps", async () => {
   await page.close();
 });
 
+test("the impacts in view are drawn the same in a run of many impacts and in a short one", async () => {
+  const [long, short] = await Promise.all(
+    [60000, 2000].map(async (end) => {
+      const page = await still(`?preset=fig3&window=20,300&tau_end=${end}&view=100,160`);
+      await painted(page);
+      const picture = await hash(page, "#plot-relative canvas");
+      await page.close();
+      return picture;
+    }),
+  );
+  assert.equal(long, short);
+});
+
 test("all plots and the machine share a cursor, and the nearest impact is ringed in each", async () => {
   const page = await still("?preset=fig11");
   await enlarge(page, "relative");
@@ -760,7 +773,7 @@ test("the regime strip is a slider of the parameter changed last: a click and th
     await page.textContent("#strip-tip"),
     /^b = 2\d\.\d mm: II, .*chaotic, λ₁ = 0\.\d+ ± /,
   );
-  await page.focus("#strip");
+  await page.focus(".strip .marker");
   await after(page, () => page.keyboard.press("ArrowRight"));
   assert.ok(Number(await page.inputValue(number("b"))) > b);
   await after(page, () => turn(page, "R", 0.7));
@@ -777,6 +790,7 @@ test("the strip shows lambda1, the largest |x| or the impacts, and keeps what it
     page.waitForFunction((n) => Number(document.getElementById("strip").dataset.done) >= n, n);
   await strip(1);
   sweeps.splice(0);
+  await painted(page);
   const pictures = [await hash(page, "#strip")];
   await page.selectOption("#strip-quantity", "x_max");
   await painted(page);
@@ -1018,7 +1032,7 @@ test("a run is copied as a link, curl command, Python program and JSON, and each
   await browser.context.grantPermissions(["clipboard-read", "clipboard-write"]);
   const page = await still("?preset=fig9&b=0.021");
   const copied = async (form) => {
-    await page.click(`#copies >> text=${form}`);
+    await page.selectOption("#copies", form);
     await page.waitForFunction(() => document.getElementById("message").textContent === "copied");
     return page.evaluate(() => navigator.clipboard.readText());
   };
@@ -1047,9 +1061,9 @@ test("the skip link leads to the plots, and a frame for another page can be copi
   const page = await still("?preset=fig11");
   await page.keyboard.press("Tab");
   await page.keyboard.press("Enter");
-  await page.waitForFunction(() => document.activeElement?.id === "plot-x");
+  await page.waitForFunction(() => document.activeElement?.id === "figure-x");
   await browser.context.grantPermissions(["clipboard-read", "clipboard-write"]);
-  await page.click("#copies >> text=embed");
+  await page.selectOption("#copies", "embed");
   await page.waitForFunction(() => document.getElementById("message").textContent === "copied");
   assert.match(
     await page.evaluate(() => navigator.clipboard.readText()),
@@ -1151,9 +1165,9 @@ test("a dialog closed by Escape stores no key", (t) =>
 test("a printed page shows the results without the controls", async () => {
   const page = await still("?preset=fig9");
   await page.emulateMedia({media: "print"});
-  for (const hidden of ["#form", ".tabs", ".player", "footer"])
+  for (const hidden of ["#form", ".tabs", "#play", "#scrub", "footer"])
     assert.equal(await page.isVisible(hidden), false, hidden);
-  for (const shownOnPaper of ["#sentence", "#figure-x .params", ...instrument])
+  for (const shownOnPaper of ["#sentence", "#reduction", "#figure-x .params", ...instrument])
     assert.ok(await page.isVisible(shownOnPaper), shownOnPaper);
   for (const width of [1440, 718]) {
     await page.setViewportSize({width, height: 900});
@@ -1443,7 +1457,7 @@ test("a system in SI has SI sliders and units; the switch to tau needs no reques
   assert.match(await amounts(), /\d+ J/);
   const seconds = await hash(page, "#plot-velocities");
   const address = page.url();
-  await page.click("#units >> text=τ");
+  await page.selectOption("#units", "τ");
   assert.match(await page.textContent("#moment"), /^τ = /);
   assert.match(await heads(), /^τ from/);
   assert.match(await amounts(), /mm²/);
@@ -1452,7 +1466,7 @@ test("a system in SI has SI sliders and units; the switch to tau needs no reques
   assert.equal(page.url(), address);
   const again = await open(browser.context, address);
   assert.match(await again.textContent("#moment"), /^τ = /);
-  await again.click("#units >> text=mm/s");
+  await again.selectOption("#units", "s, mm/s");
   const reduced = await visit("?b=0.02&tau_end=300");
   assert.match(await reduced.textContent("#moment"), /^τ = /, "without SI there are no seconds");
   assert.equal(await reduced.isVisible("#units"), false);
@@ -1499,7 +1513,8 @@ for (const width of [390, 360])
     const top = await page.$eval("#figure-x", (node) => node.getBoundingClientRect().top);
     assert.ok(top < 500, `the plot begins at ${top}`);
     for (const name of [...overTime.slice(1), ...planes]) {
-      await page.click(`#switch [data-plot=${name}]`);
+      const short = await page.getAttribute(`#figure-${name}`, "data-short");
+      await page.click(`#switch button:text-is("${short}")`);
       assert.deepEqual(await visible(), [`figure-${name}`]);
       const canvas = planes.includes(name) ? `#plot-${name}` : `#plot-${name} canvas`;
       await painted(page);

@@ -1,14 +1,12 @@
 // The design tab: the best absorber over a band, beside none and a tuned mass damper of its mass.
 import {linesOf} from "../shared/api.js";
 import {$, cards, countUp, keyOf, setTexts, tableOf} from "../shared/dom.js";
-import {addExportButton} from "../shared/export.js";
-import {Form, queryOf, unknownText} from "../shared/form.js";
+import {Form} from "../shared/form.js";
 import {makeAccessible} from "../shared/gestures.js";
 import {RequestTab} from "../shared/job.js";
 import {dots, line} from "../shared/marks.js";
 import {percent, shortTo} from "../shared/numbers.js";
 import {LinePlot, ScatterPlot} from "../shared/plot.js";
-import {Viewport} from "../shared/viewport.js";
 
 const inMm = {unit: "mm", factor: 1000};
 /** What the design makes small: name and unit. */
@@ -45,10 +43,9 @@ export class DesignTab extends RequestTab {
     };
     this.form = new Form($("design-fields"), fields, {prefix: "design-", grouped});
     $("design-fields").oninput = () => this.markStale();
-    this.response = new LinePlot($("plot-design-response"), new Viewport());
-    this.map = new ScatterPlot($("plot-design-map"), new Viewport());
-    for (const plot of ["response", "map"])
-      addExportButton($(`figure-design-${plot}`), this[plot], () => this.about(plot));
+    this.response = new LinePlot($("figure-design-response"));
+    this.map = new ScatterPlot($("figure-design-map"));
+    for (const plot of ["response", "map"]) this[plot].about = () => this.about(plot);
     $("design-simulate").onclick = () => simulate(this.worstCase());
   }
 
@@ -60,23 +57,11 @@ export class DesignTab extends RequestTab {
     return {name, ...objectives[name]};
   }
 
-  request() {
-    const {base, own} = this.form.parted();
-    return {base, ...own};
-  }
-
-  /** The query of the form's request, the machine first. */
-  formQuery() {
-    const {base, ...own} = this.request();
-    return queryOf({...base, ...own});
-  }
-
   /** Shows the form of a query, or an example; only a query is computed at once. */
   open(given) {
     const standard = new URLSearchParams($("design-form").dataset.query);
     const fields = Object.fromEntries(given.size ? given : standard);
-    setTexts({"design-note": unknownText(this.form.unknown(fields))});
-    this.form.set(this.form.parse(fields));
+    this.fill(fields);
     if (given.size && this.formQuery() !== this.asked) this.send();
   }
 

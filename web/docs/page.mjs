@@ -2,7 +2,7 @@
 import {count} from "../shared/numbers.js";
 import {commandOf, pretty} from "./example.js";
 import * as doc from "./schema.mjs";
-import {fieldsFold, fieldTable, fold, html, schemaView, typeWords} from "./schema.mjs";
+import {fieldTable, fold, html, schemaView, typeWords} from "./schema.mjs";
 
 // Address of the service in the examples until example.js replaces it.
 globalThis.location = {href: "http://127.0.0.1:8080/docs"};
@@ -22,6 +22,9 @@ function about() {
   }).map(([name, words]) => html`<dt>${name}</dt><dd>${words}</dd>`);
 }
 
+/** The end of a fold; a link to its id opens it, as the id is inside. */
+const inFold = (id, content) => html`<div id="${id}">${content}</div></details>`;
+
 const operationsView = () =>
   doc.tags().map(({name, description, operations}) => {
     const id = `docs-tag-${name}`;
@@ -29,7 +32,7 @@ const operationsView = () =>
     return html`<section aria-labelledby="${id}">${title}${operations.map(operationView)}</section>`;
   });
 
-/** The schemas, each with its description and, as last element, its fields. */
+/** The schemas, each with its description and its fields. */
 const schemasView = () =>
   doc.schemas().map(([name, schema]) => {
     const id = doc.schemaPlace(name);
@@ -37,7 +40,7 @@ const schemasView = () =>
     const fields = properties ? count(Object.keys(properties).length, "field") : "one of several";
     const said = description ? html`<p>${description}</p>` : "";
     const title = html`<summary><h3>${name} <small>${fields}</small></h3></summary>`;
-    return html`<details id="${id}">${title}${said}<div>${schemaView(schema, id)}</div></details>`;
+    return [html`<details>${title}`, inFold(id, [said, schemaView(schema, id)])];
   });
 
 function contents() {
@@ -88,8 +91,7 @@ const contentView = (content = {}, open = false) =>
   Object.entries(content).flatMap(([type, {schema = {}, example}]) => {
     const description = schema.description ? `: ${schema.description}` : "";
     const nodes = [html`<p><code>${type}</code> ${typeWords(schema)}${description}</p>`];
-    if (schema.$ref)
-      nodes.push(open ? schemaView(schema, null) : fieldsFold("Fields", schema.$ref));
+    if (schema.$ref && open) nodes.push(schemaView(schema, null));
     if (!open && example !== undefined)
       nodes.push(fold("Example", html`<pre><code>${pretty(example)}</code></pre>`));
     return nodes;
@@ -155,6 +157,6 @@ function operationView(operation) {
   const {operationId, method, path, summary} = operation;
   const verb = html`<span class="method ${method.toLowerCase()}">${method}</span>`;
   const title = html`<h3>${verb} <code>${path}</code> <small>${summary}</small></h3>`;
-  const begin = html`<details id="${operationId}" class="operation"><summary>${title}</summary>`;
-  return [begin, inside(operation), html`</details>`];
+  const begin = html`<details class="operation"><summary>${title}</summary>`;
+  return [begin, inFold(operationId, inside(operation))];
 }

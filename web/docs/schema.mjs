@@ -1,4 +1,5 @@
-// Schemas as text and as tables of fields, whose ids are like schema-Energy.without_absorber.rms.
+// Schemas as text and as tables of fields, whose ids are like schema-Energy.without_absorber.rms. A
+// schema that is part of others is linked.
 import {readFileSync} from "node:fs";
 import {count} from "../shared/numbers.js";
 
@@ -61,11 +62,11 @@ function rows({name, schema, required, description}, place) {
   ];
 }
 
-/** The objects and components that a value of a schema can be or contain, one level deep. */
+/** The objects that a value of a schema can be or contain, one level deep. */
 function parts(schema) {
-  if (schema.$ref || schema.properties) return [schema];
-  const {items, additionalProperties, anyOf = [], oneOf = [], allOf = []} = schema;
-  return [items, additionalProperties, ...anyOf, ...oneOf, ...allOf]
+  if (schema.properties) return [schema];
+  const {items, additionalProperties, anyOf = [], oneOf = []} = schema;
+  return [items, additionalProperties, ...anyOf, ...oneOf]
     .filter((inner) => typeof inner === "object")
     .flatMap(parts);
 }
@@ -75,16 +76,10 @@ function partFolds(schema, place, n = 0) {
   let placed = n;
   const next = () => place && (placed++ ? `${place}/${placed}` : place);
   return parts(schema).map((part) => {
-    const fields = Object.keys(resolved(part).properties ?? {}).length;
-    const number = html`<small>${fields ? count(fields, "field") : "one of several"}</small>`;
-    if (part.$ref) return fieldsFold([nameOf(part.$ref), " ", number], part.$ref);
-    return fold(number, schemaView(part, next()));
+    const number = count(Object.keys(part.properties).length, "field");
+    return fold(html`<small>${number}</small>`, schemaView(part, next()));
   });
 }
-
-/** A fold of a component's fields, which docs.js fills when it is opened: they can be recursive. */
-export const fieldsFold = (summary, $ref) =>
-  html`<details data-copy="${schemaPlace(nameOf($ref))}"><summary>${summary}</summary></details>`;
 
 /** A table of fields. place: id of their parent; null if they are not search targets. */
 export const fieldTable = (fields, place, title) => [
@@ -101,10 +96,10 @@ export function schemaView(schema, place) {
     schema: field,
     required: required.includes(name),
   }));
-  const others = partFolds(rest, place, 1);
-  if (!fields.length) return [html`<p>${typeWords(rest)}</p>`, others];
-  const more = others.length ? html`<p>and the fields of one of:</p>` : "";
-  return [fieldTable(fields, place), more, others];
+  const others = [html`<p>${typeWords(rest)}</p>`, partFolds(rest, place, 1)];
+  if (!fields.length) return others;
+  const several = rest.anyOf ?? rest.oneOf;
+  return [fieldTable(fields, place), several ? ["and the fields of one of:", others] : ""];
 }
 
 // HTML as text: the build has no document.

@@ -10,7 +10,6 @@ import * as views from "./measurement_views.js";
 import {
   afterReload,
   asJson,
-  columnsOf,
   keep,
   oscillatorOf,
   parse,
@@ -76,14 +75,10 @@ export class MeasurementTab extends RequestTab {
   listen() {
     dom.onFile($("panel-measurement"), $("measure-drop"), (file) => this.readFile(file));
     presetMenu.onchange = () => this.choosePreset(presetMenu.value, this.ofColumns());
-    $("measure-fields").onchange = () => {
+    $("measure-fields").onchange = ({target}) => {
       this.remember();
-      if (this.parsed && !this.answer) this.drawFile(this.form.values());
-    };
-    $("measure-picker").onchange = ({target}) => {
-      this.form.replace(`${target.name}_column`, target.value);
-      this.remember();
-      if (this.parsed) this.useColumns();
+      if (this.parsed && target.list) this.useColumns();
+      else if (this.parsed && !this.answer) this.drawFile(this.form.values());
     };
     $("measure-samples").onclick = ({target}) => target.value && this.readSample(target.value);
     $("measure-again").onclick = () => this.run({impact_times_s: this.list.times()});
@@ -220,23 +215,11 @@ export class MeasurementTab extends RequestTab {
     this.record = parsed && recordOf(parsed, fields);
     const known = this.record !== null;
     dom.reveal({"measure-parts": known, "measure-list": known, "measure-add-at": known});
-    if (parsed) this.showColumns(parsed, fields);
     if (!known) return;
     const {t} = this.record;
     views.drawRecord(this.record, (...clicked) => this.addAt(...clicked));
     // Without an answer the list starts empty, so that impacts can be added by hand.
     this.list.set(this.answer?.impacts ?? {time_s: []}, [t[0], t.at(-1)]);
-  }
-
-  /** Shows the columns selected by the fields; the menus are disabled for a file without names. */
-  showColumns({names}, fields) {
-    const found = columnsOf(names, fields);
-    for (const menu of $("measure-picker").querySelectorAll("select")) {
-      const k = found[menu.name];
-      dom.fillMenu(menu, [["", k < 0 ? "– none –" : "by name"], ...names.map((name) => [name])]);
-      menu.selectedIndex = k + 1;
-      menu.disabled = !names.length;
-    }
   }
 
   /** Adds the impact at a clicked spike of the acceleration, while adding is switched on. */
@@ -306,9 +289,9 @@ export class MeasurementTab extends RequestTab {
   useColumns() {
     this.setAnswer(null, null);
     this.drawFile(this.form.values());
-    if (this.record || !this.parsed.names.length) this.run();
-    else
-      this.say("choose which column is the time, and which the displacement or acceleration", true);
+    if (this.record || !this.parsed.names.length) return this.run();
+    this.form.parts.get("record").open = true;
+    this.say("choose which column is the time, and which the displacement or acceleration", true);
   }
 
   readRun(run, name) {

@@ -20,14 +20,13 @@ const figures = {a: 0, x: 1, portrait: 2, section: 3, qr: 4, raw: 4};
 /** shown() returns {name, answer} of the record shown. */
 export function start(shown) {
   plots = new PlotGroup($("measure-results"), viewport, {
-    prefix: "plot-measured-",
+    prefix: "figure-measured-",
     about: (name) => ({
       summary: summaryOf(shown()),
       caption: shown().name,
       name: `measured-${name}`,
     }),
     moments: () => shown().answer?.impacts.time_s ?? [],
-    planeKeys: false,
   });
   plots.common = {x: {label: "t (s)", factor: 1}};
 }
@@ -46,7 +45,7 @@ export function nameFigures(preset) {
   for (const [name, number] of preset in firstFigures ? Object.entries(figures) : []) {
     const textContent = `as Fig. ${firstFigures[preset] + number}`;
     const tag = element("span", {className: "tag", textContent, title});
-    $(`plot-measured-${name}`).closest("figure").querySelector("figcaption").append(tag);
+    $(`figure-measured-${name}`).querySelector("figcaption").append(tag);
   }
 }
 

@@ -140,7 +140,7 @@ function find(names, wanted, [exact, ...prefixes]) {
 }
 
 /** Index of the column of each quantity, or -1. */
-export const columnsOf = (names, fields) =>
+const columnsOf = (names, fields) =>
   Object.fromEntries(
     Object.entries(quantities).map(([quantity, usual]) => [
       quantity,

@@ -1,8 +1,7 @@
 // The motions tab: motions that the system settles on, and continuations of periodic orbits.
 import {linesOf} from "../shared/api.js";
 import {$, button, countUp, element, setTexts, tableOf} from "../shared/dom.js";
-import {addExportButton} from "../shared/export.js";
-import {BaseForm, defaultSet, unknownText} from "../shared/form.js";
+import {BaseForm, defaultSet} from "../shared/form.js";
 import {makeAccessible} from "../shared/gestures.js";
 import {RequestTab} from "../shared/job.js";
 import {count, joined, short} from "../shared/numbers.js";
@@ -46,15 +45,11 @@ export class MotionsTab extends RequestTab {
       const {base, parameter} = this.motions.request;
       simulate({...base, [parameter]: value, ...state, cycles: cyclesOfOrbit});
     };
-    this.plot = new MotionsPlot($("plot-motions"), {open, place: (value) => this.place(value)});
+    this.plot = new MotionsPlot($("figure-motions"), {open, place: (value) => this.place(value)});
+    this.plot.about = () => this.about();
     this.quantity = $("motions-quantity");
     this.quantity.onchange = () => this.draw();
     this.results.addEventListener("click", ({target}) => target.orbit && open(target.orbit));
-    addExportButton($("figure-motions"), this.plot, () => this.about());
-    $("motions-example").onchange = ({target}) => {
-      const {query} = target.selectedOptions[0].dataset;
-      if (query) this.open(new URLSearchParams(query));
-    };
   }
 
   makeForm(tables) {
@@ -76,27 +71,17 @@ export class MotionsTab extends RequestTab {
     $("motions-fields").oninput = () => this.markStale();
   }
 
-  /** {base, parameter, from, to, ...} of the form. */
   request() {
-    const {base, own} = this.form.parted();
-    return {parameter: "b", base, ...own};
+    return {parameter: "b", ...super.request()};
   }
 
   /** Shows the motions of a query, or of the first example. */
   open(given) {
-    const [, {dataset}] = $("motions-example").options;
+    const {dataset} = this.examples.options[1];
     const fields = Object.fromEntries(given.size ? given : new URLSearchParams(dataset.query));
     this.form.scale(ends, fields.parameter ?? "b");
-    this.form.set(fields);
-    setTexts({"motions-note": unknownText(this.form.unknown(fields))});
+    this.fill(fields);
     if (this.formQuery() !== this.asked) this.send();
-  }
-
-  send() {
-    super.send();
-    const isShown = ({dataset: {query}}) =>
-      query && String(new URLSearchParams(query)) === this.asked;
-    $("motions-example").value = [...$("motions-example").options].find(isShown)?.value ?? "";
   }
 
   /** Sweep and continuation from the base; then continuations of what no branch explains. */

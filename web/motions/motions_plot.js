@@ -1,8 +1,9 @@
 // The diagram of all motions, with named special points and a marker of the parameter.
-import {element, on, showAsSlider} from "../shared/dom.js";
+import {on} from "../shared/dom.js";
 import {Frame, rangeOf} from "../shared/frame.js";
+import {Marker} from "../shared/marker.js";
 import {curve, dots, texts} from "../shared/marks.js";
-import {clamp, joined, short} from "../shared/numbers.js";
+import {joined, short} from "../shared/numbers.js";
 import {ZoomablePlot} from "../shared/plot.js";
 import {verdictColour} from "../shared/quantities.js";
 import * as labels from "../sweep/axis_labels.js";
@@ -21,17 +22,19 @@ export class MotionsPlot extends ZoomablePlot {
   marked = null; // the marker's value
 
   /** open(orbit): simulates a motion; place(value): called when the marker moves. */
-  constructor(container, {open, place}) {
-    super(container);
+  constructor(figure, {open, place}) {
+    super(figure);
     Object.assign(this, {open, place});
-    const about = {className: "marker grip", tabIndex: 0, role: "slider", ariaLabel: "Parameter"};
-    this.marker = element("div", {...about, hidden: true});
-    this.over.after(this.marker);
+    const move = (value) => {
+      this.marked = value;
+      place(value);
+    };
+    const about = {className: "marker grip", ariaLabel: "Parameter", hidden: true};
+    this.marker = new Marker(this.over, move, about);
     on(this.over, {
       pointermove: (event) => this.hover(event),
       pointerleave: () => this.light(),
     });
-    this.listen();
   }
 
   /** Shows other motions, which can still grow. */
@@ -71,12 +74,11 @@ export class MotionsPlot extends ZoomablePlot {
 
   point() {
     super.point();
-    this.marker.hidden = !this.frame || !this.viewport.holds(this.marked);
-    if (this.marker.hidden) return;
-    const {parameter} = this.motions.request;
-    this.marker.style.transform = `translateX(${this.frame.px(this.marked)}px)`;
-    const text = labels.fields({[parameter]: this.marked});
-    showAsSlider(this.marker, this.viewport.full, this.marked, text);
+    const {node} = this.marker;
+    node.hidden = !this.frame || !this.viewport.holds(this.marked);
+    if (node.hidden) return;
+    const text = labels.fields({[this.motions.request.parameter]: this.marked});
+    this.marker.show(this.frame, this.viewport.range, this.marked, text);
   }
 
   cursorText(cursor) {
@@ -119,29 +121,6 @@ export class MotionsPlot extends ZoomablePlot {
   click(x, _, {top}) {
     const found = this.nearest({offsetX: this.frame.px(x) - this.frame.box.left, offsetY: top});
     if (found) this.open(found);
-  }
-
-  /** The marker is dragged, or moved by the arrow keys. */
-  listen() {
-    const move = (value) => {
-      this.marked = clamp(value, ...this.viewport.full);
-      this.point();
-      this.place(this.marked);
-    };
-    const step = {ArrowLeft: -1, ArrowRight: 1};
-    on(this.marker, {
-      pointerdown: ({pointerId}) => this.marker.setPointerCapture(pointerId),
-      pointermove: ({buttons, clientX}) => {
-        if (!buttons) return;
-        const {left, width} = this.over.getBoundingClientRect();
-        move(this.viewport.range[0] + ((clientX - left) / width) * this.viewport.width);
-      },
-      keydown: (event) => {
-        if (!(event.key in step)) return;
-        event.preventDefault();
-        move(this.marked + 0.01 * step[event.key] * this.viewport.width);
-      },
-    });
   }
 
   /** {names, rows} of all motions in view. */

@@ -32,15 +32,6 @@ export const attributes = (node, all) => {
     if (value != null) node.setAttribute(name, value);
 };
 
-/** States range, value and its text of an element with the role slider. */
-export const showAsSlider = (node, [least, most], now, text) =>
-  attributes(node, {
-    "aria-valuemin": least,
-    "aria-valuemax": most,
-    "aria-valuenow": now,
-    "aria-valuetext": text,
-  });
-
 /** Shows or hides elements: {id: whether to show}. */
 export const reveal = (shown) => {
   for (const [id, is] of Object.entries(shown)) $(id).hidden = !is;

@@ -42,7 +42,8 @@ const quoted = (text) => (/[",\n]/.test(text) ? `"${text.replaceAll('"', '""')}"
 
 const written = (value) => (typeof value === "string" ? value : short(value));
 
-function show(plot, about) {
+function show(plot) {
+  const about = plot.about();
   const {title, caption, summary, name} = about;
   const {names, rows} = plot.numbers();
   const cut = `the first ${rowsShown} of ${rows.length} visible rows`;
@@ -71,10 +72,10 @@ export function captionOf(figure) {
   return {title: own.textContent.trim(), notes: notes.map((node) => node.textContent).join(" ")};
 }
 
-/** Adds the export button to a plot's caption. about() returns {title, caption, summary, name}. */
-export function addExportButton(figure, plot, about) {
+/** Adds the export button to the caption of a plot. */
+export function addExportButton(figure, plot) {
   const name = figure.ariaLabel ?? captionOf(figure).title;
-  const menu = button("⋯", () => show(plot, about()), {
+  const menu = button("⋯", () => show(plot), {
     className: "menu",
     title: "numbers, CSV, SVG, PNG",
     ariaLabel: `${name}: data and pictures`,

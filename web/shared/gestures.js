@@ -1,5 +1,5 @@
 // Pointing at and zooming into a plot, over x and possibly y, with mouse, touch and keyboard.
-import {attributes, element, on, showAsSlider} from "./dom.js";
+import {attributes, element, on} from "./dom.js";
 import {clamp, short} from "./numbers.js";
 
 const doubleClickTime = 250; // ms within which a second click makes a double click
@@ -198,7 +198,9 @@ export function makeAccessible({node}, name, moments, viewport) {
   const tell = (by) => {
     if (by === "play") return; // not announced 60 times a second
     const now = viewport.cursor ?? viewport.range[0];
-    showAsSlider(node, viewport.full, now, short(now));
+    const [least, most] = viewport.full;
+    const value = {"aria-valuenow": now, "aria-valuetext": short(now)};
+    attributes(node, {"aria-valuemin": least, "aria-valuemax": most, ...value});
   };
   tell();
   viewport.onCursor(tell);

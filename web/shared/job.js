@@ -1,7 +1,7 @@
 // Runs one computation at a time, that of the newest request; older ones are aborted.
 import {TemporaryError} from "./api.js";
 import {$, attributes, sayIn} from "./dom.js";
-import {queryOf} from "./form.js";
+import {queryOf, unknownText} from "./form.js";
 
 const lateAfter = 120; // ms after which a computation is reported as busy
 const retryInterval = 2; // s between attempts while the service is unreachable or busy
@@ -93,7 +93,7 @@ export class Job {
 /**
  * A tab of the page. Subclasses have ask() and show() of a Job, and
  * form: its showErrors(errors) shows errors at their fields and returns those without a field;
- * request(): what the form holds, {base, ...}; unless they override formQuery() and send();
+ * request(): what the form holds, {base, ...}, by default the parts `base` and `own` of its fields;
  * open(query): shows the request of a query;
  * draw(): draws the results so far, if it uses drawSoon(); redraw(): draws in other colours.
  */
@@ -110,6 +110,14 @@ export class RequestTab extends Job {
       event.preventDefault();
       this.submit();
     };
+    this.noteElement = $(`${prefix}note`);
+    this.examples = $(`${prefix}example`);
+    this.examples?.addEventListener("change", () => {
+      const {query} = this.examples.selectedOptions[0].dataset;
+      if (!query) return;
+      this.open(new URLSearchParams(query));
+      this.scrollToResults();
+    });
     this.cancelButton = $(`${prefix}cancel`);
     this.cancelButton.onclick = () => this.cancel();
   }
@@ -118,9 +126,20 @@ export class RequestTab extends Job {
     return this.asked;
   }
 
+  request() {
+    const {base, own} = this.form.parted();
+    return {base, ...own};
+  }
+
   formQuery() {
     const {base, ...own} = this.request();
     return queryOf({...own, ...base});
+  }
+
+  /** Shows the fields of a query in the form, and reports unknown ones in its note. */
+  fill(fields) {
+    this.form.set(this.form.parse(fields));
+    this.noteElement.textContent = unknownText(this.form.unknown(fields));
   }
 
   /** Requests what the form holds. */
@@ -165,7 +184,22 @@ export class RequestTab extends Job {
     this.markStale();
   }
 
+  /** The part of a query that is the request. */
+  requestOf(query) {
+    return String(new URLSearchParams(query));
+  }
+
+  /** Selects the example that the form shows, if any: its option has the query. */
+  showExample() {
+    const [own, ...examples] = this.examples.options;
+    const shown = this.requestOf(this.formQuery());
+    const example = examples.find(({dataset}) => this.requestOf(dataset.query) === shown);
+    (example ?? own).selected = true;
+  }
+
+  /** Marks the results if the form differs from their request. */
   markStale(busy = false) {
+    if (this.examples) this.showExample();
     this.results.classList.toggle("stale", this.isStale(busy));
   }
 

@@ -3,7 +3,7 @@
 import {element} from "./dom.js";
 import {font} from "./frame.js";
 import {drawText, ink, rgb, stroke} from "./ink.js";
-import {clamp, firstFrom, lastUpTo} from "./numbers.js";
+import {clamp, firstFrom} from "./numbers.js";
 
 /** A kind of mark from draw(c, frame, options). */
 export const kind =
@@ -28,7 +28,7 @@ export const line = kind((c, frame, {x, y, colour, width = 1, dash, dense}) => {
   const to = Math.min(firstFrom(x, max) + 1, x.length);
   ink(c, colour, width, dash);
   c.beginPath();
-  const {add, end} = dense || to - from > 4 * frame.width ? envelope(c, width) : path(c);
+  const {add, end} = dense || to - from > 4 * frame.width ? envelope(c) : path(c);
   for (let i = from; i < to; ++i) add(frame.px(x[i]), isThere(y[i]) ? frame.py(y[i]) : null);
   end();
 });
@@ -45,29 +45,28 @@ function path(c) {
   return {add, end: () => c.stroke()};
 }
 
-/** Joins minimum and maximum of each pixel to the previous pixel: spikes stay, without gaps. */
-function envelope(c, width) {
+/** Joins minimum and maximum of each pixel, up to those of the previous one: spikes stay. */
+function envelope(c) {
   let column = null;
-  let low; // px, downwards
-  let high;
+  let ends = null; // [minimum, maximum], px
   let before = null;
-  const end = () => {
-    if (column === null) return;
-    before ??= {low, high};
-    const top = Math.min(high, before.low);
-    const bottom = Math.max(low, before.high);
-    c.fillRect(column, top - width / 2, 1, bottom - top + width);
-    before = {low, high};
+  const flush = () => {
+    if (!ends) return;
+    const [[low, high], [from, to]] = [ends, before ?? ends];
+    c.moveTo(column + 0.5, Math.min(low, to) - 0.5);
+    c.lineTo(column + 0.5, Math.max(high, from) + 0.5);
+    before = ends;
   };
   const add = (px, py) => {
     if (py === null) return;
     const at = Math.floor(px);
-    if (at !== column) {
-      end();
-      column = at;
-      low = high = py;
-    } else if (py > low) low = py;
-    else if (py < high) high = py;
+    if (at !== column) flush();
+    ends = at === column ? [Math.min(ends[0], py), Math.max(ends[1], py)] : [py, py];
+    column = at;
+  };
+  const end = () => {
+    flush();
+    c.stroke();
   };
   return {add, end};
 }
@@ -176,27 +175,32 @@ function symbol(c, shape, x, y, r) {
 
 const finish = (c, shape) => (shape === "ring" || shape === "cross" ? c.stroke() : c.fill());
 
-const many = 5000; // points above which the density is drawn
+const many = 5000; // visible points above which the density is drawn
 
 /**
  * Symbols at points in any order; without y a point is not drawn. size: half the width, px; tints:
- * colour of each point in place of a common one; errors: half lengths of paler bars.
+ * colour of each point in place of a common one; errors: half lengths of paler bars; fitted: smaller
+ * if many are visible, and those beyond the range of y lie at the edge.
  */
 export const dots = kind((c, frame, options) => {
-  const {x, y, tints, errors = [], shape = "square", size = 1.2, width = 1.2} = options;
-  if (!tints && x.length > many) return pointDensity(c, frame, options);
+  const {x, y, tints, errors = [], shape = "square", size = 1.2, width = 1.2, fitted} = options;
+  const {top, bottom} = frame.box;
+  const [min, max] = frame.x.range;
+  const visible = [...x.keys()].filter((i) => x[i] >= min && x[i] <= max && isThere(y[i]));
+  if (!tints && visible.length > many) return pointDensity(c, frame, options, visible);
+  const room = fitted ? frame.width / (3 * visible.length) : 1;
+  const r = Math.max(size * Math.min(Math.sqrt(room), 1), 0.75);
   const alpha = c.globalAlpha;
   c.globalAlpha = 0.45 * alpha;
   errors.forEach((error, i) => {
     if (!error || y[i] == null) return;
     ink(c, tints[i], Math.max(1, size / 2));
-    const end = (sign) => clamp(frame.py(y[i] + sign * error), frame.box.top, frame.box.bottom);
+    const end = (sign) => clamp(frame.py(y[i] + sign * error), top, bottom);
     stroke(c, ...[-1, 1].map((sign) => [frame.px(x[i]), end(sign)]));
   });
   c.globalAlpha = alpha;
   let colour = null;
-  for (let i = 0; i < x.length; ++i) {
-    if (y[i] == null) continue;
+  for (const i of visible) {
     const own = tints?.[i] ?? options.colour;
     if (own !== colour) {
       if (colour) finish(c, shape);
@@ -204,41 +208,18 @@ export const dots = kind((c, frame, options) => {
       c.beginPath();
       colour = own;
     }
-    symbol(c, shape, frame.px(x[i]), frame.py(y[i]), size);
+    const py = frame.py(y[i]);
+    symbol(c, shape, frame.px(x[i]), fitted ? clamp(py, top, bottom) : py, r);
   }
   if (colour) finish(c, shape);
 });
 
-/** Symbols at ascending x, smaller if many; those out of range lie at the edge or are `clipped`. */
-export const symbols = kind(
-  (c, frame, {x, y, colour, shape, size = 4, width = 1.3, clipped}) => {
-    const {top, bottom} = frame.box;
-    const [min, max] = frame.x.range;
-    const [from, to] = [firstFrom(x, min), lastUpTo(x, max) + 1];
-    const room = Math.sqrt(frame.width / (3 * Math.max(to - from, 1)));
-    const r = Math.max(size * Math.min(room, 1), 0.75);
-    const crowded = to - from > (shape === "dot" ? 100 : 2000); // a path of many discs is slow
-    const drawn = new Set(); // half pixels: a symbol on top of another is invisible
-    frame.clip(c, clipped ? 0 : r);
-    ink(c, colour, width);
-    c.beginPath();
-    for (let i = from; i < to; ++i) {
-      if (y[i] == null) continue;
-      const px = frame.px(x[i]);
-      const py = clamp(frame.py(y[i]), top, bottom);
-      const place = Math.round(2 * py) * 1e5 + Math.round(2 * px);
-      if (drawn.has(place)) continue;
-      drawn.add(place);
-      symbol(c, crowded ? "square" : shape, px, py, crowded ? 0.85 * r : r);
-    }
-    finish(c, shape);
-    c.restore();
-  },
-  {above: true},
-);
+/** Symbols of a series over x, such as impacts. */
+export const symbols = (options) =>
+  dots({fitted: true, above: true, size: 4, width: 1.3, ...options});
 
-/** Dots over ascending x as a series, cut at the edge of the plot. */
-export const beads = (options) => symbols({shape: "dot", clipped: true, ...options});
+/** Dots of a series, cut at the edge of the plot. */
+export const beads = (options) => dots({fitted: true, shape: "dot", ...options});
 
 /** Names of series in their colours, for pictures without a legend. */
 export const names = kind(
@@ -335,12 +316,12 @@ export const density = kind((c, frame, {columns, colour}) => {
   });
 });
 
-/** Density of points, each 2 px wide. */
-function pointDensity(c, frame, {x, y, colour}) {
+/** Density of the visible points, each 2 px wide. */
+function pointDensity(c, frame, {x, y, colour}, visible) {
   const {left, top} = frame.box;
   drawDensity(c, frame, colour, (add, round) => {
     const size = Math.max(2, round(2));
-    for (let i = 0; i < x.length; ++i) {
+    for (const i of visible) {
       const column = round(frame.px(x[i]) - left) - (size >> 1);
       const row = round(frame.py(y[i]) - top) - (size >> 1);
       add(column, row, column + size, row + size);

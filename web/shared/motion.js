@@ -258,15 +258,11 @@ class SampledMotion extends Motion {
   }
 
   sample(from, step, count, use) {
-    const {knots} = this;
-    const last = knots.tau.length - 2;
-    let i = clamp(lastUpTo(knots.tau, from), 0, last);
     for (let k = 0; k < count; ++k) {
       const tau = from + k * step;
       if (tau < 0 || tau > this.end) continue;
-      while (i < last && knots.tau[i + 1] <= tau) ++i;
-      const [x] = cubic(knots, "x", i, tau);
-      use(k, x, cubic(knots, "y", i, tau)[0] - x);
+      const {x, y} = this.at(tau);
+      use(k, x, y - x);
     }
   }
 }

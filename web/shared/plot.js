@@ -24,16 +24,25 @@ function paint(c, {frame, marks, empty, width, height}) {
   for (const mark of marks) if (mark.above) mark.draw(c, frame);
 }
 
+const plotId = ({id}) => id.replace("figure-", "plot-");
+
 export class Plot {
   frame = null;
   lit = [];
 
-  /** Subclasses have prepare(width, height, alone): {frame, marks}, {empty: a text} or null. */
-  constructor(canvas, viewport, node = canvas) {
-    Object.assign(this, {canvas, viewport, node});
+  /**
+   * Adds itself to a container. Subclasses have prepare(width, height, alone): {frame, marks}, {empty:
+   * a text} or null; in a figure about(): {title, summary, caption, name} of an export.
+   */
+  constructor(container, viewport) {
+    this.canvas = this.node = element("canvas");
     this.ring = element("div", {className: "lit", hidden: true});
-    canvas.after(this.ring);
-    this.size = new Size(canvas.parentNode, () => this.refresh());
+    this.plane = element("div", {className: "plane"}, this.canvas, this.ring);
+    this.viewport = viewport;
+    container.append(this.plane);
+    this.size = new Size(this.plane, () => this.refresh());
+    const figure = container.closest("figure");
+    if (figure) addExportButton(figure, this);
     viewport?.onCursor(() => this.point());
   }
 
@@ -89,14 +98,15 @@ export class Plot {
 /** A plot over a viewport. Plots that share a viewport zoom together and show one cursor. */
 export class ZoomablePlot extends Plot {
   /** across: of y. Subclasses have cursorText(cursor) and click(at, reach, {top, y, touch}). */
-  constructor(container, viewport = new Viewport(), across = null) {
-    const canvas = element("canvas");
-    const over = element("div", {className: "over"});
-    container.append(element("div", {className: "plane"}, canvas, over));
-    super(canvas, viewport, container);
-    Object.assign(this, {across, over});
+  constructor(figure, viewport = new Viewport(), across = null) {
+    const className = figure.dataset.plot.replace("lines", "plot");
+    const node = element("div", {className, id: plotId(figure)});
+    figure.append(node);
+    super(node, viewport);
     this.cursor = element("div", {className: "cursor", hidden: true});
-    over.append(this.cursor);
+    const over = element("div", {className: "over"}, this.cursor);
+    Object.assign(this, {node, across, over});
+    this.plane.append(over);
     for (const each of [viewport, across]) each?.onZoom(() => this.soon());
     listen(over, viewport, (...where) => this.click(...where), across);
   }
@@ -124,10 +134,10 @@ const seriesOf = (marks) => marks.filter(({label}) => label);
 /** Lines over a shared axis, drawn where visible; their legend shows the values at the cursor. */
 export class LinePlot extends ZoomablePlot {
   /** viewport: shared with other plots over the same time. */
-  constructor(container, viewport) {
-    super(container, viewport);
+  constructor(figure, viewport) {
+    super(figure, viewport);
     this.legend = element("div", {className: "legend line"});
-    container.prepend(this.legend);
+    this.node.prepend(this.legend);
   }
 
   /**
@@ -227,10 +237,11 @@ const reach = 14; // px within which a point is picked
 /** Plots of points and curves in a plane. Points can be picked with the pointer. */
 export class ScatterPlot extends Plot {
   /** viewport: whose cursor the ring follows. */
-  constructor(canvas, viewport) {
-    super(canvas, viewport);
+  constructor(figure, viewport) {
+    super(figure, viewport);
     const hover = (event) => this.hover(event);
-    on(canvas, {pointermove: hover, click: hover});
+    on(this.canvas, {pointermove: hover, click: hover});
+    this.canvas.id = plotId(figure);
   }
 
   /** The marks with points. */
@@ -291,19 +302,18 @@ function sameScale(axes, {width, height}) {
   });
 }
 
-/** The plots inside an element by name: canvases are planes, the others lines over time. */
+/** The plots in the figures of an element by name: planes, and lines over time. */
 export class PlotGroup {
   /** about(name): summary, caption and file name of an export; moments(): times of the impacts. */
-  constructor(container, viewport, {prefix = "plot-", about, moments, planeKeys = true}) {
+  constructor(container, viewport, {prefix = "figure-", about, moments}) {
     this.all = {};
-    for (const node of container.querySelectorAll(`[id^=${prefix}]`)) {
-      const isPlane = node.matches("canvas");
-      const plot = new (isPlane ? ScatterPlot : LinePlot)(node, viewport);
-      const name = node.id.replace(prefix, "");
-      const figure = node.closest("figure");
+    for (const figure of container.querySelectorAll("[data-plot]")) {
       const {title} = captionOf(figure);
-      addExportButton(figure, plot, () => ({title, ...about(name)}));
-      makeAccessible(plot, title, moments, isPlane && !planeKeys ? null : viewport);
+      const Kind = figure.dataset.plot === "plane" ? ScatterPlot : LinePlot;
+      const plot = new Kind(figure, viewport);
+      const name = figure.id.replace(prefix, "");
+      plot.about = () => ({title, ...about(name)});
+      makeAccessible(plot, title, moments, viewport);
       this.all[name] = plot;
     }
   }

@@ -1,5 +1,5 @@
 // Units of the results: SI (s, mm/s, m/s², N s, J) or, by choice or without SI, of tau = omega0 t.
-import {button, press} from "./dom.js";
+import {fillMenu} from "./dom.js";
 
 const key = "vines-units";
 const tau = "τ";
@@ -30,20 +30,13 @@ function choose(units) {
   for (const f of listeners) f();
 }
 
-const titles = {
-  [seconds]: "SI units",
-  [tau]: "time τ = ω₀t, velocities per unit of τ",
-};
-
-/** Adds the switch to a container. */
-export function unitsSwitch(container) {
-  const own = Object.entries(titles).map(([units, title]) =>
-    button(units, () => choose(units), {className: "small", title}),
-  );
-  const show = () => press(own, (one) => one.textContent === chosen);
-  container.append(...own);
-  onUnits(show);
-  show();
+/** Makes a menu the switch of the units. */
+export function unitsSwitch(menu) {
+  fillMenu(menu, [[seconds], [tau]], chosen);
+  menu.onchange = () => choose(menu.value);
+  onUnits(() => {
+    menu.value = chosen;
+  });
 }
 
 /** of(value) converts a value to `unit`. */

@@ -1,8 +1,6 @@
-// The details of a run: cards, tables and plots, requested while the section is open.
-import {simulate} from "../shared/api.js";
+// The details of a run: cards, tables and plots, which need a larger answer while they are open.
 import {$, cards, countUp, reveal, sayIn, setTexts, tableOf} from "../shared/dom.js";
 import {resolved} from "../shared/form.js";
-import {Job} from "../shared/job.js";
 import {count, digits, inMm, joined, minus, percent, shortTo} from "../shared/numbers.js";
 import {symbolOf, verdicts} from "../shared/quantities.js";
 import {detailsOptions} from "./details_plots.js";
@@ -11,6 +9,7 @@ import {largestMagnitude, run} from "./run.js";
 import {plotsIn} from "./words.js";
 
 const include = ["series", "impacts", "exponents", "eigenvalues", "section", "energy", "regime"];
+const parts = {include: [...include, "manifold"]};
 const perturbation = {size: 1e-9}; // needs a motion in closed form
 
 const details = $("details");
@@ -18,29 +17,16 @@ const say = sayIn("details-message");
 let plots;
 let fieldOf;
 
-const job = new Job({
-  ask: (fields, signal) =>
-    simulate({...(!run.answer.series && {perturbation}), ...fields, include}, signal),
-  show(answer, fields) {
-    if (fields !== run.fields) return;
-    run.details = answer;
-    show();
-  },
-  fail: (error) => say(error.message),
-  busy: (is) => is && say("computing …"),
-  later: say,
-});
+/** The parts of a run that the details need while they are open; null otherwise. */
+export const wanted = () =>
+  details.open ? {...(!run.answer.series && {perturbation}), ...parts} : null;
 
-/** Called for a new run or other units. */
-export function follow() {
-  if (!details.open || !run) return;
-  if (run.details) show();
-  else job.start(run.fields);
-}
+export const busy = (is) => say(is && details.open ? "computing …" : "");
 
-function show() {
-  const {details: answer, units} = run;
-  say("");
+/** Shows the deferred answer of the run if it has what the open details need. */
+export function show() {
+  const {deferred: answer, units} = run;
+  if (!details.open || !answer?.section) return;
   plots ??= plotsIn(details);
   summarise(answer, units);
   listParameters(answer.parameters, fieldOf);
@@ -54,10 +40,14 @@ function show() {
 
 export const redraw = () => plots?.refresh();
 
-/** table: fields of /v1/parameters by name. */
-export function start(table) {
+/** table: fields of /v1/parameters by name; request(): requests what is wanted. */
+export function start(table, request) {
   fieldOf = table;
-  details.ontoggle = follow;
+  details.ontoggle = () => {
+    if (!details.open || !run) return;
+    if (run.deferred?.section) show();
+    else request();
+  };
   $("to-details").onclick = () => {
     details.open = true;
   };

@@ -156,8 +156,8 @@ function asFrame() {
 /** Functions that return the text, by form. request() returns the fields of the request. */
 export const formsOf = (path, request) => ({
   link: () => location.href,
-  embed: asFrame,
   curl: () => asCurl({path, body: request()}),
   Python: () => asPython(path, {...request(), include: ["impacts", "exponents", "regime"]}),
   JSON: () => JSON.stringify(request(), null, 2),
+  embed: asFrame,
 });

@@ -3,7 +3,7 @@ import {Viewport} from "../shared/viewport.js";
 
 export const viewport = new Viewport();
 
-/** {fields, answer, motion, units, deferred, details}; the last two are answers that arrive later. */
+/** {fields, answer, motion, units, deferred}; the last is an answer that arrives later. */
 export let run = null;
 
 export function setRun(newest) {

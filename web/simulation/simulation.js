@@ -59,22 +59,23 @@ export class SimulationTab extends RequestTab {
   lastMoved = "b"; // name of the slider moved last
 
   deferred = new Job({
-    ask: (fields, signal) =>
+    ask: ({fields, parts}, signal) =>
       Promise.all([
-        simulate({...fields, ...deferredParts}, signal),
+        simulate({...fields, ...parts}, signal),
         run.motion.exact === false &&
           simulate({max_points: mostSamples, ...fields, ...lightParts}, signal),
       ]),
-    show: ([answer, without], fields) => {
+    show: ([answer, without], {fields}) => {
       if (fields !== run.fields) return;
       run.deferred = answer;
       if (without) run.motion.without = motionOf(without, run.load);
       machine.redraw();
       remark(run.answer, answer);
       mainPlots.showDeferred();
-      details.follow();
+      details.show();
       dom.countUp(this.results);
     },
+    busy: details.busy,
     fail: ({message}) =>
       this.say(`T, the raw product and the manifold are missing: ${message}`, true),
   });
@@ -86,7 +87,7 @@ export class SimulationTab extends RequestTab {
     mainPlots.start();
     player.start();
     sliders.start(this);
-    details.start(this.request.fieldOf);
+    details.start(this.request.fieldOf, () => this.requestMore(run.fields));
     const read = (query) => {
       this.request.read(query);
       this.note();
@@ -121,13 +122,17 @@ export class SimulationTab extends RequestTab {
       if (!run) return;
       run.units = unitsOf(run.answer.parameters);
       for (const step of this.drawing()) step();
-      details.follow();
+      details.show();
     });
     dom.onFile($("panel-simulation"), $("load"), (file) => this.readLoad(file));
     $("measure-this").onclick = () => run && measure(run.answer);
     const texts = formsOf("v1/simulate", () => request.fields());
-    for (const one of $("copies").children)
-      one.onclick = () => dom.copy(texts[one.textContent](), this.say);
+    const forms = Object.keys(texts).map((form) => [form]);
+    dom.fillMenu($("copies"), [["", "copy as …"], ...forms]);
+    $("copies").onchange = ({target}) => {
+      dom.copy(texts[target.value](), this.say);
+      target.value = "";
+    };
   }
 
   ask(fields, signal) {
@@ -200,7 +205,12 @@ export class SimulationTab extends RequestTab {
     }
     dom.countUp(this.results, "shown");
     clearTimeout(this.deferring);
-    this.deferring = setTimeout(() => this.deferred.start(fields), idle);
+    this.deferring = setTimeout(() => this.requestMore(fields), idle);
+  }
+
+  /** Requests the deferred parts of the run, or all for the open details. */
+  requestMore(fields) {
+    this.deferred.start({fields, parts: details.wanted() ?? deferredParts});
   }
 
   /** The steps that draw the run in the chosen units. */
@@ -333,17 +343,19 @@ export class SimulationTab extends RequestTab {
 
 /** One plot is large, by a click on it, Enter or its chip; on small screens the others are hidden. */
 function startPlots() {
-  const buttons = [...document.querySelectorAll("#switch button")];
   const figures = [...document.querySelectorAll("#plots figure")];
-  const enlarge = (name) => {
-    dom.press(buttons, ({dataset}) => dataset.plot === name);
-    for (const {id, classList} of figures) classList.toggle("chosen", id === `figure-${name}`);
+  const buttons = figures.map((figure) =>
+    dom.button(figure.dataset.short, () => enlarge(figure), {className: "chip"}),
+  );
+  const enlarge = (chosen) => {
+    dom.press(buttons, (one) => figures[buttons.indexOf(one)] === chosen);
+    for (const figure of figures) figure.classList.toggle("chosen", figure === chosen);
   };
-  for (const one of buttons) one.onclick = () => enlarge(one.dataset.plot);
+  $("switch").append(...buttons);
+  enlarge(figures[0]);
   const act = ({target, key = "Enter"}) => {
     const figure = target.closest("figure");
-    if (figure && key === "Enter" && !target.closest("button"))
-      enlarge(figure.id.replace("figure-", ""));
+    if (figure && key === "Enter" && !target.closest("button")) enlarge(figure);
   };
   dom.on($("plots"), {click: act, keydown: act});
 }

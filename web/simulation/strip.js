@@ -1,9 +1,10 @@
 // The regime strip: a bifurcation diagram along the parameter moved last, computed by a sweep from
 // coarse to fine: the regimes, and lambda1, the largest |x| or x at the impacts. Its marker acts as
 // the slider.
-import {$, countUp, setTexts, showAsSlider} from "../shared/dom.js";
+import {$, countUp, setTexts} from "../shared/dom.js";
 import {Frame, rangeOf} from "../shared/frame.js";
 import {Job} from "../shared/job.js";
+import {Marker} from "../shared/marker.js";
 import {levels} from "../shared/marks.js";
 import {clamp, digits, joined, nearest, withError} from "../shared/numbers.js";
 import {Plot} from "../shared/plot.js";
@@ -66,16 +67,6 @@ const drawn = {
   },
 };
 
-/** Steps of the keys. */
-const steps = {
-  ArrowLeft: -1,
-  ArrowDown: -1,
-  ArrowRight: 1,
-  ArrowUp: 1,
-  Home: -Infinity,
-  End: Infinity,
-};
-
 export class Strip extends Plot {
   layers = null; // the sweep drawn
   key = null; // of the sweep for the run shown
@@ -103,9 +94,16 @@ export class Strip extends Plot {
   });
 
   constructor() {
-    super($("strip"));
-    this.marker = this.node.parentNode.querySelector(".marker");
-    this.listen();
+    super($("regimes"));
+    this.canvas.id = "strip";
+    const turn = (value, dragging) =>
+      moveSlider(this.slider, Math.max(value, this.least), dragging);
+    const ariaLabel = "The parameter, over the regimes";
+    this.marker = new Marker(this.canvas, turn, {ariaLabel});
+    Object.assign(this.marker.node, {
+      onpointermove: (event) => this.frame && this.tell(event),
+      onpointerleave: () => this.frame && this.tell(),
+    });
   }
 
   /** Updates the strip for a run: system fields of its request, parameters, the slider moved last. */
@@ -218,8 +216,7 @@ export class Strip extends Plot {
   /** Moves the marker and describes its point. */
   point() {
     const {range, value} = this;
-    this.marker.style.transform = `translateX(${this.frame.px(this.toParameter(value))}px)`;
-    showAsSlider(this.canvas, range, value, this.textAt(value));
+    this.marker.show(this.frame, range, value, this.textAt(value));
     if (!this.pointed) this.tell();
   }
 
@@ -229,7 +226,7 @@ export class Strip extends Plot {
    */
   tell(event) {
     this.pointed = Boolean(event);
-    const text = event ? this.textAt(this.valueUnder(event)) : this.differenceText();
+    const text = event ? this.textAt(this.marker.valueUnder(event)) : this.differenceText();
     setTexts({"strip-tip": text});
   }
 
@@ -258,37 +255,5 @@ export class Strip extends Plot {
       p.z != null && `z = ${digits(p.z, 2)}`,
     ]);
     return `${where}: ${rest}`;
-  }
-
-  /** The value under the pointer. */
-  valueUnder({offsetX}) {
-    const {box, width} = this.frame;
-    const [from, to] = this.range;
-    return from + ((offsetX - box.left) / width) * (to - from);
-  }
-
-  listen() {
-    const turn = (value, dragging) =>
-      moveSlider(this.slider, clamp(value, this.least, this.range[1]), dragging);
-    Object.assign(this.canvas, {
-      onpointerdown: (event) => {
-        this.canvas.setPointerCapture(event.pointerId);
-        turn(this.valueUnder(event), true);
-      },
-      onpointermove: (event) => {
-        if (!this.frame) return;
-        if (event.buttons) turn(this.valueUnder(event), true);
-        this.tell(event);
-      },
-      onpointerup: (event) => turn(this.valueUnder(event), false),
-      onpointerleave: () => this.frame && this.tell(),
-      onkeydown: (event) => {
-        const step = steps[event.key] * (event.shiftKey ? 10 : 1);
-        if (!step) return;
-        event.preventDefault();
-        const [from, to] = this.range;
-        turn(this.value + (step * (to - from)) / (points - 1), false);
-      },
-    });
   }
 }

@@ -119,7 +119,7 @@ const sectionDiagram = {
   rows(p) {
     return Array.from(p.section?.[this.shown().column] ?? [], (v) => [v]);
   },
-  about() {
+  words() {
     const {title, label} = this.shown();
     const summary = `${label} of the section at ${this.points.length} points`;
     return {title: `Section: ${title}`, summary};
@@ -158,7 +158,7 @@ const lambdaDiagram = {
     "λ₂": lambda(1),
     verdict: (p) => q.verdicts[p.verdict] ?? "–",
   }),
-  about() {
+  words() {
     const points = this.points.filter((p) => p.lambda);
     const chaotic = points.filter((p) => p.verdict === "chaotic").length;
     const values = points.map(lambda(0)).filter((v) => v !== null);
@@ -203,7 +203,7 @@ const quantityDiagram = {
     const without = free && {"without the absorber": free};
     return {[label]: of, ...without, regime: (p) => p.regime ?? "–"};
   },
-  about() {
+  words() {
     const texts = countRegimes(this.points)
       .filter(([, n]) => n)
       .map(([regime, n]) => `${regime === "none" ? q.regimes.none : regime}: ${n}`);

@@ -185,7 +185,7 @@ class MapPlot extends SweepPlot {
     return of.map((text) => (text ? `, ${text}` : "")).join("");
   }
 
-  about() {
+  words() {
     const {title} = this.quantity();
     const scale = this.scale();
     const of = this.shown();

@@ -23,20 +23,6 @@ const ofQuery = {
 };
 const menus = {...ofQuery, start: $("sweep-start"), slice: $("sweep-slice")};
 
-/** The part of a query that is the request, in canonical order. */
-function requestOf(query) {
-  const request = new URLSearchParams(query);
-  for (const name of [...Object.keys(ofQuery), "view"]) request.delete(name);
-  request.sort();
-  return String(request);
-}
-
-const exampleMenu = $("sweep-example");
-const [custom, ...examples] = exampleMenu.options;
-/** The entry of the examples that has the request of a query. */
-const exampleOf = (query) =>
-  examples.find(({dataset}) => requestOf(dataset.query) === requestOf(query)) ?? custom;
-
 function time(seconds) {
   if (seconds < 1) return "less than a second";
   if (seconds < 90) return `${seconds.toFixed(0)} s`;
@@ -190,12 +176,6 @@ export class SweepTab extends RequestTab {
 
   listen() {
     this.results.onchange = () => this.menuChanged();
-    exampleMenu.onchange = () => {
-      const [{dataset}] = exampleMenu.selectedOptions;
-      if (!dataset.query) return;
-      this.openSweep(new URLSearchParams(dataset.query));
-      this.scrollToResults();
-    };
     $("sweep-resume").onclick = () => this.complete(this.data);
     $("sweep-download").onclick = (event) => {
       event.preventDefault();
@@ -210,6 +190,14 @@ export class SweepTab extends RequestTab {
     return SweepForm.toQuery(this.form.request());
   }
 
+  /** In canonical order, without the menus. */
+  requestOf(query) {
+    const request = new URLSearchParams(query);
+    for (const name of [...Object.keys(ofQuery), "view"]) request.delete(name);
+    request.sort();
+    return String(request);
+  }
+
   query() {
     if (!this.data) return null;
     const menu = Object.entries(ofQuery)
@@ -222,7 +210,7 @@ export class SweepTab extends RequestTab {
   open(given) {
     const numbers = given.get("view")?.split(",").map(Number) ?? [];
     const ends = numbers.every(Number.isFinite) ? numbers : [];
-    if (this.data && requestOf(given) === requestOf(this.asked)) {
+    if (this.data && this.requestOf(given) === this.requestOf(this.asked)) {
       // The same sweep with other menus: Back or Forward.
       for (const [name, menu] of Object.entries(ofQuery)) dom.choose(menu, given.get(name));
       this.view?.zoomTo(ends);
@@ -232,7 +220,8 @@ export class SweepTab extends RequestTab {
 
   /** Runs the sweep of a query, or the first example if it names none. */
   openSweep(given, ends) {
-    const request = requestOf(given) || requestOf(examples[0].dataset.query);
+    const {query} = this.examples.options[1].dataset;
+    const request = this.requestOf(given) || this.requestOf(query);
     const standard = {coordinate: "", beside: "", map: ""}; // the first entry
     this.wanted = {...standard, ...Object.fromEntries(given)};
     this.form.setQuery(new URLSearchParams(request));
@@ -286,12 +275,6 @@ export class SweepTab extends RequestTab {
   stopped() {
     if (this.data) this.showCount();
     this.redraw();
-  }
-
-  /** Marks the results if the form differs, and selects the example that the form shows. */
-  markStale() {
-    exampleOf(this.formQuery()).selected = true;
-    super.markStale();
   }
 
   /** Shows the empty diagrams of a new sweep. */

@@ -1,6 +1,5 @@
 // Base of the views of a sweep: its plots share viewports, choices and a tooltip.
 import {$, button, element} from "../shared/dom.js";
-import {addExportButton} from "../shared/export.js";
 import {Frame} from "../shared/frame.js";
 import {makeAccessible} from "../shared/gestures.js";
 import {clamp, roundedRange} from "../shared/numbers.js";
@@ -12,21 +11,22 @@ const zooms = {"+": 1.5, "=": 1.5, "-": 1 / 1.5};
 
 export const missingPoint = [["", "not computed yet"]];
 
-/** Subclasses have about(): {title, summary}, drawn(place): y or null, columns(): {name: of(p)}. */
+/** Subclasses have words(): {title, summary}, drawn(place): y or null, columns(): {name: of(p)}. */
 export class SweepPlot extends ZoomablePlot {
-  /** name: in the ids of its figure and container. */
+  /** name: in the id of its figure. */
   constructor(view, name) {
-    super($(`plot-sweep-${name}`), ...view.viewports);
-    this.view = view;
-    addExportButton($(`figure-sweep-${name}`), this, () => {
-      const {base, axes, ...run} = view.data.request; // the caption shows the shared fields
-      return {...this.about(), caption: labels.fields({...base, ...run}), name: `sweep-${name}`};
-    });
+    super($(`figure-sweep-${name}`), ...view.viewports);
+    Object.assign(this, {view, name: `sweep-${name}`});
     this.over.addEventListener("pointermove", ({pointerType, buttons}) => {
       if (pointerType !== "mouse" || this.viewport.cursor === null) return;
       if (buttons) view.hideTip();
       else view.showTip({plot: this, at: view.viewports.map(({cursor}) => cursor)});
     });
+  }
+
+  about() {
+    const {base, axes, ...run} = this.view.data.request; // the caption shows the shared fields
+    return {...this.words(), caption: labels.fields({...base, ...run}), name: this.name};
   }
 
   /** beside: px reserved at the right, for example for a colour bar. */
@@ -131,7 +131,7 @@ export class SweepView {
   /** Describes the plots for screen readers. */
   describe() {
     for (const plot of this.plots) {
-      const {title, summary} = plot.about();
+      const {title, summary} = plot.words();
       makeAccessible(plot, `${title}: ${summary}`);
     }
   }
