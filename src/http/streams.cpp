@@ -215,7 +215,7 @@ private:
 
     /// The end of the result, and of a stream of lines the reason of an early end.
     std::string last_lines(SweepEnd end, std::size_t done) const {
-        const std::string last = end == SweepEnd::failed ? "" : stream_->end();
+        std::string last = end == SweepEnd::failed ? "" : stream_->end();
         if (end == SweepEnd::complete || !stream_->remedy()) return last;
         const bool failed = end == SweepEnd::failed, late = end == SweepEnd::deadline;
         const std::string detail =

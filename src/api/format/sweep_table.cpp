@@ -189,7 +189,7 @@ std::string SweepStream::progress(
 std::string SweepStream::end() {
     if (lines_ < request_.plan.lines.size()) return "";
     if (table_) return table_->end(warning_);
-    const std::string last = done_line(lines_, request_);
+    std::string last = done_line(lines_, request_);
     if (warning_.empty()) return last;
     return json_line({{"type", "warning"}, {"message", warning_}}) + last;
 }
