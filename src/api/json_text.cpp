@@ -7,6 +7,34 @@ namespace vines::api {
 
 namespace {
 
+/// Plain form of a number between 1e-4 and 1e15 that is not an integer. std::to_chars writes 17
+/// digits in scientific form, "d.ddde-04" to "d.ddde+14", in 5/6 of its time for the plain form;
+/// here only the point is moved.
+char* write_fraction(char* to, double size) {
+    // At most 16 digits follow the point; 16 are always copied.
+    constexpr std::size_t digits = 16, exponent = 4;
+    std::array<char, 48> text{};
+    const char *const first = text.data(), *const behind_point = first + 2;
+    const char* const end =
+        std::to_chars(text.data(), text.data() + text.size(), size, std::chars_format::scientific)
+            .ptr -
+        exponent;
+    const std::ptrdiff_t behind = end > behind_point ? end - behind_point : 0,
+                         power = 10 * (end[2] - '0') + (end[3] - '0');
+    if (end[1] == '-') {
+        std::memcpy(to, "0.000", 5);
+        to += 1 + power;
+        *to = *first;
+        std::memcpy(to + 1, behind_point, digits);
+        return to + 1 + behind;
+    }
+    *to = *first;
+    std::memcpy(to + 1, behind_point, digits);
+    to[1 + power] = '.';
+    std::memcpy(to + 2 + power, behind_point + power, digits);
+    return to + 2 + behind;
+}
+
 // "-9223372036854775808"
 constexpr std::size_t longest_integer = 20;
 
@@ -19,8 +47,7 @@ char* write_number(char* to, double value) {
     if (size != 0 && !(size >= 1e-4 && size < 1e15))
         return std::to_chars(to, to + room_for_number - 1, size, std::chars_format::scientific).ptr;
     const auto whole = static_cast<std::int64_t>(size);
-    if (static_cast<double>(whole) != size)
-        return std::to_chars(to, to + room_for_number - 1, size, std::chars_format::fixed).ptr;
+    if (static_cast<double>(whole) != size) return write_fraction(to, size);
     return std::copy_n(".0", 2, std::to_chars(to, to + room_for_number - 1, whole).ptr);
 }
 
