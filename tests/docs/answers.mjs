@@ -291,6 +291,7 @@ function noteIdentification(keys, answer) {
   for (const part of [
     "signal",
     "fitted",
+    "laws",
     "impacts",
     "sticking",
     "restitution",
@@ -335,7 +336,7 @@ export async function answeredKeys(url) {
   const csv = await measured(url, "fig20", 6);
   const identify = "/v1/identify?preset=fig20&b=0.015";
   for (const [path, record] of [
-    [`${identify}&include=motion,direct_exponents`, csv],
+    [`${identify}&include=motion,direct_exponents&fit=mu,R_of_speed`, csv],
     [identify, withForce(csv)],
   ])
     noteIdentification(keys, await json(url, path, record, "text/csv"));

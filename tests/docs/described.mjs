@@ -63,6 +63,7 @@ const parts = {
   identify: {of: ["Identification"], top: true},
   "identify.signal": {of: ["Signal"]},
   "identify.fitted": {of: ["Fitted"]},
+  "identify.laws": {of: ["BallLaws"]},
   "identify.impacts": {of: ["IdentifiedImpacts"]},
   "identify.sticking": {of: ["Sticking"]},
   "identify.restitution": {of: ["Restitution"]},
