@@ -90,8 +90,8 @@ bool needs_no_escape(std::string_view text);
 std::string json_text(Json json);
 inline std::string json_line(Json json) { return json_text(std::move(json)) + "\n"; }
 
-/// Bytes that write_number() needs: "-2.2250738585072014e-308".
-inline constexpr std::size_t room_for_number = 24;
+/// Bytes that write_number() needs: "-2.2250738585072014e-308", and its overwriting beyond the end.
+inline constexpr std::size_t room_for_number = 40;
 
 /// Writes a number and returns its end: 1.0, 0.0001, 1e-05, 123456789012345.0, 1e+15; null for NaN
 /// and infinities. The same form as the JSON library's, which is sometimes longer. Needs
