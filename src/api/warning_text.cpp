@@ -174,6 +174,9 @@ const char* text_of(Doubt doubt) {
         case Doubt::impacts_differ:
             return "R or the balance of momentum differs from impact to impact: does the ball "
                    "stick to a wall in each cycle, or is m2 or b wrong?";
+        case Doubt::hidden_uncertain:
+            return "the impacts that are too weak to be seen do not explain the record: their "
+                   "number and times are uncertain";
         case Doubt::b_disagrees: return "the impacts' momentum does not fit the given b";
         case Doubt::no_forcing:
             return "no forcing at this frequency leads from each impact of the list to the next";

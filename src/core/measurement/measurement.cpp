@@ -328,6 +328,9 @@ MeasurementResult evaluated(const Measurement& m, IdentificationProgress& progre
         hidden = hidden_contacts(*system, refined->hidden_contact_limits, found.impacts);
         insert_hidden(hidden, found.impacts);
         complete_impacts(p, found.impacts, refined->pulse.length());
+        // Weak contacts in wrong places leave a residual like that of several effects.
+        if (!hidden.empty() && refined->fit.effects.size() > 1)
+            doubts.push_back(Doubt::hidden_uncertain);
     }
     progress.reach(IdentificationStage::exponents);
     Continuity continuity = continuity_of(p, found.impacts, time_gaps(m.record));

@@ -22,12 +22,13 @@ namespace vines {
 
 /// Why a measurement permits no verdict.
 enum class Doubt {
-    not_settled,      ///< the search for impacts did not converge: FoundImpacts::settled
-    unexplained,      ///< the fitted motion does not explain the record
-    pulses_disagree,  ///< many pulses without an impact, and many impacts without a pulse
-    impacts_differ,   ///< R or the momentum error scatters between impacts
-    b_disagrees,      ///< the momentum balance contradicts the given b
-    no_forcing        ///< for a list: no forcing leads from each impact to the next
+    not_settled,       ///< the search for impacts did not converge: FoundImpacts::settled
+    unexplained,       ///< the fitted motion does not explain the record
+    pulses_disagree,   ///< many pulses without an impact, and many impacts without a pulse
+    impacts_differ,    ///< R or the momentum error scatters between impacts
+    hidden_uncertain,  ///< with hidden contacts the residual shows several effects at once
+    b_disagrees,       ///< the momentum balance contradicts the given b
+    no_forcing         ///< for a list: no forcing leads from each impact to the next
 };
 
 /// A record of the oscillator, or a list of impacts, with what is known about the system.

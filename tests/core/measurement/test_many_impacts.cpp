@@ -27,13 +27,17 @@ TEST_CASE(
     }
 }
 
-TEST_CASE("where most of many impacts are missed nothing is decided, and b and R are withheld") {
-    const auto motion = motion_with_many_impacts(620);
-    REQUIRE(motion);
-    const Experiment e = experiment_of(*motion);
-    const MeasurementResult r = identified(e);
-    const Score s = score_of(e, r);
-    if (100 * s.found < 99 * s.impacts) {
+TEST_CASE(
+    "where impacts of a chatter are missed nothing is decided, and b and R are withheld" *
+    doctest::test_suite("statistics")) {
+    for (const std::uint64_t seed : {188, 455, 620}) {
+        CAPTURE(seed);
+        const auto motion = motion_with_many_impacts(seed);
+        REQUIRE(motion);
+        const Experiment e = experiment_of(*motion);
+        const MeasurementResult r = identified(e);
+        const Score s = score_of(e, r);
+        if (100 * s.found >= 99 * s.impacts) continue;
         CHECK(r.judged.verdict == Verdict::not_decided);
         CHECK(std::isnan(r.found.b_fitted));
         CHECK(std::isnan(r.found.plus.R));
