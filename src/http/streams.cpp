@@ -46,8 +46,7 @@ public:
     Taken take(std::size_t& read, std::chrono::milliseconds at_most) {
         std::unique_lock lock(mutex_);
         changed_.wait_for(lock, at_most, [&] { return text_.size() > read || finished_; });
-        Taken taken{
-            keeps_ ? text_.substr(read, at_once_) : std::exchange(text_, {}), count_, finished_};
+        Taken taken{keeps_ ? piece(read) : std::exchange(text_, {}), count_, finished_};
         if (keeps_) read += taken.text.size(), taken.finished &= read == text_.size();
         size_ = text_.size();
         changed_.notify_all();
@@ -63,8 +62,15 @@ public:
     }
 
 private:
+    /// Whole lines from a place on: a progress line can follow them.
+    std::string piece(std::size_t from) const {
+        if (text_.size() <= from + at_once_) return text_.substr(from);
+        return text_.substr(from, text_.find('\n', from + at_once_) + 1 - from);
+    }
+
     static constexpr std::size_t capacity_ = 1 << 20;  // bytes
-    static constexpr std::size_t at_once_ = 1 << 16;   // bytes copied for one of many readers
+    static constexpr std::size_t at_once_ = 1
+                                            << 16;  // bytes copied for one of many readers, or more
 
     const bool keeps_;
     std::mutex mutex_;

@@ -169,10 +169,17 @@ test("points arrive while the sweep runs, and it stops when its client leaves", 
 
 test("equal small sweeps at once are computed once, for all clients, even if the first one leaves", async () => {
   const one = await startService(["--sweeps", "1"]);
-  const shared = {...sweep, axes: [{...sweep.axes[0], count: 300}], cycles: 1000};
+  const shared = {
+    ...sweep,
+    axes: [{...sweep.axes[0], count: 300}],
+    cycles: 1000,
+    section: "impact",
+    section_points: 60,
+  };
   const leaving = new AbortController();
   const first = (await postSweep(shared, {signal: leaving.signal}, one.url)).body.getReader();
-  for (let text = ""; !text.includes('"point"'); )
+  // The others get what is there piece by piece, with lines of progress between.
+  for (let text = ""; text.length < 2e5; )
     text += new TextDecoder().decode((await first.read()).value);
   const others = await Promise.all(Array.from({length: 29}, () => postSweep(shared, {}, one.url)));
   assert.equal((await postSweep({...shared, cycles: 999}, {}, one.url)).status, 503);
