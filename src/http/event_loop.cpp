@@ -30,8 +30,9 @@ constexpr auto scarce_time = 4s;
 // which is searched for.
 constexpr int max_accepted = 32;
 
-// Bytes of requests and answers after which free memory is returned once nothing is left to do.
-constexpr std::size_t much_held = 16 << 20;
+// Bytes of requests and answers, and requests at work, after which free memory is returned once
+// nothing is left to do.
+constexpr std::size_t much_held = 16 << 20, many_at_work = 8;
 
 // Bytes sent to one client before the others get their turn.
 constexpr std::size_t max_sent = 1 << 20;
@@ -302,7 +303,7 @@ void EventLoop::expire() {
         if (c && !c->is_delivering() &&
             now > (c->is_closing() ? c->deadline() : std::min(c->deadline(scarce), idle_until_)))
             time_out(*c);
-    is_memory_to_return_ |= memory_.take_most() >= much_held;
+    is_memory_to_return_ |= memory_.take_most() >= much_held || with_workers_ >= many_at_work;
     if (is_memory_to_return_ && memory_.bytes() < much_held && with_workers_ == 0) {
         is_memory_to_return_ = false;
         trim_memory();

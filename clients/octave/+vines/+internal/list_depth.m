@@ -4,7 +4,7 @@ function depth = list_depth(name)
   switch name
     case 'windows'
       depth = 2;
-    case {'axes', 'exponents', 'fields', 'fixed', 'impact_times_s', 'include', 'indices', ...
+    case {'axes', 'exponents', 'fields', 'fit', 'fixed', 'impact_times_s', 'include', 'indices', ...
           'starts', 'values', 'window'}
       depth = 1;
     otherwise
