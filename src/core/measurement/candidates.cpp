@@ -48,7 +48,7 @@ struct Fading {
             const auto share = [&](std::size_t k) {
                 return std::max(0.0, std::abs(signal.value[k]) - 1.5 * signal.noise) / height;
             };
-            // What follows a quiet time is another event, however regularly it comes.
+            // After a quiet time another event begins, even if it always comes after the same time.
             double loud = tau[p];
             const auto shown = [&](std::size_t k) {
                 if (std::abs(signal.value[k]) > threshold && std::abs(tau[k] - loud) < quiet)

@@ -70,7 +70,7 @@ void visit_extrema(
         return Point{
             s, o.x + shift.at(s), o.x_dot + shift.rate(s), flow.acceleration(o) + shift.second(s)};
     };
-    // By bisection to a width at which x differs from its extremum by an ulp.
+    // Bisects until x differs from its extremum by no more than an ulp.
     const auto zero_of = [&](double Point::* member, Point low, Point high) {
         while (high.s - low.s > 1e-8 * flow.cell()) {
             const Point middle = at(0.5 * (low.s + high.s));

@@ -179,6 +179,16 @@ double mean_amplitude(const UnmodelledEffects& o) {
     return 1 + o.amplitude_modulation * 2 / (3 * std::numbers::pi);
 }
 
+/// Share of the true impacts that are found.
+double found_share(const Experiment& e, const MeasurementResult& r) {
+    const auto found = std::ranges::count_if(e.impacts, [&](const Impact& i) {
+        return std::ranges::any_of(r.found.impacts, [&](const IdentifiedImpact& j) {
+            return std::abs(j.tau - i.tau) < 1.5e-3 * e.omega0;
+        });
+    });
+    return static_cast<double>(found) / static_cast<double>(e.impacts.size());
+}
+
 constexpr ForcingKind forcing_kinds[] = {
     ForcingKind::base_acceleration, ForcingKind::base_displacement, ForcingKind::force};
 
@@ -206,12 +216,7 @@ TEST_CASE("a measured forcing is the load: its modulation, harmonics and sweeps 
             CHECK(r.refined->fit.fixed.oscillator());
             CHECK(r.found.b_error < 1e-3 * e.true_parameters.b);
             CHECK(r.found.plus.error < 2e-3);
-            const auto found = std::ranges::count_if(e.impacts, [&](const Impact& i) {
-                return std::ranges::any_of(r.found.impacts, [&](const IdentifiedImpact& j) {
-                    return std::abs(j.tau - i.tau) < 1.5e-3 * e.omega0;
-                });
-            });
-            CHECK(static_cast<double>(found) >= 0.99 * static_cast<double>(e.impacts.size()));
+            CHECK(found_share(e, r) >= 0.99);
         }
 }
 
@@ -228,12 +233,7 @@ TEST_CASE(
         check_values(e, r, mean_amplitude(effects));
         CHECK(r.doubts.empty());
         CHECK(r.found.b_error < 2e-3 * e.true_parameters.b);
-        const auto found = std::ranges::count_if(e.impacts, [&](const Impact& i) {
-            return std::ranges::any_of(r.found.impacts, [&](const IdentifiedImpact& j) {
-                return std::abs(j.tau - i.tau) < 1.5e-3 * e.omega0;
-            });
-        });
-        CHECK(static_cast<double>(found) >= 0.98 * static_cast<double>(e.impacts.size()));
+        CHECK(found_share(e, r) >= 0.98);
         // Deviations double from impact to impact at R = .3.
         for (std::size_t k = 0; k < (R < 0.5 ? 3 : 8); ++k) {
             const double tau = r.forward->impacts[k].tau;
