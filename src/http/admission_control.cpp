@@ -12,6 +12,12 @@ constexpr auto give_up_check = std::chrono::milliseconds(50);
 // Grace periods at once per slot: they share its core.
 constexpr int graces_per_slot = 4;
 
+// Work that waits after a time slice, per slot: it holds memory.
+constexpr int interrupted_per_slot = 4;
+
+// Time after which background work no longer waits for foreground work.
+constexpr auto patience = std::chrono::milliseconds(200);
+
 // Bodies up to this size need no permit. Larger ones run together up to `bodies_at_once` bytes, or
 // one alone. While they are read and computed they take up to fifteen times their size, one of the
 // largest up to 340 MB. Bytes.
@@ -25,6 +31,8 @@ constexpr auto grace_time = std::chrono::milliseconds(1);
 
 }  // namespace
 
+bool AdmissionControl::Waiter::is_due() const { return Clock::now() - since >= patience; }
+
 /// Grants what is free to the next in the queues, and wakes only these threads.
 void AdmissionControl::assign() {
     const auto grant_next = [](Queue& queue) -> Waiter& {
@@ -33,8 +41,11 @@ void AdmissionControl::assign() {
         next.changed.notify_one();
         return next;
     };
-    for (; free_ > 0 && !(foreground_.empty() && background_.empty()); --free_)
-        grant_next(foreground_.empty() ? background_ : foreground_);
+    for (; free_ > 0 && !(foreground_.empty() && background_.empty()); --free_) {
+        const bool overtakes = !background_.empty() && background_.front()->is_due();
+        Waiter& next = grant_next(foreground_.empty() || overtakes ? background_ : foreground_);
+        next.overtakes = overtakes;
+    }
     foreground_waits_ = !foreground_.empty();
     background_waits_ = !background_.empty();
     while (!bodies_.empty() &&
@@ -56,12 +67,10 @@ void AdmissionControl::displace_last(Queue& queue) {
     last.changed.notify_one();
 }
 
-/// Waits in a queue until the waiter is granted what it waits for, is displaced, or gives up.
-/// Returns whether it was granted.
+/// Waits in a queue until the waiter, which is in it, is granted what it waits for, is displaced,
+/// or gives up. Returns whether it was granted.
 bool AdmissionControl::wait(
-    Lock& lock, Queue& queue, const std::string& client, Waiter& waiter,
-    const std::function<bool()>& gives_up) {
-    queue.push(client, &waiter);
+    Lock& lock, Queue& queue, Waiter& waiter, const std::function<bool()>& gives_up) {
     assign();
     bool given_up = false;
     while (!waiter.granted && !waiter.displaced && !given_up) {
@@ -90,15 +99,38 @@ AdmissionControl::Slot AdmissionControl::try_acquire() {
 }
 
 AdmissionControl::Slot AdmissionControl::acquire(
-    const std::string& client, const std::function<bool()>& gives_up, Slot grace) {
+    const std::string& client, const std::function<bool()>& gives_up) {
     std::unique_lock lock(mutex_);
-    if (grace.release()) --graces_;
-    else if (free_ == 0 && is_full()) {
+    if (free_ == 0 && is_full()) {
         if (!foreground_.precedes_last(client)) return nullptr;
         displace_last(foreground_);
     }
     Waiter waiter;
-    return Slot(wait(lock, foreground_, client, waiter, gives_up) ? this : nullptr);
+    foreground_.push(client, &waiter);
+    return Slot(wait(lock, foreground_, waiter, gives_up) ? this : nullptr);
+}
+
+AdmissionControl::Slot AdmissionControl::resume(
+    const std::string& client, const std::function<bool()>& gives_up, Slot begun) {
+    std::unique_lock lock(mutex_);
+    const bool had_slot = !is_grace(begun);
+    begun.release();
+    if (had_slot) ++free_;
+    else --graces_;
+    Waiter waiter;
+    foreground_.push_first(client, &waiter);
+    interrupted_ += had_slot;
+    const bool granted = wait(lock, foreground_, waiter, gives_up);
+    interrupted_ -= had_slot;
+    return Slot(granted ? this : nullptr);
+}
+
+bool AdmissionControl::others_are_due(const std::string& client) const {
+    if (!foreground_waits_ && !background_waits_) return false;
+    const std::lock_guard lock(mutex_);
+    if (interrupted_ >= interrupted_per_slot * limits_.running) return false;
+    return foreground_.has([&client](const std::string& other) { return other != client; }) ||
+           (!background_.empty() && background_.front()->is_due());
 }
 
 AdmissionControl::Slot AdmissionControl::acquire_background(
@@ -111,7 +143,9 @@ AdmissionControl::Slot AdmissionControl::acquire_background(
     // The thread that requests the stop must not hold the mutex, and cannot.
     waiter.changed.wait(lock, stop, [this, &waiter] { return waiter.granted || sweeps_stopped_; });
     if (!end_wait(background_, waiter)) return nullptr;
-    if (!sweeps_stopped_) return Slot(this);
+    if (!sweeps_stopped_)
+        return {
+            this, {.keeps_until = waiter.overtakes ? Clock::now() + time_slice : waiter.since}};
     ++free_;
     assign();
     return nullptr;
@@ -171,7 +205,8 @@ AdmissionControl::BodyPermit AdmissionControl::acquire_body(
     std::unique_lock lock(mutex_);
     if (!make_space(client, bytes)) return nullptr;
     Waiter body{.bytes = bytes};
-    if (!wait(lock, bodies_, client, body, gives_up)) return nullptr;
+    bodies_.push(client, &body);
+    if (!wait(lock, bodies_, body, gives_up)) return nullptr;
     lock.unlock();
     return {this, [this, bytes](void*) {
                 trim_memory();
@@ -202,11 +237,15 @@ Permit::Permit(
 }
 
 bool Permit::renew() {
-    if (!AdmissionControl::is_grace(slot_)) return slot_ != nullptr;
+    if (!slot_) return false;
+    const bool is_grace = AdmissionControl::is_grace(slot_);
     const Clock::time_point now = Clock::now();
-    if (now - began_ < grace_time) return true;
-    slot_ = admission_.acquire(client_, gives_up_, std::move(slot_));
-    waited_ = Clock::now() - now;
+    if (now - since_ < (is_grace ? grace_time : time_slice)) return true;
+    since_ = now;
+    if (!is_grace && !admission_.others_are_due(client_)) return true;
+    slot_ = admission_.resume(client_, gives_up_, std::move(slot_));
+    since_ = Clock::now();
+    waited_ += since_ - now;
     return slot_ != nullptr;
 }
 

@@ -4,8 +4,10 @@
 // slots (--compute-threads). Two classes of work compete for them:
 // - foreground: one request. It queues up to a limit and is refused beyond it.
 // - background: the points of a sweep, the lists of a streamed answer. It waits without limit,
-//   after all foreground work, and gives its slot back whenever foreground work waits.
-// In each class clients take turns.
+//   after all foreground work unless it has waited for long, and gives its slot back whenever
+//   foreground work waits.
+// In each class clients take turns. Work in the foreground keeps its slot for a time slice, then
+// gives it back if another client's work waits.
 // Waiting for a slot costs a thread switch, which takes longer than a small answer. A foreground
 // request that finds no free slot therefore starts in a grace period of 1 ms without one, and
 // waits only if it needs longer (Permit).
@@ -37,9 +39,14 @@ struct AdmissionLoad {
 
 /// Must outlive the slots that it hands out.
 class AdmissionControl {
+public:
+    using Clock = std::chrono::steady_clock;
+
+private:
     void release(bool is_grace);
     struct Release {
-        bool is_grace;  // false unless given
+        bool is_grace = false;
+        Clock::time_point keeps_until = {};  // of background work that foreground work waits for
         void operator()(AdmissionControl* admission) const { admission->release(is_grace); }
     };
 
@@ -57,14 +64,21 @@ public:
     /// For foreground work; does not wait: a slot, a grace period or null.
     Slot try_acquire();
     /// For foreground work: waits for a slot. Null if the queue is full of work whose turn is
-    /// earlier, or gives_up() returned true; it is polled every 50 ms. The end of a grace period
-    /// always finds space in the queue.
-    Slot acquire(
-        const std::string& client, const std::function<bool()>& gives_up = {}, Slot grace = {});
-    /// For background work: waits for a slot, after all foreground work and the background work
-    /// whose turn is earlier. Null once `stop` is requested or sweeps are stopped.
+    /// earlier, or gives_up() returned true; it is polled every 50 ms.
+    Slot acquire(const std::string& client, const std::function<bool()>& gives_up = {});
+    /// For foreground work that has begun: gives its slot or grace period back and waits for a
+    /// slot, before the client's other work; always finds space in the queue. Null as above.
+    Slot resume(const std::string& client, const std::function<bool()>& gives_up, Slot begun);
+    /// True if foreground work with a slot should resume(): other clients' work is due.
+    bool others_are_due(const std::string& client) const;
+    /// For background work: waits for a slot, after the background work whose turn is earlier, and
+    /// after all foreground work for up to 200 ms. Null once `stop` is requested or sweeps are
+    /// stopped.
     Slot acquire_background(const std::string& client, const std::stop_token& stop = {});
-    /// True while foreground work waits: background work should release its slot and wait again.
+    /// True if background work should release its slot and wait again, since foreground work waits.
+    bool must_yield(const Slot& background) const {
+        return foreground_waits_ && Clock::now() >= background.get_deleter().keeps_until;
+    }
     bool foreground_waits() const { return foreground_waits_; }
     /// True while background work waits.
     bool background_waits() const { return background_waits_; }
@@ -100,7 +114,10 @@ private:
         std::condition_variable_any changed = {};
         bool granted = false;    ///< a slot, or a large body's permit
         bool displaced = false;  ///< by another client, whose turn is earlier
+        bool overtakes = false;  ///< granted although foreground work waits
         std::size_t bytes = 0;   ///< of a large body
+        Clock::time_point since = Clock::now();
+        bool is_due() const;
     };
     using Queue = FairQueue<Waiter*>;
     using Lock = std::unique_lock<std::mutex>;
@@ -110,13 +127,13 @@ private:
     bool end_wait(Queue& queue, Waiter& waiter);
     static void displace_last(Queue& queue);
     bool wait(
-        Lock& lock, Queue& queue, const std::string& client, Waiter& waiter,
-        const std::function<bool()>& gives_up);
+        Lock& lock, Queue& queue, Waiter& waiter, const std::function<bool()>& gives_up);
     bool make_space(const std::string& client, std::size_t bytes);
 
     const AdmissionLimits limits_;
     mutable std::mutex mutex_;
     int free_, graces_ = 0;          // nobody waits while free_ > 0
+    int interrupted_ = 0;            // work that waits after a time slice
     std::list<std::string> sweeps_;  // their clients
     Queue foreground_, background_;
     Queue bodies_;
@@ -126,11 +143,14 @@ private:
     std::atomic<bool> sweeps_stopped_ = false, all_stopped_ = false;
 };
 
+// Time for which work keeps a slot that other work of its class waits for.
+inline constexpr auto time_slice = std::chrono::milliseconds(20);
+
 /// A foreground request's permission to compute: a slot or a grace period at once, otherwise after
 /// a wait. For one thread at a time; the admission control outlives it.
 class Permit {
 public:
-    using Clock = std::chrono::steady_clock;
+    using Clock = AdmissionControl::Clock;
 
     /// Waits for a slot if may_begin is false, or if neither a slot nor a grace period is free.
     /// gives_up() is polled while waiting.
@@ -140,10 +160,11 @@ public:
     /// False if the queue was full or the wait was given up.
     explicit operator bool() const { return slot_ != nullptr; }
 
-    /// To be called regularly: waits for a slot after the grace period. False if it gave up.
+    /// To be called regularly: waits for a slot after the grace period, and after a time slice if
+    /// other clients' work is due. False if it gave up.
     bool renew();
 
-    /// Time spent waiting after the grace period; the initial wait does not count.
+    /// Time spent waiting, without the initial wait.
     Clock::duration waited() const { return waited_; }
 
 private:
@@ -151,7 +172,7 @@ private:
     const std::string client_;
     const std::function<bool()> gives_up_;
     AdmissionControl::Slot slot_;
-    Clock::time_point began_ = Clock::now();
+    Clock::time_point since_ = Clock::now();  // start of the grace period or the time slice
     Clock::duration waited_{};
 };
 

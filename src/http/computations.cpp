@@ -237,7 +237,7 @@ public:
     }
     void end() override { slot_.reset(); }
     bool stop_or_yield() override {
-        if (slot_ && admission_.foreground_waits()) {
+        if (slot_ && admission_.must_yield(slot_)) {
             end();
             begin();
         }

@@ -24,6 +24,12 @@ public:
             entries_.begin(), entries_.end(), [turn](const Entry& e) { return e.turn > turn; });
         entries_.insert(later, {client, turn, std::move(value)});
     }
+    /// The same, before the client's other entries, which move on by one turn each.
+    void push_first(const std::string& client, T value) {
+        push(client, {});
+        for (Entry& e : entries_)
+            if (e.client == client) std::swap(e.value, value);
+    }
     /// True if an entry of this client would come before the last one.
     bool precedes_last(const std::string& client) const {
         return !empty() && next_turn(client) < entries_.back().turn;

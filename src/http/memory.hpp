@@ -24,11 +24,12 @@ public:
     explicit MemoryBudget(std::size_t limit) : limit_(limit) {}
     /// True if nothing large should be accepted.
     bool is_full() const { return held_ >= limit_; }
-    /// True if nothing large should be accepted of a client: also if half of the budget is its own.
+    /// True if nothing large should be accepted of a client: also if it holds more than is left.
+    /// One client so has half of the budget, a second one a quarter, and so on.
     bool is_full_for(const std::string& client) const {
         const std::lock_guard lock(mutex_);
         const auto own = clients_.find(client);
-        return is_full() || (own != clients_.end() && own->second >= limit_ / 2);
+        return is_full() || (own != clients_.end() && own->second >= limit_ - held_);
     }
     std::size_t bytes() const { return held_; }
     /// The largest bytes() since the last call.

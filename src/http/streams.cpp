@@ -13,9 +13,6 @@ using Clock = std::chrono::steady_clock;
 // Interval between progress lines.
 constexpr auto report_interval = std::chrono::milliseconds(200);
 
-// Time for which a sweep keeps a slot that another sweep waits for.
-constexpr auto time_slice = std::chrono::milliseconds(20);
-
 /// Lines or rows of a sweep between the threads that compute them and those that send them.
 class LineQueue {
 public:
@@ -129,7 +126,7 @@ public:
         const Clock::time_point now = Clock::now();
         const bool is_long = admission_.background_waits() && now - held().since > time_slice;
         const bool is_full = lines_.is_full();
-        if (held().slot && (admission_.foreground_waits() || is_long || is_full)) {
+        if (held().slot && (admission_.must_yield(held().slot) || is_long || is_full)) {
             end();
             while (lines_.is_full() && !stops(Clock::now()))
                 lines_.wait_while_full(client_check_interval);

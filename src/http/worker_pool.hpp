@@ -1,5 +1,6 @@
-// A pool of threads that take jobs from a queue. Clients take turns, and one client has at most
-// half of the threads.
+// A pool of threads that take jobs from a queue. Clients take turns, and a client that has more
+// threads than are left for all others gets no further one: one client has at most half of the
+// threads, a second one at most a quarter, and so on.
 #pragma once
 
 #include <semaphore.h>
@@ -64,7 +65,7 @@ public:
         const std::lock_guard lock(mutex_);
         jobs_.push(client, std::move(job));
     }
-    /// True if a job waits for a thread, other than one whose client has its share of them.
+    /// True if a job waits for a thread, other than one whose client has its share.
     bool jobs_wait() {
         const std::lock_guard lock(mutex_);
         return jobs_.size() > free_ && jobs_.has(may_begin());
@@ -76,11 +77,12 @@ private:
         ++free_;
     }
 
-    /// Whether a client has fewer than its share of threads.
+    /// Whether a client has fewer threads than are left.
     auto may_begin() const {
-        return [this](const std::string& client) {
+        const std::size_t left = max_threads_ - (threads_.size() - free_);
+        return [this, left](const std::string& client) {
             const auto running = running_.find(client);
-            return running == running_.end() || running->second < (max_threads_ + 1) / 2;
+            return running == running_.end() || running->second < left;
         };
     }
 

@@ -239,27 +239,95 @@ TEST_CASE("the number of grace periods per slot is limited; one that ends allows
     CHECK(admission.is_grace(admission.try_acquire()));
 }
 
-TEST_CASE("work whose grace period is over joins a full queue, at its end") {
+TEST_CASE("work whose grace period is over joins a full queue, before its client's other work") {
     AdmissionControl admission({.running = 1, .waiting = 2});
     Slot slot = admission.acquire(client);
     Slot grace = admission.try_acquire();
     REQUIRE(admission.is_grace(grace));
-    std::atomic<bool> first_entered = false, second_entered = false;
-    std::thread first([&] { first_entered = admission.acquire(client) != nullptr; });
+    std::atomic<bool> begun_entered = false, first_entered = false;
+    std::thread first([&] {
+        const Slot own = admission.acquire(client);
+        first_entered = own && begun_entered;
+    });
     wait_until([&] { return admission.load().waiting == 1; });
     CHECK(!admission.acquire(client));
-    std::thread second([&] {
-        const Slot own = admission.acquire(client, {}, std::move(grace));
-        second_entered = own && first_entered;
+    std::thread begun([&] {
+        const Slot own = admission.resume(client, {}, std::move(grace));
+        begun_entered = own != nullptr;
     });
     wait_until([&] { return admission.load().waiting == 2; });
     CHECK(!admission.acquire(client));
     slot.reset();
     first.join();
-    second.join();
-    CHECK(second_entered);
+    begun.join();
+    CHECK(first_entered);
     const Slot last = admission.try_acquire();
     CHECK((last && !admission.is_grace(last)));
+}
+
+TEST_CASE("a long run gives its slot to another client's request, not to its own client's") {
+    AdmissionControl admission({.running = 1});
+    Permit run(admission, client, {}, false);
+    std::thread own([&] { CHECK(admission.acquire(client)); });
+    wait_until([&] { return admission.load().waiting == 1; });
+    CHECK(!admission.others_are_due(client));
+    std::atomic<bool> served = false;
+    std::thread other([&] { served = admission.acquire("other") != nullptr; });
+    while (!served) REQUIRE(run.renew());
+    CHECK(run.waited().count() > 0);
+    other.join();
+    { const Permit ended = std::move(run); }
+    own.join();
+}
+
+TEST_CASE("interrupted work continues before other work of its client, which takes its turn") {
+    AdmissionControl admission({.running = 1});
+    Slot run = admission.acquire("long");
+    std::mutex mutex;
+    std::string order;
+    std::vector<std::thread> threads;
+    const auto queue = [&](const char* name, char mark) {
+        const std::size_t before = admission.load().waiting;
+        threads.emplace_back([&, name, mark] {
+            const Slot own = admission.acquire(name);
+            const std::lock_guard lock(mutex);
+            order += mark;
+        });
+        wait_until([&] { return admission.load().waiting == before + 1; });
+    };
+    queue("long", '2');
+    queue("other", 'o');
+    CHECK(admission.others_are_due("long"));
+    CHECK(admission.others_are_due("other"));
+    run = admission.resume("long", {}, std::move(run));
+    {
+        const std::lock_guard lock(mutex);
+        order += '1';
+    }
+    run.reset();
+    for (std::thread& thread : threads) thread.join();
+    CHECK(order == "o12");
+}
+
+TEST_CASE("background work waits for foreground work of one client for a limited time") {
+    AdmissionControl admission({.running = 1});
+    Slot first = admission.acquire(client);
+    std::atomic<bool> second_entered = false;
+    Slot background;
+    std::thread waiting([&] { background = admission.acquire_background("other"); });
+    wait_until([&] { return admission.background_waits(); });
+    std::thread second([&] { second_entered = admission.acquire(client) != nullptr; });
+    wait_until([&] { return admission.foreground_waits(); });
+    wait_until([&] { return admission.others_are_due(client); });
+    first.reset();
+    waiting.join();
+    REQUIRE(background);
+    CHECK(!second_entered);
+    CHECK(!admission.must_yield(background));
+    wait_until([&] { return admission.must_yield(background); });  // after a time slice
+    background.reset();
+    second.join();
+    CHECK(second_entered);
 }
 
 TEST_CASE("a permit lasts for a grace period without a slot, then waits for one, or gives up") {

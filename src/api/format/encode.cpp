@@ -36,6 +36,9 @@ std::string json_with_provenance(
     return text;
 }
 
+// Usual size of what an answer has beside its lists, in bytes.
+constexpr std::size_t room_for_rest = 16 << 10;
+
 // --- Lists ---
 
 /// Replaces infinities, which stand for null, by NaN.
@@ -253,17 +256,26 @@ void put_little(std::string& to, std::uint64_t number, int bytes) {
 /// A ZIP archive of uncompressed files (PKWARE APPNOTE, 4.3).
 class Archive {
 public:
-    void add(const std::string& name, const std::string& content) {
-        const auto crc = ::crc32(
-            0, reinterpret_cast<const Bytef*>(content.data()), static_cast<uInt>(content.size()));
+    /// bytes: an estimate of the files' size.
+    explicit Archive(std::size_t bytes) { files_.reserve(bytes); }
+
+    /// A file of these parts.
+    void add(const std::string& name, std::initializer_list<std::string_view> parts) {
+        uLong crc = 0;
+        std::size_t size = 0;
+        for (const std::string_view part : parts) {
+            const auto* const data = reinterpret_cast<const Bytef*>(part.data());
+            if (data) crc = ::crc32(crc, data, static_cast<uInt>(part.size()));  // null resets it
+            size += part.size();
+        }
         std::string common;
         put_little(common, 20, 2);          // version needed to extract
         put_little(common, 0x0800, 2);      // names in UTF-8
         put_little(common, 0, 2);           // stored
         put_little(common, 0x00210000, 4);  // 1980-01-01: the same answer has the same bytes
         put_little(common, crc, 4);
-        put_little(common, content.size(), 4);
-        put_little(common, content.size(), 4);
+        put_little(common, size, 4);
+        put_little(common, size, 4);
         put_little(common, name.size(), 2);
         put_little(common, 0, 2);  // no extra field
         directory_ += "PK\x01\x02";
@@ -272,7 +284,8 @@ public:
         directory_.append(10, '\0');  // no comment, first disk, attributes
         put_little(directory_, files_.size(), 4);
         directory_ += name;
-        files_ += "PK\x03\x04" + common + name + content;
+        files_ += "PK\x03\x04" + common + name;
+        for (const std::string_view part : parts) files_ += part;
         ++number_;
     }
     std::string end() {
@@ -283,7 +296,8 @@ public:
         put_little(tail, directory_.size(), 4);
         put_little(tail, files_.size(), 4);
         put_little(tail, 0, 2);
-        return std::move(files_) + directory_ + tail;
+        files_ += directory_ + tail;
+        return std::move(files_);
     }
 
 private:
@@ -291,25 +305,25 @@ private:
     std::size_t number_ = 0;
 };
 
-/// The NPY format, version 1.0. The header is padded to a multiple of 64 bytes.
-std::string npy(const std::string& type, const std::string& shape, std::string_view data) {
-    std::string header =
-        fmt::format("{{'descr': '{}', 'fortran_order': False, 'shape': {}, }}", type, shape);
-    constexpr std::size_t before = 10, step = 64;
-    header.resize((before + header.size() + step) / step * step - before - 1, ' ');
-    std::string file = "\x93NUMPY";
-    put_little(file, 1, 2);
-    put_little(file, header.size() + 1, 2);
-    return file + header + '\n' + std::string(data);
-}
-
 std::string shape_of(const AnswerList& list) {
     const char* const entry = list.width() == 1 ? "" : list.width() == 4 ? " 4" : " 4, 4";
     return fmt::format("({},{})", list.size(), entry);
 }
 
+/// What precedes the entries in the NPY format, version 1.0, padded to a multiple of 64 bytes.
+std::string npy_header(const std::string& type, const AnswerList& list) {
+    std::string header = fmt::format(
+        "{{'descr': '{}', 'fortran_order': False, 'shape': {}, }}", type, shape_of(list));
+    constexpr std::size_t before = 10, step = 64;
+    header.resize((before + header.size() + step) / step * step - before - 1, ' ');
+    std::string file = "\x93NUMPY";
+    put_little(file, 1, 2);
+    put_little(file, header.size() + 1, 2);
+    return file + header + '\n';
+}
+
 /// Strings in UCS-4. All strings of lists are ASCII.
-std::string npy_of_words(const AnswerList& list) {
+void add_words(Archive& archive, const std::string& name, const AnswerList& list) {
     std::size_t longest = 1;
     for (std::size_t n = 0; n < list.size(); ++n) longest = std::max(longest, list.word(n).size());
     std::string data;
@@ -318,19 +332,19 @@ std::string npy_of_words(const AnswerList& list) {
         word.resize(longest);
         for (const char c : word) put_little(data, static_cast<unsigned char>(c), 4);
     }
-    return npy(fmt::format("<U{}", longest), shape_of(list), data);
+    archive.add(name, {npy_header(fmt::format("<U{}", longest), list), data});
 }
 
-std::string npy_of(const AnswerList& list) {
-    if (list.words) return npy_of_words(list);
-    std::string data(list.packed.bytes.begin(), list.packed.bytes.end());
-    switch (list.packed.packing) {
-        case Packed::flags: return npy("|b1", shape_of(list), data);
-        case Packed::integers: return npy("<i4", shape_of(list), data);
-        default:
-            nan_for_null({reinterpret_cast<std::uint8_t*>(data.data()), data.size()});
-            return npy("<f8", shape_of(list), data);
-    }
+void add_list(Archive& archive, const std::string& name, const AnswerList& list) {
+    if (list.words) return add_words(archive, name, list);
+    const Packed packing = list.packed.packing;
+    std::vector<std::uint8_t> bytes(list.packed.bytes.begin(), list.packed.bytes.end());
+    if (packing != Packed::flags && packing != Packed::integers) nan_for_null(bytes);
+    const char* const type = packing == Packed::flags      ? "|b1"
+                             : packing == Packed::integers ? "<i4"
+                                                           : "<f8";
+    const auto* const data = reinterpret_cast<const char*>(bytes.data());
+    archive.add(name, {npy_header(type, list), {data, bytes.size()}});
 }
 
 /// Calls visit(path, list) for each list but those of objects; a path joins names with points.
@@ -376,15 +390,15 @@ void put_csv_value(const Json& value, std::string& text) {
 std::string npz_bytes(
     Json answer, const std::function<bool()>& gives_up, const Json& only_in_files) {
     const CancelCheck cancel(gives_up);
-    Archive archive;
+    Archive archive(packed_bytes(answer) + packed_bytes(only_in_files) + room_for_rest);
     const auto add = [&](const std::string& path, const AnswerList& list) {
         cancel.poll();
-        if (path.find('.') != std::string::npos) archive.add(path + ".npy", npy_of(list));
+        if (path.find('.') != std::string::npos) add_list(archive, path + ".npy", list);
     };
     visit_lists(answer, add);
     visit_lists(only_in_files, add);
     take_out_lists(answer);
-    archive.add("answer.json", json_text(std::move(answer)) + "\n");
+    archive.add("answer.json", {json_text(std::move(answer)), "\n"});
     return archive.end();
 }
 

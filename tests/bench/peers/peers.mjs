@@ -26,7 +26,7 @@ const orbits = [
 ];
 
 const built = (name) => [
-  new URL(`../../../build/release/tests/bench/peers/${name}`, import.meta.url).pathname,
+  new URL(`../../../build/release/tests/peers/${name}`, import.meta.url).pathname,
 ];
 const script = new URL("solve_ivp.py", import.meta.url).pathname;
 const programs = {
