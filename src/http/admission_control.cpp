@@ -117,8 +117,10 @@ AdmissionControl::Slot AdmissionControl::resume(
     begun.release();
     if (had_slot) ++free_;
     else --graces_;
-    Waiter waiter;
-    foreground_.push_first(client, &waiter);
+    Waiter waiter{.is_interrupted = had_slot};
+    foreground_.push_before(client, &waiter, [&waiter](const Waiter* other) {
+        return waiter.is_interrupted && !other->is_interrupted;
+    });
     interrupted_ += had_slot;
     const bool granted = wait(lock, foreground_, waiter, gives_up);
     interrupted_ -= had_slot;
@@ -144,8 +146,7 @@ AdmissionControl::Slot AdmissionControl::acquire_background(
     waiter.changed.wait(lock, stop, [this, &waiter] { return waiter.granted || sweeps_stopped_; });
     if (!end_wait(background_, waiter)) return nullptr;
     if (!sweeps_stopped_)
-        return {
-            this, {.keeps_until = waiter.overtakes ? Clock::now() + time_slice : waiter.since}};
+        return {this, {.keeps_until = waiter.overtakes ? Clock::now() + time_slice : waiter.since}};
     ++free_;
     assign();
     return nullptr;

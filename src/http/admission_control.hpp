@@ -67,7 +67,8 @@ public:
     /// earlier, or gives_up() returned true; it is polled every 50 ms.
     Slot acquire(const std::string& client, const std::function<bool()>& gives_up = {});
     /// For foreground work that has begun: gives its slot or grace period back and waits for a
-    /// slot, before the client's other work; always finds space in the queue. Null as above.
+    /// slot; always finds space in the queue. Work that had a slot waits before the client's other
+    /// work. Null as above.
     Slot resume(const std::string& client, const std::function<bool()>& gives_up, Slot begun);
     /// True if foreground work with a slot should resume(): other clients' work is due.
     bool others_are_due(const std::string& client) const;
@@ -115,7 +116,8 @@ private:
         bool granted = false;    ///< a slot, or a large body's permit
         bool displaced = false;  ///< by another client, whose turn is earlier
         bool overtakes = false;  ///< granted although foreground work waits
-        std::size_t bytes = 0;   ///< of a large body
+        bool is_interrupted = false;
+        std::size_t bytes = 0;  ///< of a large body
         Clock::time_point since = Clock::now();
         bool is_due() const;
     };
@@ -126,8 +128,7 @@ private:
     void assign();
     bool end_wait(Queue& queue, Waiter& waiter);
     static void displace_last(Queue& queue);
-    bool wait(
-        Lock& lock, Queue& queue, Waiter& waiter, const std::function<bool()>& gives_up);
+    bool wait(Lock& lock, Queue& queue, Waiter& waiter, const std::function<bool()>& gives_up);
     bool make_space(const std::string& client, std::size_t bytes);
 
     const AdmissionLimits limits_;

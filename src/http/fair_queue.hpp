@@ -24,11 +24,14 @@ public:
             entries_.begin(), entries_.end(), [turn](const Entry& e) { return e.turn > turn; });
         entries_.insert(later, {client, turn, std::move(value)});
     }
-    /// The same, before the client's other entries, which move on by one turn each.
-    void push_first(const std::string& client, T value) {
+    /// The same, before the client's first entry with is_later(value): these move on by one turn.
+    template <class IsLater>
+    void push_before(const std::string& client, T value, const IsLater& is_later) {
         push(client, {});
+        bool moves = false;
         for (Entry& e : entries_)
-            if (e.client == client) std::swap(e.value, value);
+            if (e.client == client && (moves = moves || e.value == T{} || is_later(e.value)))
+                std::swap(e.value, value);
     }
     /// True if an entry of this client would come before the last one.
     bool precedes_last(const std::string& client) const {

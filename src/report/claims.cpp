@@ -79,7 +79,6 @@ void positive_exponents(Report& report, const PositiveExponents& paper, const Bo
          "up to which all four are positive",
          paper.positive},
         {found.share, all_positive(other.product.raw_product_history()).share,
-
          "{:.2f}; at the last {}. At {:.2f} of all impacts an eigenvalue is zero: a spike",
          found.share, in_words(here.product.raw_product()), found.spikes},
         {{0.9, 1}, "nine in ten; spikes, which the paper mentions too, are left out"});

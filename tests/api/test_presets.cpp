@@ -18,7 +18,7 @@ using namespace vines;
 using namespace vines::api;
 using namespace vines::test;
 
-TEST_CASE("the machines show what their titles say") {
+TEST_CASE("the machines show what their titles say" * doctest::test_suite("long")) {
     const auto run = [](const char* name) {
         return simulated(
             read_simulate_request(

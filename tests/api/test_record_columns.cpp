@@ -158,7 +158,8 @@ std::string with_column(
 }  // namespace
 
 TEST_CASE(
-    "a channel of the base or of a force gives the amplitude, frequency and phase of the forcing") {
+    "a channel of the base or of a force gives the amplitude, frequency and phase of the forcing" *
+    doctest::test_suite("long")) {
     const std::string csv = measured("fig20", 12);
     const Json known = identified(read_identify_request({{"preset", "fig20"}}, csv));
     CHECK(known["signal"]["forcing"].is_null());

@@ -239,28 +239,25 @@ TEST_CASE("the number of grace periods per slot is limited; one that ends allows
     CHECK(admission.is_grace(admission.try_acquire()));
 }
 
-TEST_CASE("work whose grace period is over joins a full queue, before its client's other work") {
+TEST_CASE("work whose grace period is over joins a full queue, at its end") {
     AdmissionControl admission({.running = 1, .waiting = 2});
     Slot slot = admission.acquire(client);
     Slot grace = admission.try_acquire();
     REQUIRE(admission.is_grace(grace));
-    std::atomic<bool> begun_entered = false, first_entered = false;
-    std::thread first([&] {
-        const Slot own = admission.acquire(client);
-        first_entered = own && begun_entered;
-    });
+    std::atomic<bool> first_entered = false, second_entered = false;
+    std::thread first([&] { first_entered = admission.acquire(client) != nullptr; });
     wait_until([&] { return admission.load().waiting == 1; });
     CHECK(!admission.acquire(client));
-    std::thread begun([&] {
+    std::thread second([&] {
         const Slot own = admission.resume(client, {}, std::move(grace));
-        begun_entered = own != nullptr;
+        second_entered = own && first_entered;
     });
     wait_until([&] { return admission.load().waiting == 2; });
     CHECK(!admission.acquire(client));
     slot.reset();
     first.join();
-    begun.join();
-    CHECK(first_entered);
+    second.join();
+    CHECK(second_entered);
     const Slot last = admission.try_acquire();
     CHECK((last && !admission.is_grace(last)));
 }
@@ -280,33 +277,42 @@ TEST_CASE("a long run gives its slot to another client's request, not to its own
     own.join();
 }
 
-TEST_CASE("interrupted work continues before other work of its client, which takes its turn") {
-    AdmissionControl admission({.running = 1});
-    Slot run = admission.acquire("long");
+TEST_CASE("interrupted work continues in its order, before other work of its client") {
+    AdmissionControl admission({.running = 2});
+    Slot first = admission.acquire("long"), second = admission.acquire("long");
     std::mutex mutex;
     std::string order;
     std::vector<std::thread> threads;
-    const auto queue = [&](const char* name, char mark) {
-        const std::size_t before = admission.load().waiting;
-        threads.emplace_back([&, name, mark] {
-            const Slot own = admission.acquire(name);
-            const std::lock_guard lock(mutex);
-            order += mark;
-        });
-        wait_until([&] { return admission.load().waiting == before + 1; });
-    };
-    queue("long", '2');
-    queue("other", 'o');
-    CHECK(admission.others_are_due("long"));
-    CHECK(admission.others_are_due("other"));
-    run = admission.resume("long", {}, std::move(run));
-    {
+    const auto note = [&](const Slot& slot, char mark) {
         const std::lock_guard lock(mutex);
-        order += '1';
-    }
-    run.reset();
+        order += slot ? mark : '-';
+    };
+    threads.emplace_back([&] { note(admission.acquire("long"), '3'); });
+    wait_until([&] { return admission.load().waiting == 1; });
+    CHECK(!admission.others_are_due("long"));
+    std::atomic<int> entered = 0, may_leave = 0;
+    const auto interrupt = [&](Slot& run, char mark) {
+        const int before = entered;
+        threads.emplace_back([&, before] {
+            const Slot own = admission.acquire("other");
+            ++entered;
+            wait_until([&] { return may_leave > before; });
+        });
+        wait_until([&] { return admission.others_are_due("long"); });
+        threads.emplace_back(
+            [&, mark] { note(admission.resume("long", {}, std::move(run)), mark); });
+        wait_until([&] { return entered > before; });
+    };
+    interrupt(first, '1');
+    interrupt(second, '2');
+    may_leave = 1;
+    wait_until([&] {
+        const std::lock_guard lock(mutex);
+        return order.size() == 3;
+    });
+    CHECK(order == "123");
+    may_leave = 2;
     for (std::thread& thread : threads) thread.join();
-    CHECK(order == "o12");
 }
 
 TEST_CASE("background work waits for foreground work of one client for a limited time") {

@@ -1,8 +1,8 @@
-// axe-core reports no violations on any tab, light or dark.
+// axe-core reports no violations on any tab, light or dark; nothing overlaps on any screen.
 import assert from "node:assert/strict";
 import {test} from "node:test";
 import {measured} from "../record.mjs";
-import {designed, drawn, found, identified, swept} from "./browser.mjs";
+import {designed, drawn, found, identified, painted, swept} from "./browser.mjs";
 import {leastDifference} from "./palette.mjs";
 import {browser, findingsInBothSchemes, service} from "./support.mjs";
 
@@ -61,36 +61,91 @@ for (const [name, show] of Object.entries(tabs))
     await page.close();
   });
 
-const screens = {
-  "320 px": [320, 640],
-  "a phone in landscape": [844, 390],
-  "200 % zoom": [720, 450],
-  "a tablet": [1024, 768],
-};
-for (const [name, [width, height]] of Object.entries(screens))
-  test(`no tab scrolls sideways on ${name}, and sliders are 24 px high`, async () => {
-    const page = await browser.context.newPage();
-    await page.setViewportSize({width, height});
-    for (const [address, wait] of [
-      ["?preset=fig11", drawn],
-      ["?preset=fig11&embed=1", drawn],
-      ["?tab=sweep&axis1=b,0.003,0.04,24&cycles=60", swept],
-      ["?tab=motions&parameter=b&from=0.014&to=0.018&count=5&preset=fig11", found],
-      [`?tab=design&${design}`, designed],
-      ["?tab=measurement", identified],
-    ]) {
-      await page.goto(`${service.url}/${address}`);
-      await wait(page, 1);
-      const wide = await page.evaluate(() => document.documentElement.scrollWidth);
-      assert.ok(wide <= width, `${address}: ${wide} px`);
-    }
-    await page.goto(`${service.url}/?preset=fig11`);
-    await drawn(page, 1);
-    const heights = await page.$$eval("input[type=range]", (inputs) =>
-      inputs.map((input) => input.offsetHeight).filter(Boolean),
+const tabAddresses = [
+  ["?preset=fig11", drawn],
+  ["?preset=fig11&embed=1", drawn],
+  ["?tab=sweep&axis1=b,0.003,0.04,24&cycles=60", swept],
+  ["?tab=motions&parameter=b&from=0.014&to=0.018&count=5&preset=fig11", found],
+  [`?tab=design&${design}`, designed],
+  ["?tab=measurement", identified],
+];
+// Wide and small screens; a page loaded on a small one folds its forms.
+const screens = [
+  [
+    [1440, 900],
+    [1280, 720],
+    [1024, 768],
+  ],
+  [
+    [960, 540],
+    [844, 390], // a phone in landscape
+    [800, 600],
+    [800, 500],
+    [720, 450], // 1440 x 900 at 200 % zoom
+    [390, 844],
+    [320, 640],
+  ],
+];
+
+/**
+ * Pairs of visible elements that overlap, neither inside the other. A page with a sheet of
+ * parameters is scrolled to its end, where the sheet covers nothing.
+ */
+const overlaps = (page) =>
+  page.evaluate(() => {
+    const hasSheet = document.getElementById("sheet").checkVisibility();
+    scrollTo(0, hasSheet ? document.documentElement.scrollHeight : 0);
+    const parts = "header, footer, form, .headline, .strip, #details > summary, .cards > div";
+    const plots = ".machine, .player, canvas, figure, figcaption, .plot, .plane";
+    const results = ".results > :not(.telling)";
+    const boxes = [...document.querySelectorAll([parts, plots, results])]
+      .filter((node) => node.checkVisibility())
+      .map((node) => ({node, ...node.getBoundingClientRect().toJSON()}));
+    const meet = (one, other) =>
+      Math.min(one.right, other.right) - Math.max(one.left, other.left) > 1 &&
+      Math.min(one.bottom, other.bottom) - Math.max(one.top, other.top) > 1;
+    const nameOf = ({node}) => node.id || node.className || `${node.parentNode.id} ${node.tagName}`;
+    return boxes.flatMap((one, k) =>
+      boxes
+        .slice(k + 1)
+        .filter((other) => !one.node.contains(other.node) && meet(one, other))
+        .map((other) => `${nameOf(one)}, ${nameOf(other)}`),
     );
-    assert.ok(Math.min(...heights) >= 24, heights.join());
-    await page.close();
+  });
+
+/** Fails if something overlaps, is too wide, wraps or is too low for a finger. */
+async function checkLayout(page, width) {
+  const wide = await page.evaluate(() => document.documentElement.scrollWidth);
+  assert.ok(wide <= width, `${width}: ${wide} px`);
+  assert.deepEqual(await overlaps(page), [], `on ${width} px`);
+  const tops = await page.$$eval("#take > *", (nodes) =>
+    nodes.map((node) => node.getBoundingClientRect().top),
+  );
+  assert.ok(Math.max(...tops) - Math.min(...tops) < 6, `${width}: one line has ${tops}`);
+  const heights = await page.$$eval("input[type=range]", (inputs) =>
+    inputs.map((input) => input.offsetHeight).filter(Boolean),
+  );
+  assert.ok(Math.min(...heights) >= 24, `${width}: sliders of ${heights} px`);
+}
+
+for (const [address, wait] of tabAddresses)
+  test(`nothing overlaps or scrolls sideways on any screen: ${address}`, async () => {
+    for (const sizes of screens) {
+      const page = await browser.context.newPage();
+      for (const [k, [width, height]] of sizes.entries()) {
+        await page.setViewportSize({width, height});
+        if (k === 0) {
+          await page.goto(`${service.url}/${address}`);
+          await wait(page, 1);
+        }
+        await painted(page);
+        await checkLayout(page, width);
+        const high = await page.evaluate(() => document.documentElement.scrollHeight);
+        if (address.includes("embed") && width === 800)
+          assert.ok(high <= height, `the frame scrolls: ${high} px`);
+      }
+      await page.close();
+    }
   });
 
 /** Colours of the style sheet by name, as [r, g, b]. */

@@ -806,7 +806,7 @@ test("the strip shows lambda1, the largest |x| or the impacts, and keeps what it
   pictures.push(await hash(page, "#strip"));
   assert.equal(new Set(pictures).size, 3);
   await page.selectOption("#strip-quantity", "lambda1");
-  await painted(page);
+  await strip(3);
   assert.equal(sweeps.length, 1, "the first sweep is kept");
   await page.reload();
   await strip(1);

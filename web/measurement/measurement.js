@@ -7,16 +7,7 @@ import {RequestTab} from "../shared/job.js";
 import {ImpactList} from "./impact_list.js";
 import {summariseMeasurement} from "./measurement_summary.js";
 import * as views from "./measurement_views.js";
-import {
-  afterReload,
-  asJson,
-  keep,
-  oscillatorOf,
-  parse,
-  recordOf,
-  recordOfRun,
-  spikeNear,
-} from "./record.js";
+import * as records from "./record.js";
 
 const groups = {
   system: ["System", true],
@@ -109,7 +100,7 @@ export class MeasurementTab extends RequestTab {
   /** Reads the record of before a reload or, if wanted, a sample. */
   async readFirst(sample) {
     const isNewest = this.beginRecord();
-    const file = await afterReload();
+    const file = await records.afterReload();
     if (!isNewest()) return;
     if (file) this.readFile(file);
     else if (sample) this.readSample(firstSample);
@@ -171,7 +162,7 @@ export class MeasurementTab extends RequestTab {
     const text = asQuery(fields);
     return text.length <= longestQuery
       ? identify(text, this.file, signal)
-      : identifyJson(asJson(this.parsed, fields), signal);
+      : identifyJson(records.asJson(this.parsed, fields), signal);
   }
 
   show(answer, {fields}, milliseconds) {
@@ -212,7 +203,7 @@ export class MeasurementTab extends RequestTab {
   /** Draws the columns selected by the fields, with the impacts known. */
   drawFile(fields) {
     const {parsed} = this;
-    this.record = parsed && recordOf(parsed, fields);
+    this.record = parsed && records.recordOf(parsed, fields);
     const known = this.record !== null;
     dom.reveal({"measure-parts": known, "measure-list": known, "measure-add-at": known});
     if (!known) return;
@@ -226,7 +217,7 @@ export class MeasurementTab extends RequestTab {
   addAt(time, reach) {
     if (!$("plot-measured-a").matches(".adding")) return;
     const {t} = this.record;
-    const i = spikeNear(this.record, time, reach);
+    const i = records.spikeNear(this.record, time, reach);
     if (i !== null && this.list.add(t[i])) this.say(`added an impact at ${t[i].toFixed(4)} s`);
   }
 
@@ -264,12 +255,12 @@ export class MeasurementTab extends RequestTab {
     this.quoteLine();
     this.say("reading …");
     try {
-      const parsed = await parse(file, (share) => {
+      const parsed = await records.parse(file, (share) => {
         if (isNewest()) this.say(`reading … ${(100 * share).toFixed(0)} %`);
       });
       if (!isNewest()) return;
       this.parsed = parsed;
-      keep(file);
+      records.keep(file);
       const {names, columns} = parsed;
       $("measure-columns").replaceChildren(...names.map((value) => dom.element("option", {value})));
       dom.setTexts({"measure-about": `${about}, ${columns[0]?.length ?? 0} samples`});
@@ -295,13 +286,13 @@ export class MeasurementTab extends RequestTab {
   }
 
   readRun(run, name) {
-    return this.readFile(new File([recordOfRun(run)], name, {type: "text/csv"}));
+    return this.readFile(new File([records.recordOfRun(run)], name, {type: "text/csv"}));
   }
 
   /** Identifies the record of a simulated run {parameters, impacts, sticking, status}. */
   measure(run) {
     const {parameters} = run;
-    this.choosePreset("", oscillatorOf(parameters));
+    this.choosePreset("", records.oscillatorOf(parameters));
     return this.readRun(run, `run-b${parameters.b * 1000}mm.csv`);
   }
 

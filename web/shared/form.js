@@ -257,7 +257,7 @@ function setField(field, value) {
 }
 
 /** On a small screen the groups are closed at first, because the results lie below them. */
-export const smallScreen = matchMedia("(max-width: 60rem)").matches;
+export const smallScreen = matchMedia("(width < 62rem)").matches;
 
 export class Form {
   parts = new Map(); // <details> of the groups

@@ -242,14 +242,8 @@ export const texts = kind(
       const crowded = drawn.some(([a, b]) => Math.abs(a - px) < 60 && Math.abs(b - py) < 12);
       if (!one || crowded || !frame.holds(px, py)) return;
       drawn.push([px, py]);
-      drawText(
-        c,
-        one,
-        clamp(px, frame.box.left + 30, frame.box.right - 30),
-        py - 8,
-        "center",
-        "bottom",
-      );
+      const middle = clamp(px, frame.box.left + 30, frame.box.right - 30);
+      drawText(c, one, middle, py - 8, "center", "bottom");
     });
   },
   {above: true},

@@ -73,15 +73,9 @@ export const quantities = {
   },
 };
 // Quantities of the lowest diagram over one axis; their axis starts at 0.
-const oneAxisQuantities = [
-  "z",
-  "x_rms_ratio",
-  "share_impacts",
-  "x_max",
-  "synchronised",
-  "impact_speed",
-  "impact_rate",
-];
+const oneAxisQuantities = Object.keys(quantities).filter(
+  (name) => !quantities[name].diverging && !quantities[name].categories,
+);
 for (const name of oneAxisQuantities) quantities[name].from0 = true;
 for (const [name, quantity] of Object.entries(quantities)) quantity.of ??= (p) => p[name] ?? null;
 

@@ -1,20 +1,14 @@
 // Files and results that the browser keeps over reloads. Without permission to store, nothing is
 // kept: reading then resolves to undefined.
 
-const names = ["records", "strips"];
 const most = 50; // entries of a name, after which all of them are dropped
 
 /** Runs act(store) on a store and resolves to the result of the request it returns. */
 const within = (name, mode, act) =>
   new Promise((resolve, reject) => {
-    const opening = indexedDB.open("vines", 2);
-    opening.onupgradeneeded = () => {
-      const {result} = opening;
-      for (const each of names)
-        if (!result.objectStoreNames.contains(each)) result.createObjectStore(each);
-    };
-    // An older page in another tab can block the upgrade.
-    opening.onerror = opening.onblocked = () => reject(opening.error);
+    const opening = indexedDB.open(`vines-${name}`);
+    opening.onupgradeneeded = () => opening.result.createObjectStore(name);
+    opening.onerror = () => reject(opening.error);
     opening.onsuccess = () => {
       const request = act(opening.result.transaction(name, mode).objectStore(name));
       request.onsuccess = () => resolve(request.result);

@@ -25,11 +25,8 @@ function knock(strength) {
 }
 
 export function start() {
-  fillMenu(
-    $("speed"),
-    speeds.map((v) => [v, `${count(v, "cycle")}/s`]),
-    1,
-  );
+  const entries = speeds.map((v) => [v, `${count(v, "cycle")}/s`]);
+  fillMenu($("speed"), entries, 1);
   $("play").onclick = () => (frame ? pause() : play());
   $("restart").onclick = () => restart();
   $("sound").onclick = toggleSound;

@@ -20,7 +20,6 @@ const transient = 150; // cycles discarded before
 const points = 257; // computed coarse to fine
 const impacts = 40; // listed of each point of a bifurcation diagram
 const pause = 400; // ms without an edit before it starts
-const mostKept = 20; // sweeps kept for parameters that return
 const band = 13; // px, height of the regime band
 
 const menu = $("strip-quantity");
@@ -70,7 +69,6 @@ const drawn = {
 export class Strip extends Plot {
   layers = null; // the sweep drawn
   key = null; // of the sweep for the run shown
-  kept = new Map(); // layers of complete sweeps by their key, the oldest first
   pointed = false; // true while the text is about the pointer's place
 
   job = new Job({
@@ -82,7 +80,7 @@ export class Strip extends Plot {
         this.soon();
       }),
     show: () => {
-      this.keep();
+      countUp(this.canvas);
       write("strips", stored(this.key), this.layers.base.file());
     },
     fail: ({message}) => {
@@ -121,15 +119,13 @@ export class Strip extends Plot {
     this.refresh();
   }
 
-  /** Requests the sweep over the range unless it is known. */
+  /** Shows the sweep over the range as soon as it is known. */
   request(key, fields) {
     this.key = key;
     this.job.cancel();
     clearTimeout(this.waiting);
-    const known = this.kept.get(key);
-    this.markStale(!known);
-    if (known) this.layers = known;
-    else this.find(fields);
+    this.markStale(true);
+    this.find(fields);
     say("");
     const {symbol, unit} = this.slider;
     setTexts({"strip-parameter": unit ? `${symbol} (${unit})` : symbol});
@@ -146,16 +142,9 @@ export class Strip extends Plot {
     this.job.cancel();
     this.layers = new Layers(this.sweep(fields));
     this.layers.base.takeAll(text);
-    this.keep();
+    countUp(this.canvas);
     this.markStale(false);
     this.soon();
-  }
-
-  /** Keeps the complete sweep that is drawn. */
-  keep() {
-    this.kept.set(this.key, this.layers);
-    if (this.kept.size > mostKept) this.kept.delete(this.kept.keys().next().value);
-    countUp(this.canvas);
   }
 
   /** stale: what is drawn belongs to other parameters. */

@@ -243,8 +243,10 @@ private:
             // The scatter of single pulses and the change of the pulse between trials are noise.
             const double since = s_.record.tau[k] - tau, half = 0.5 * spacing(),
                          change = 0.5 * (pulse.at(since + half) - pulse.at(since - half)),
-                         noise = elementary::hypot(
-                             a.noise, height * elementary::hypot(pulse.scatter(since), change));
+                         scatter = pulse.scatter(since),
+                         noise = std::sqrt(
+                             a.noise * a.noise +
+                             height * height * (scatter * scatter + change * change));
             const Scaled sample{pulse.at(since) / noise, a.left[k] / noise};
             samples_.push_back(sample);
             // An outlier, which no plausible height explains, would spoil the fitted one.

@@ -13,10 +13,7 @@ namespace {
 double scaled_peak(
     double known, double size, const Flow& flow, const Oscillation& start, const Polynomial& shift,
     double from, double to) {
-    const double least = known / size;
-    if (!shift.is_zero())
-        return size * peak_beyond(least, flow, start, sum({}, shift, 1 / size), from, to);
-    return size * peak_beyond(least, flow, from > 0 ? flow.after(start, from) : start, to - from);
+    return size * peak_beyond(known / size, flow, start, sum({}, shift, 1 / size), from, to);
 }
 
 }  // namespace

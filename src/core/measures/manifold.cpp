@@ -110,8 +110,7 @@ void HalfCycles::pass(const Stretch& stretch, double from, double to) {
     if (!(from < to)) return;
     const Flow& flow = stretch.flow;
     const Polynomial shift = stretch.shift();
-    peak_ = shift.is_zero() ? peak_beyond(peak_, flow, flow.after(stretch.start, from), to - from)
-                            : peak_beyond(peak_, flow, stretch.start, shift, from, to);
+    peak_ = peak_beyond(peak_, flow, stretch.start, shift, from, to);
     if (stretch.is_joint()) {
         path_ += path_length(flow, stretch.start, shift, from, to);
         return;

@@ -192,6 +192,8 @@ double peak_beyond(double known, const Flow& flow, Oscillation o, double duratio
 double peak_beyond(
     double known, const Flow& flow, const Oscillation& start, const Polynomial& shift, double from,
     double to) {
+    if (shift.is_zero())
+        return peak_beyond(known, flow, from > 0 ? flow.after(start, from) : start, to - from);
     visit_extrema(
         flow, start, shift, from, to, [&](double x) { known = std::max(known, std::abs(x)); });
     return known;

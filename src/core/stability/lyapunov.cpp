@@ -216,9 +216,9 @@ struct RawProduct {
 }  // namespace
 
 Status status_of(double exponent) {
-    return std::isnan(exponent)   ? Status::not_converged
-           : std::isinf(exponent) ? Status::minus_infinity
-                                  : Status::ok;
+    return exponent == -infinity     ? Status::minus_infinity
+           : std::isfinite(exponent) ? Status::ok
+                                     : Status::not_converged;
 }
 
 std::size_t ExponentHistory::coarse_stride() const {

@@ -107,7 +107,6 @@ void check_impact_law(Report& report, const Experiment& regular, const Experimen
          "both records",
          "R can be calculated by (4)"},
         {largest_error(at_9, at_15),
-
          "{:.4f}, {:.4f} at 9 mm, {:.4f}, {:.4f} at 15 mm, true value {:g}; from the fitted "
          "motion the largest error is {:.0e}",
          at_9.plus.R, at_9.minus.R, at_15.plus.R, at_15.minus.R, true_R,
@@ -286,7 +285,6 @@ void from_rest_on(Report& report, const Experiment& from_rest) {
          "(33) is positive",
          "positive in this short period"},
         {positive_share(found),
-
          "{:.2f} of tau = {:.0f}, from {:.4f} after a tenth of it to {:.4f}; with the first, "
          "weak impact, which the record does not show, {:.4f} to {:.4f}",
          positive_share(found), found.tau.back() - found.tau.front(), early(found), last(found),
@@ -310,7 +308,6 @@ void settled_motion(Report& report, const Experiment& settled, double of_figure_
          "b = 9 mm, a motion that has settled for 20 s: lambda1 by (33) at the record's end",
          "positive"},
         {last(settled.history_by_eq_33()),
-
          "{:.4f} (from {:.4f} after a tenth of it); from the direct estimate {:.4f} (from "
          "{:.4f})",
          last(settled.history_by_eq_33()), early(settled.history_by_eq_33()), last(direct),
@@ -321,10 +318,8 @@ void settled_motion(Report& report, const Experiment& settled, double of_figure_
         {"Fig. 19",
          "the same: upper end of the 90 % interval of the limit of lambda1 (slope of lambda1 tau)",
          "it will approach zero"},
-        {judged.slope.high,
-
-         "{:.4f} to {:.4f}, slope {:.4f}; the true motion's {:.4f}", judged.slope.low,
-         judged.slope.high, judged.slope.value, settled.truth.exponents.qr()[0]},
+        {judged.slope.high, "{:.4f} to {:.4f}, slope {:.4f}; the true motion's {:.4f}",
+         judged.slope.low, judged.slope.high, judged.slope.value, settled.truth.exponents.qr()[0]},
         {{0, infinity},
          "zero is in the interval; in part: as small as Fig. 11's exponent by eq. (1)",
          Band{of_figure_11, infinity}},
@@ -384,7 +379,6 @@ void exponents_of_irregular_response(Report& report, const Experiment& e) {
         {"Fig. 24", "b = 15 mm: lower end of the 90 % interval of lambda1, from the fitted motion",
          "the transient exponents are positive"},
         {judged.slope.low,
-
          "{:.4f} to {:.4f}, slope {:.4f}; from the direct estimate {:.4f}; with the damping of "
          "(19) to (21) {:.4f}; the true motion's {:.4f}",
          judged.slope.low, judged.slope.high, judged.slope.value,

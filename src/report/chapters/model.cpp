@@ -131,7 +131,6 @@ void trajectory_difference(Report& report) {
              size, wanted.tau_end),
          "the transfer matrix"},
         {largest,
-
          "{:.0e} through {} impacts, {} of them at x - y = -b, while the distance grows "
          "{:.0f}-fold",
          largest, run.impacts.size(), std::ranges::count(run.impacts, -1, &Impact::side),

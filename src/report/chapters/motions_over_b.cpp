@@ -105,7 +105,6 @@ void symmetric_impacts(Report& report, const BranchCurves& here) {
          "b at which two symmetric impacts per cycle cease to attract (end of Type III), mm",
          "III at 15, II at 16.5"},
         {end, other_end,
-
          "{:.6f}: a pair {:.4f} +- {:.4f}i leaves the unit circle, as at a torus bifurcation; "
          "{}; by eq. (1) {:.6f}",
          end, std::cos(half_angle), std::sin(half_angle), compared_with_runs(end / 1000),

@@ -38,10 +38,8 @@ void figure_10(Report& report, const BothRuns& runs) {
     const Regime &here = runs.here.regime(), &other = runs.by_equation.regime();
     report.add(
         {"Section 4, Type I", "b = 40 mm: impacts per cycle, z", "one impact during many cycles"},
-        {here.z, other.z,
-
-         "{:.2f}; {:.2f} of the cycles have none; by eq. (1) {:.2f}", here.z, here.cycles_with[0],
-         other.z},
+        {here.z, other.z, "{:.2f}; {:.2f} of the cycles have none; by eq. (1) {:.2f}", here.z,
+         here.cycles_with[0], other.z},
         {{0, 1.0 / 3},
          "at most one impact in three cycles; in part: at most one in two",
          Band{0, 0.5}},
@@ -65,9 +63,8 @@ void negative_exponents(
         {fmt::format("Fig. {}", figure),
          fmt::format("b = {:g} mm: largest exponent", 1000 * runs.here.parameters.b),
          "all four negative"},
-        {exponents_of(runs.here)[0], exponents_of(runs.by_equation)[0],
-
-         "{}; by eq. (1) {}", exponents_in_words(runs.here), exponents_in_words(runs.by_equation)},
+        {exponents_of(runs.here)[0], exponents_of(runs.by_equation)[0], "{}; by eq. (1) {}",
+         exponents_in_words(runs.here), exponents_in_words(runs.by_equation)},
         {{-infinity, 0}, "negative"}, expected);
 }
 
@@ -83,7 +80,6 @@ void two_almost_zero(Report& report, int figure, const BothRuns& runs) {
              1000 * runs.here.parameters.b),
          "two almost zero"},
         {ratio(runs.here), ratio(runs.by_equation),
-
          "{:.2f}; by raw_product {:.2f}, where lambda3 is {:.4f}, the rounding floor {:.4f}; "
          "by eq. (1) {:.2f}",
          ratio(runs.here), raw[1] / raw[2], raw[2],
@@ -150,10 +146,9 @@ void report_paper_b(Report& report, const ShiftedRegime& e, const BothRuns& runs
              "b = {:g} mm: random starts, of {}, that reach Type {}", mm, random_starts,
              name_of(e.type)),
          fmt::format("Type {}", name_of(e.type))},
-        {of_type(found), of_type(other),
-
-         "{}; from the paper's start {}. By eq. (1) {}; {}", of_type(found),
-         described(runs.here.regime()), of_type(other), described(runs.by_equation.regime())},
+        {of_type(found), of_type(other), "{}; from the paper's start {}. By eq. (1) {}; {}",
+         of_type(found), described(runs.here.regime()), of_type(other),
+         described(runs.by_equation.regime())},
         {{1, random_starts}, "one is enough"}, e.of_type);
     report.add(
         {where, fmt::format("b = {:g} mm: impacts per cycle, z", mm), fmt::format("{}", e.impacts)},

@@ -61,9 +61,7 @@ void figure_3(Report& report, const BothRuns& runs) {
                  other = runs.by_equation.run.impacts.front().tau;
     report.add(
         {"Table 2", "first impact, tau_s (Fig. 3)", "18.1300"},
-        {tau, other,
-
-         "{:.4f}; {:.4f} with epsilon and lambda as printed; by eq. (1) {:.4f}", tau,
+        {tau, other, "{:.4f}; {:.4f} with epsilon and lambda as printed; by eq. (1) {:.4f}", tau,
          run_until(rounded, 30, {.impacts = true}).run.impacts.front().tau, other},
         {{18.12995, 18.13005},
          "the printed digits; in part: a tenth of a per cent",
@@ -269,7 +267,6 @@ void transient_exponents(Report& report, RunCache& runs) {
         {"Fig. 5", "sum of the exponents (qr), from a start without a sticking phase",
          "positive, if all four are", rounding_cause},
         {sum_of(product.qr()), sum_of(other.qr()),
-
          "{:.4f} {}: -2 zeta + 2 z_T ln R to {:.0e}, z_T impacts per unit of tau; by eq. (1) "
          "{:.4f}",
          sum_of(product.qr()), from, product.sum_rule_residual(), sum_of(other.qr())},
@@ -306,7 +303,6 @@ void lambda1(Report& report, const BothEnsembles& windows) {
         {"Table 2", "lambda1 of the three windows together: sd above the mean of many",
          ".1093, .1143, .1197"},
         {joint, other_joint,
-
          "{} over {} windows of 1690; {:.1f} sd each (of windows of the same length), {:.1f} "
          "together, sum of squares {:.1f}; eq. (1): {:.3f}, {:.0f} together",
          here.in_words(4), windows.here.windows.size(), fmt::join(each, ", "), joint,
@@ -343,7 +339,6 @@ void lambda3(Report& report, const Ensemble& e) {
          "squared deviations from the median in sd",
          "42.3, 42.5, 34.0"},
         {squares,
-
          "{:.1f}; {} windows: median {:.1f}, nine in ten from {:.1f} to {:.1f}: sd {:.1f}; by "
          "qr {:.0f}",
          squares, spreads.size(), middle, low, high, deviation,

@@ -78,10 +78,8 @@ void exponents(Report& report, const Rows& rows) {
         {"Table 3",
          "the ten lambda1 together: sum of squared deviations in sd, of windows of 400 contacts",
          "ten values"},
-        {sum, other_sum,
-
-         "{:.1f}; by eq. (1) {:.0f} over the {} that are chaotic with it", sum, other_sum,
-         other.size()},
+        {sum, other_sum, "{:.1f}; by eq. (1) {:.0f} over the {} that are chaotic with it", sum,
+         other_sum, other.size()},
         {{2.6, 23.2}, "98 % of chi squared with ten degrees of freedom"}, by_closed_form);
     report.bottom_line.insert(
         0,
@@ -161,10 +159,8 @@ void order(Report& report, const Rows& rows) {
     report.add(
         {"Section 4.2", "lambda1 rises with b, Type II (16.5 to 31 mm): steps at which it falls",
          fmt::format("increases ({} of the printed steps fall)", falls_in_type_II(printed))},
-        {falls_in_type_II(here), falls_in_type_II(other),
-
-         "{} of {}; by eq. (1) {}", falls_in_type_II(here), of_type_II - 1,
-         falls_in_type_II(other)},
+        {falls_in_type_II(here), falls_in_type_II(other), "{} of {}; by eq. (1) {}",
+         falls_in_type_II(here), of_type_II - 1, falls_in_type_II(other)},
         {exactly(0), "none"}, by_closed_form);
     report.add(
         {"Table 3", "the higher lambda1 of Type I (34 and 40 mm) minus that of 31 mm",
@@ -172,7 +168,6 @@ void order(Report& report, const Rows& rows) {
              "{:.4f} as printed, against section 4.2's \"increase\"", rise_to_type_I(printed))},
         {rise_over_error(rows, Damping::closed_form),
          rise_over_error(rows, Damping::equation_of_motion),
-
          "{:.4f}, {:.1f} standard errors; by eq. (1) {:.4f}", rise_to_type_I(here),
          rise_over_error(rows, Damping::closed_form), rise_to_type_I(other)},
         {{-infinity, -2.58},

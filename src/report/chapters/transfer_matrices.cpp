@@ -265,10 +265,8 @@ void where_chaos_comes_from(Report& report, RunCache& runs) {
     report.add(
         {"Section 4.2", "Type II (16.5 to 31 mm): " + quantity + ", the largest of the eight b",
          "the same"},
-        {largest, largest_other,
-
-         "{:.2f}; above a tenth at {:g} mm; by eq. (1) {:.2f}", largest, fmt::join(mm_above, ", "),
-         largest_other},
+        {largest, largest_other, "{:.2f}; above a tenth at {:g} mm; by eq. (1) {:.2f}", largest,
+         fmt::join(mm_above, ", "), largest_other},
         nearly_all, by_equation_of_motion);
     report.paragraph(fmt::format(
         "Growth of ln of the largest deviation (qr) per unit of tau, while synchronised and while "

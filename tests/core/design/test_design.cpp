@@ -160,7 +160,9 @@ TEST_CASE("linear responses to a load settle on those to its frequency") {
             }
 }
 
-TEST_CASE("a design under a shock is the best of runs from rest, and beats its neighbours") {
+TEST_CASE(
+    "a design under a shock is the best of runs from rest, and beats its neighbours" *
+    doctest::test_suite("long")) {
     DesignPlan plan = machine();
     plan.host.load = [](const SiParameters& si) {
         const double duration = 0.03 * si.omega0(), rate = std::numbers::pi / duration;
@@ -289,7 +291,9 @@ TEST_CASE(
     CHECK(design->best.objective < 1.02 * least);
 }
 
-TEST_CASE("a range of amplitudes is answered by one map: smaller ones are larger b, scaled") {
+TEST_CASE(
+    "a range of amplitudes is answered by one map: smaller ones are larger b, scaled" *
+    doctest::test_suite("long")) {
     DesignPlan plan = machine();
     plan.b_count = 5;
     plan.amplitude_ratio = 0.5;

@@ -60,7 +60,7 @@ TEST_CASE("a record that follows the model shows no effect outside it") {
     }
 }
 
-TEST_CASE("an effect outside the model is named") {
+TEST_CASE("an effect outside the model is named" * doctest::test_suite("long")) {
     struct Case {
         double b;
         UnmodelledEffects effects;
@@ -79,7 +79,7 @@ TEST_CASE("an effect outside the model is named") {
     }
 }
 
-TEST_CASE("a given friction of the ball is part of the model") {
+TEST_CASE("a given friction of the ball is part of the model" * doctest::test_suite("long")) {
     for (const double friction : {0.05, 0.2}) {
         CAPTURE(friction);
         const Experiment e = unmodelled_experiment(0.015, {.friction = friction});
@@ -97,7 +97,7 @@ TEST_CASE("a given friction of the ball is part of the model") {
     }
 }
 
-TEST_CASE("a given R of the speed is part of the model") {
+TEST_CASE("a given R of the speed is part of the model" * doctest::test_suite("long")) {
     constexpr double slope = -0.2, fast = 4;  // per m/s, m/s
     const Experiment e = unmodelled_experiment(0.015, {.R_slope = slope});
     CHECK(shows(evaluate_measurement(measurement_of(e)), Effect::R_varies));
@@ -198,7 +198,9 @@ std::shared_ptr<const MeasuredLoad> load_of(const ForcingChannel& channel) {
 
 }  // namespace
 
-TEST_CASE("a measured forcing is the load: its modulation, harmonics and sweeps change no value") {
+TEST_CASE(
+    "a measured forcing is the load: its modulation, harmonics and sweeps change no value" *
+    doctest::test_suite("long")) {
     for (const UnmodelledEffects& effects :
          {UnmodelledEffects{.amplitude_modulation = 0.03}, UnmodelledEffects{.second = 0.05},
           UnmodelledEffects{.sweep = 0.005}})

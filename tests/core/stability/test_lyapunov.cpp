@@ -163,6 +163,7 @@ TEST_CASE("beyond the range of double raw_product has no value, eigenvalues and 
     Lyapunov lyapunov(p, {0, 20000}, all_estimators);
     record(p, default_state(p), 20000, 100000, {&lyapunov});
     CHECK(status_of(lyapunov.product().raw_product()[0]) == Status::not_converged);
+    CHECK(status_of(infinity) == Status::not_converged);
     CHECK(std::abs(lyapunov.product().eigenvalues()[0] - lyapunov.product().qr()[0]) < 1e-3);
 }
 

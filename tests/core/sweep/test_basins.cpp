@@ -63,7 +63,9 @@ TEST_CASE("starts fill the box evenly, lie in the cavity and follow from the see
     CHECK(starts_in({Interval{0, 0}, {1, 2}, {0, 0}, {0, 0}}, p, 10, 1).empty());
 }
 
-TEST_CASE("runs that end near a known orbit have the names of complete runs, also of longer ones") {
+TEST_CASE(
+    "runs that end near a known orbit have the names of complete runs, also of longer ones" *
+    doctest::test_suite("long")) {
     for (const double b : {0.0065, 0.00558}) {
         const BasinPlan plan = plan_of({b}, 400);
         Basins basins(plan);

@@ -51,7 +51,9 @@ double over_tolerances(const Parameters& p, double b) {
 
 }  // namespace
 
-TEST_CASE("no b of a fine grid is better than the recommended one by more than a tenth") {
+TEST_CASE(
+    "no b of a fine grid is better than the recommended one by more than a tenth" *
+    doctest::test_suite("long")) {
     // In the last one C is ten times G, and the best b an eighth of C.
     for (const Parameters& p :
          {system_of(0.05, 0.4, 0.7, 1.02), system_of(0.08, 0.5, 0.6, 1),
