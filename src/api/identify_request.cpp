@@ -16,6 +16,12 @@ namespace {
 
 constexpr std::size_t fewest_samples = 100;
 
+// Longest record with gaps: this long in tau, or this many times the time that has samples.
+constexpr double longest_sparse = 1e5, most_spans = 4;
+
+// Work on a sample in the search for hum, in steps of reading.
+constexpr std::size_t hum_steps = 4;
+
 /// Checks the times, in seconds. `lines`: line numbers of the samples in a CSV text.
 void check_times(const std::vector<double>& time, const std::vector<std::uint32_t>& lines) {
     const std::size_t n = time.size();
@@ -32,6 +38,20 @@ void check_times(const std::vector<double>& time, const std::vector<std::uint32_
                                  : "line " + std::to_string(lines[i])) +
                       ", column of time: time must increase, but " + Json(time[i]).dump() +
                       " follows " + Json(time[i - 1]).dump()}});
+}
+
+/// Refuses a record that consists of gaps: an identification takes time and memory in proportion to
+/// the span.
+void check_span(const std::vector<double>& tau, double omega0) {
+    const double span = tau.back() - tau.front(), sampled = count_of(tau) * median(steps_of(tau)),
+                 longest = std::max(longest_sparse, most_spans * sampled);
+    if (span <= longest) return;
+    refuse(
+        {{"/record/time_s", span / omega0, Json::array({0, longest / omega0}),
+          fmt::format(
+              "the record spans {:.6g} s, of which {:.6g} s have samples; it can span {:.6g} s: "
+              "identify its parts by themselves",
+              span / omega0, sampled / omega0, longest / omega0)}});
 }
 
 /// Warns of gaps and clipping.
@@ -182,10 +202,12 @@ void read_record(IdentifyRequest& r, const Json& fields, Csv csv, CancelCheck& c
     change_each(record.tau, cancel, [&](double t) { return t * time.factor; });
     check_times(record.tau, csv.lines);
     change_each(record.tau, cancel, [&](double t) { return t * omega0; });
+    check_span(record.tau, omega0);
     change_each(record.x, cancel, [&](double v) { return v * x.factor; });
     change_each(record.x_ddot, cancel, [&](double v) { return v * a.factor / (omega0 * omega0); });
     note_flaws(record, omega0, r.notes);
-    for (const Hum& hum : remove_hum(record, r.measurement.mains)) {
+    for (const Hum& hum :
+         remove_hum(record, r.measurement.mains, [&cancel] { cancel.step(hum_steps); })) {
         r.notes.push_back(fmt::format(
             "a hum of {:.3g} {} at {:.4g} Hz was removed from the {}",
             hum.amplitude * (hum.in_displacement ? 1e6 : omega0 * omega0),

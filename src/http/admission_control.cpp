@@ -13,7 +13,7 @@ constexpr auto give_up_check = std::chrono::milliseconds(50);
 constexpr int graces_per_slot = 4;
 
 // Work that waits after a time slice, per slot: it holds memory.
-constexpr int interrupted_per_slot = 4;
+constexpr int interrupted_per_slot = 8;
 
 // Time after which background work no longer waits for foreground work.
 constexpr auto patience = std::chrono::milliseconds(200);
@@ -31,7 +31,12 @@ constexpr auto grace_time = std::chrono::milliseconds(1);
 
 }  // namespace
 
-bool AdmissionControl::Waiter::is_due() const { return Clock::now() - since >= patience; }
+/// True if background work may overtake foreground work: it then has a tenth of the time.
+bool AdmissionControl::may_overtake() const {
+    const auto now = Clock::now();
+    return !background_.empty() && now - background_.front()->since >= patience &&
+           now >= next_overtaking_;
+}
 
 /// Grants what is free to the next in the queues, and wakes only these threads.
 void AdmissionControl::assign() {
@@ -42,7 +47,8 @@ void AdmissionControl::assign() {
         return next;
     };
     for (; free_ > 0 && !(foreground_.empty() && background_.empty()); --free_) {
-        const bool overtakes = !background_.empty() && background_.front()->is_due();
+        const bool overtakes = !foreground_.empty() && may_overtake();
+        if (overtakes) next_overtaking_ = Clock::now() + patience / limits_.running;
         Waiter& next = grant_next(foreground_.empty() || overtakes ? background_ : foreground_);
         next.overtakes = overtakes;
     }
@@ -61,8 +67,8 @@ bool AdmissionControl::end_wait(Queue& queue, Waiter& waiter) {
     return false;
 }
 
-void AdmissionControl::displace_last(Queue& queue) {
-    Waiter& last = *queue.pop_last();
+void AdmissionControl::displace_last(Queue& queue, bool (*may)(const Waiter*)) {
+    Waiter& last = *queue.pop_last(may);
     last.displaced = true;
     last.changed.notify_one();
 }
@@ -84,7 +90,7 @@ bool AdmissionControl::wait(
 }
 
 bool AdmissionControl::is_full() const {
-    return static_cast<int>(foreground_.size()) + graces_ >= limits_.waiting;
+    return static_cast<int>(foreground_.size()) - interrupted_ + graces_ >= limits_.waiting;
 }
 
 AdmissionControl::Slot AdmissionControl::try_acquire() {
@@ -102,8 +108,9 @@ AdmissionControl::Slot AdmissionControl::acquire(
     const std::string& client, const std::function<bool()>& gives_up) {
     std::unique_lock lock(mutex_);
     if (free_ == 0 && is_full()) {
-        if (!foreground_.precedes_last(client)) return nullptr;
-        displace_last(foreground_);
+        const auto is_new = [](const Waiter* waiter) { return !waiter->is_interrupted; };
+        if (!foreground_.precedes_last(client, is_new)) return nullptr;
+        displace_last(foreground_, is_new);
     }
     Waiter waiter;
     foreground_.push(client, &waiter);
@@ -132,7 +139,7 @@ bool AdmissionControl::others_are_due(const std::string& client) const {
     const std::lock_guard lock(mutex_);
     if (interrupted_ >= interrupted_per_slot * limits_.running) return false;
     return foreground_.has([&client](const std::string& other) { return other != client; }) ||
-           (!background_.empty() && background_.front()->is_due());
+           may_overtake();
 }
 
 AdmissionControl::Slot AdmissionControl::acquire_background(

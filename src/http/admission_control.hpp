@@ -73,8 +73,8 @@ public:
     /// True if foreground work with a slot should resume(): other clients' work is due.
     bool others_are_due(const std::string& client) const;
     /// For background work: waits for a slot, after the background work whose turn is earlier, and
-    /// after all foreground work for up to 200 ms. Null once `stop` is requested or sweeps are
-    /// stopped.
+    /// after all foreground work unless it has waited for 200 ms; then at most one per slot and 200
+    /// ms overtakes. Null once `stop` is requested or sweeps are stopped.
     Slot acquire_background(const std::string& client, const std::stop_token& stop = {});
     /// True if background work should release its slot and wait again, since foreground work waits.
     bool must_yield(const Slot& background) const {
@@ -119,22 +119,24 @@ private:
         bool is_interrupted = false;
         std::size_t bytes = 0;  ///< of a large body
         Clock::time_point since = Clock::now();
-        bool is_due() const;
     };
     using Queue = FairQueue<Waiter*>;
     using Lock = std::unique_lock<std::mutex>;
 
     bool is_full() const;
+    bool may_overtake() const;
     void assign();
     bool end_wait(Queue& queue, Waiter& waiter);
-    static void displace_last(Queue& queue);
+    static bool any(const Waiter*) { return true; }
+    static void displace_last(Queue& queue, bool (*may)(const Waiter*) = any);
     bool wait(Lock& lock, Queue& queue, Waiter& waiter, const std::function<bool()>& gives_up);
     bool make_space(const std::string& client, std::size_t bytes);
 
     const AdmissionLimits limits_;
     mutable std::mutex mutex_;
-    int free_, graces_ = 0;          // nobody waits while free_ > 0
-    int interrupted_ = 0;            // work that waits after a time slice
+    int free_, graces_ = 0;  // nobody waits while free_ > 0
+    int interrupted_ = 0;    // work that waits after a time slice
+    Clock::time_point next_overtaking_ = {};
     std::list<std::string> sweeps_;  // their clients
     Queue foreground_, background_;
     Queue bodies_;

@@ -330,8 +330,8 @@ Response answer(Request& r, const Service& service, Stopwatch& watch) {
         .body = std::move(bytes),
         .tag = std::move(tag),
         .headers = {varies}};
-    if (!compress(response, r, [&] { return !computing.renew() || r.left(); }))
-        computing.throw_without_permit();
+    // Not interrupted: it holds the whole text.
+    if (!compress(response, r, r.left)) throw_client_left();
     computing.lap("encode");
     return response;
 }

@@ -78,11 +78,11 @@ Connection::Progress Connection::read_request() {
         refuse(problem_response(problem));
     }
     if (!request_) return Progress::waits;
+    const auto is_whole = [this] { return request_->refused || bytes_.size() >= body_size(); };
     // Large bodies only: the number of connections bounds the small ones.
-    if (!request_->refused && body_size() > small_body && memory_.is_full_for(client()))
+    if (!is_whole() && body_size() > small_body && memory_.is_full_for(client()))
         request_->refused = memory_refusal();
-    const bool whole = request_->refused || bytes_.size() >= body_size();
-    return whole ? Progress::complete : Progress::waits;
+    return is_whole() ? Progress::complete : Progress::waits;
 }
 
 Connection::Clock::time_point Connection::deadline(bool memory_is_scarce) const {

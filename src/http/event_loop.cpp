@@ -298,7 +298,7 @@ void EventLoop::expire() {
         idle_until_ = now + drain_time;
     }
     expire_deliveries();
-    const bool scarce = memory_.is_full();
+    const bool scarce = memory_is_scarce();
     for (const Owned& c : connections_)
         if (c && !c->is_delivering() &&
             now > (c->is_closing() ? c->deadline() : std::min(c->deadline(scarce), idle_until_)))
@@ -322,13 +322,12 @@ void EventLoop::time_out(Connection& connection) {
     answer_here(connection);
 }
 
+bool EventLoop::was_scarce(Clock::time_point last) const { return checked_ - last < scarce_time; }
+
 /// Breaks off answers that are read too slowly. A finished answer holds memory and a connection; a
 /// stream also a thread, and a sweep's place.
 void EventLoop::expire_deliveries() {
-    const auto was_scarce = [this](Clock::time_point last) {
-        return checked_ - last < scarce_time;
-    };
-    const bool scarce = memory_.is_full() || was_scarce(connections_scarce_);
+    const bool scarce = memory_is_scarce() || was_scarce(connections_scarce_);
     const bool streams = scarce || workers_.jobs_wait() || was_scarce(streams_scarce_);
     for (const Owned& c : connections_)
         if (c && c->is_delivering() &&

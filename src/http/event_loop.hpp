@@ -62,6 +62,8 @@ private:
     void hand_over(Owned connection);
     bool answer_here(Connection& connection);
     void deliver(Connection& connection);
+    bool was_scarce(Clock::time_point last) const;
+    bool memory_is_scarce() const { return memory_.is_full() || was_scarce(memory_.last_full()); }
     void expire_deliveries();
     void collect_returned();
     void expire();

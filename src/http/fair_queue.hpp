@@ -33,12 +33,21 @@ public:
             if (e.client == client && (moves = moves || e.value == T{} || is_later(e.value)))
                 std::swap(e.value, value);
     }
-    /// True if an entry of this client would come before the last one.
-    bool precedes_last(const std::string& client) const {
-        return !empty() && next_turn(client) < entries_.back().turn;
+    /// True if an entry of this client would come before the last one that may(value).
+    template <class May>
+    bool precedes_last(const std::string& client, const May& may) const {
+        const auto last = std::find_if(entries_.rbegin(), entries_.rend(), by_value(may));
+        return last != entries_.rend() && next_turn(client) < last->turn;
     }
+    bool precedes_last(const std::string& client) const { return precedes_last(client, any); }
     const std::string& last_client() const { return entries_.back().client; }
-    T pop_last() { return take(std::prev(entries_.end())); }
+    /// The last entry that may(value), of which there is one.
+    template <class May>
+    T pop_last(const May& may) {
+        return take(
+            std::prev(std::find_if(entries_.rbegin(), entries_.rend(), by_value(may)).base()));
+    }
+    T pop_last() { return pop_last(any); }
     /// The first entry whose client may(client); nothing if there is none.
     template <class May>
     std::optional<T> pop(const May& may) {
@@ -78,6 +87,10 @@ private:
         long turn = 0;
         T value;
     };
+    static bool any(const T&) { return true; }
+    static auto by_value(const auto& may) {
+        return [&may](const Entry& e) { return may(e.value); };
+    }
 
     long next_turn(const std::string& client) const {
         const auto last = last_turns_.find(client);

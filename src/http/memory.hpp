@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <atomic>
+#include <chrono>
 #include <cstddef>
 #include <map>
 #include <mutex>
@@ -21,6 +22,8 @@ namespace vines::http {
 /// Thread-safe.
 class MemoryBudget {
 public:
+    using Clock = std::chrono::steady_clock;
+
     explicit MemoryBudget(std::size_t limit) : limit_(limit) {}
     /// True if nothing large should be accepted.
     bool is_full() const { return held_ >= limit_; }
@@ -29,7 +32,14 @@ public:
     bool is_full_for(const std::string& client) const {
         const std::lock_guard lock(mutex_);
         const auto own = clients_.find(client);
-        return is_full() || (own != clients_.end() && own->second >= limit_ - held_);
+        const bool full = is_full() || (own != clients_.end() && own->second >= limit_ - held_);
+        if (full) last_full_ = Clock::now();
+        return full;
+    }
+    /// Time at which it was last full, also for one client alone.
+    Clock::time_point last_full() const {
+        const std::lock_guard lock(mutex_);
+        return last_full_;
     }
     std::size_t bytes() const { return held_; }
     /// The largest bytes() since the last call.
@@ -60,6 +70,7 @@ private:
     std::atomic<std::size_t> held_ = 0;
     mutable std::mutex mutex_;
     std::size_t most_ = 0;
+    mutable Clock::time_point last_full_ = {};
     std::map<std::string, std::size_t> clients_;  // bytes of each
 };
 

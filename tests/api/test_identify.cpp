@@ -1,5 +1,6 @@
 // Requests and answers of /v1/identify.
 #include <doctest/doctest.h>
+#include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
@@ -260,6 +261,15 @@ TEST_CASE("errors of a record are named with line and column") {
         "/displacement_column");
     CHECK(refused({{"b", 0.009}}, csv).errors[0].pointer == "/m1");
     CHECK(refused({{"preset", "fig15"}, {"tau_end", 3}}, csv).errors[0].pointer == "/tau_end");
+}
+
+TEST_CASE("a record that consists of a gap is refused") {
+    std::string sparse = header;
+    for (int k = 0; k < 200; ++k)
+        sparse += fmt::format("{:.3f},{},{}\n", k * 1e-3 + (k < 100 ? 0 : 1e8), k % 3, k % 7);
+    const Problem problem = refused({{"preset", "fig15"}}, sparse);
+    CHECK(problem.errors[0].pointer == "/record/time_s");
+    CHECK(contains(problem.what(), "spans 1e+08 s, of which 0.2 s have samples"));
 }
 
 TEST_CASE("a record without impacts, clipping, gaps, slow sampling and a wrong b cause warnings") {

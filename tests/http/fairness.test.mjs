@@ -6,7 +6,18 @@ import {tmpdir} from "node:os";
 import {join} from "node:path";
 import {test} from "node:test";
 import {startService} from "../service.mjs";
-import {connect, connectAll, get, post, send, serviceFor, statuses, textOf, until} from "./raw.mjs";
+import {
+  connect,
+  connectAll,
+  get,
+  metric,
+  post,
+  send,
+  serviceFor,
+  statuses,
+  textOf,
+  until,
+} from "./raw.mjs";
 
 const from = (address) => `X-Forwarded-For: 198.51.100.7, ${address}\r\n`;
 const run = '{"tau_end": 20000, "include": ["exponents"]}';
@@ -102,6 +113,25 @@ test("few requests follow one sweep, so that threads remain for others; it passe
   sweep.cycles += 1;
   const again = () => follow("192.0.2.1");
   await until(async () => (await again()) === 200);
+});
+
+test("an upload that dribbles is cut off while another finds no memory", async (t) => {
+  const one = await serviceFor(t, [...trust, "--memory-limit", "100000000"]);
+  const {socket} = await connect(one.url);
+  socket.write(
+    `POST /v1/identify HTTP/1.1\r\nHost: x\r\n${from("192.0.2.1")}Content-Length: 60000000\r\n\r\n`,
+  );
+  socket.write(Buffer.alloc(17 << 20, " "));
+  const dribble = setInterval(() => socket.write(Buffer.alloc(70000, " ")), 4000);
+  t.after(() => {
+    clearInterval(dribble);
+    socket.destroy();
+  });
+  await until(async () => (await metric(one.url, "vines_http_held_bytes")) > 30e6);
+  const record = `{"preset": "fig20", ${" ".repeat(30 << 20)}"record": {}}`;
+  const upload = async () => (await send(one.url, "/v1/identify", record, other)).status;
+  assert.equal(await upload(), 503);
+  await until(async () => (await upload()) === 422);
 });
 
 test("an API key is a client, wherever its requests come from; the log names it, not its secret", async (t) => {

@@ -336,6 +336,56 @@ TEST_CASE("background work waits for foreground work of one client for a limited
     CHECK(second_entered);
 }
 
+TEST_CASE(
+    "however much background work is due, foreground work gets the next slot after one of it") {
+    AdmissionControl admission({.running = 1});
+    Slot held = admission.acquire(client);
+    std::mutex mutex;
+    std::string order;
+    const auto note = [&](char mark) {
+        const std::lock_guard lock(mutex);
+        order += mark;
+    };
+    std::vector<std::thread> threads;
+    for (int i = 0; i < 5; ++i)
+        threads.emplace_back([&] {
+            const Slot own = admission.acquire_background("sweeps");
+            note('b');
+            wait_until([&] { return !admission.foreground_waits() || admission.must_yield(own); });
+        });
+    wait_until([&] { return admission.others_are_due(client); });
+    threads.emplace_back([&] {
+        const Slot own = admission.acquire("other");
+        note('f');
+    });
+    wait_until([&] { return admission.foreground_waits(); });
+    held.reset();
+    for (std::thread& thread : threads) thread.join();
+    CHECK(order == "bfbbbb");
+}
+
+TEST_CASE("interrupted work does not lose its place in a full queue") {
+    AdmissionControl admission({.running = 1, .waiting = 1});
+    Slot run = admission.acquire("long");
+    std::atomic<bool> may_leave = false, entered = false, continued = false, served = false;
+    std::thread other([&] {
+        const Slot own = admission.acquire("other");
+        entered = own != nullptr;
+        wait_until([&] { return may_leave.load(); });
+    });
+    wait_until([&] { return admission.load().waiting == 1; });
+    std::thread interrupted(
+        [&] { continued = admission.resume("long", {}, std::move(run)) != nullptr; });
+    wait_until([&] { return entered.load(); });
+    std::thread waiting([&] { served = admission.acquire("third") != nullptr; });
+    wait_until([&] { return admission.load().waiting == 2; });
+    CHECK(!admission.acquire("fourth"));
+    may_leave = true;
+    for (std::thread* thread : {&other, &interrupted, &waiting}) thread->join();
+    CHECK(continued);
+    CHECK(served);
+}
+
 TEST_CASE("a permit lasts for a grace period without a slot, then waits for one, or gives up") {
     AdmissionControl admission({.running = 1});
     Slot slot = admission.acquire(client);

@@ -101,6 +101,7 @@ constexpr double half_block_periods = 25, searched_range = 0.003;
 // reaches this many resolutions, the line itself some.
 constexpr double stands_above = 6, above_noise = 2;
 constexpr int neighbourhood = 40, line_width = 3, trials_per_resolution = 8;
+constexpr double most_periods = 90000;
 
 double hann(double place) {
     const double sine = elementary::sin(std::numbers::pi * place);
@@ -116,7 +117,9 @@ struct NearLine {
     double resolution, total = 0;
     std::vector<Average> averages = {};
 
-    NearLine(const std::vector<double>& tau, const std::vector<double>& v, double Omega) {
+    NearLine(
+        const std::vector<double>& tau, const std::vector<double>& v, double Omega,
+        const Look& look) {
         const double length = tau.back() - tau.front(),
                      hop = half_block_periods * 2 * std::numbers::pi / Omega;
         resolution = 2 * std::numbers::pi / length;
@@ -124,6 +127,7 @@ struct NearLine {
         std::vector<Complex> sums(blocks, 0);
         std::vector<double> weights(blocks, 0);
         for (std::size_t k = 0; k < tau.size(); ++k) {
+            look();
             const double place = (tau[k] - tau.front()) / hop;
             const Complex value = v[k] * elementary::phasor(-Omega * (tau[k] - tau.front()));
             const auto last = static_cast<std::size_t>(place);
@@ -150,15 +154,19 @@ struct NearLine {
 
 /// Removes the line near Omega, if there is one.
 std::optional<Hum> remove_line(
-    const std::vector<double>& tau, std::vector<double>& v, double Omega) {
-    const NearLine near(tau, v, Omega);
+    const std::vector<double>& tau, std::vector<double>& v, double Omega, const Look& look) {
+    if ((tau.back() - tau.front()) * Omega > most_periods * 2 * std::numbers::pi)
+        return std::nullopt;
+    const NearLine near(tau, v, Omega, look);
     if (near.averages.size() < 3) return std::nullopt;
     double best = 0, highest = 0;
     const double step = near.resolution / trials_per_resolution;
     const int trials = static_cast<int>(searched_range * Omega / step) + 1;
-    for (int k = -trials; k <= trials; ++k)
+    for (int k = -trials; k <= trials; ++k) {
+        look();
         if (const double height = elementary::modulus(near.at(k * step)); height > highest)
             highest = height, best = k * step;
+    }
     std::vector<double> around;
     for (int k = line_width; k <= neighbourhood; ++k)
         for (const int sign : {1, -1})
@@ -200,12 +208,12 @@ RecordStatistics::RecordStatistics(const MeasuredRecord& r) : step(median(steps_
     set_noise(r.tau, r.x, x), set_noise(r.tau, r.x_ddot, a);
 }
 
-std::vector<Hum> remove_hum(MeasuredRecord& r, const std::vector<double>& mains) {
+std::vector<Hum> remove_hum(MeasuredRecord& r, const std::vector<double>& mains, const Look& look) {
     std::vector<Hum> found;
     for (const double Omega : mains)
         for (std::vector<double>* channel : {&r.x, &r.x_ddot}) {
             if (channel->empty()) continue;
-            const std::optional<Hum> hum = remove_line(r.tau, *channel, Omega);
+            const std::optional<Hum> hum = remove_line(r.tau, *channel, Omega, look);
             if (hum) found.push_back({hum->Omega, hum->amplitude, channel == &r.x});
         }
     return found;

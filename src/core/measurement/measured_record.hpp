@@ -5,6 +5,7 @@
 #include <cstddef>
 #include <vector>
 
+#include "core/measurement/progress.hpp"
 #include "core/measurement/robust.hpp"
 
 namespace vines {
@@ -52,7 +53,9 @@ struct Hum {
 };
 
 /// Removes lines within .3 % of the given frequencies from both channels if they exceed twice the
-/// noise and are far above their neighbourhood. Returns them.
-std::vector<Hum> remove_hum(MeasuredRecord& record, const std::vector<double>& mains);
+/// noise and are far above their neighbourhood. Returns them. A record of more than 90,000 periods
+/// of the mains is not searched: their frequency is not constant for so long.
+std::vector<Hum> remove_hum(
+    MeasuredRecord& record, const std::vector<double>& mains, const Look& look = [] {});
 
 }  // namespace vines

@@ -288,7 +288,10 @@ TEST_CASE("hum of the mains is removed before impacts are searched") {
 TEST_CASE("a record without hum is not changed") {
     const Experiment e = unmodelled_experiment(0.009, {});
     MeasuredRecord r = e.record;
-    CHECK(remove_hum(r, {2 * std::numbers::pi * 50 / e.omega0}).empty());
+    const std::vector<double> mains = {2 * std::numbers::pi * 50 / e.omega0};
+    CHECK_THROWS_AS(
+        remove_hum(r, mains, [] { throw IdentificationStopped{}; }), IdentificationStopped);
+    CHECK(remove_hum(r, mains).empty());
     CHECK(r.x == e.record.x);
 }
 
