@@ -330,8 +330,8 @@ inline constexpr Property<MeasuredPoint> point[] = {
      at<&PointResult::share_impacts>},
     {{"share_impacts_standard_error", "standard error of share_impacts", number_or_null},
      at<&PointResult::share_impacts_error>},
-    {{"impacts", "number of impacts", whole}, at<&PointResult::impacts>},
-    {{"sticks", "number of sticking phases", whole}, at<&PointResult::sticks>},
+    {{"impacts", "number of impacts", whole}, at<&PointResult::extremes, &Extremes::impacts>},
+    {{"sticks", "number of sticking phases", whole}, at<&PointResult::extremes, &Extremes::sticks>},
     {{"stationary",
       "false if lambda1 or x_rms differs between the halves of the measured cycles by more than "
       "chance permits, or if nothing dissipates (zeta = 0, R = 1): then the standard errors do not "

@@ -98,6 +98,17 @@ void check_laws(const MergedFields& l, bool si) {
         check_restitution(l, name, si);
 }
 
+/// Refuses a gravity larger than that of a vertical track, with which mu has no meaning.
+void check_gravity(const MergedFields& l, const std::optional<SiParameters>& si) {
+    if (!l.has("mu") || !l.has("gravity") || !si) return;
+    const double most = standard_gravity / (si->omega0() * si->omega0());
+    if (std::abs(l.fields["gravity"].get<double>()) > most)
+        refuse(
+            {{"/gravity", l.fields["gravity"], Json::array({-most, most}),
+              "with mu, gravity is g sin(inclination)/omega0^2; give friction instead of mu for "
+              "another one"}});
+}
+
 /// A note if R w falls with the speed w: a faster impact then leaves more slowly.
 void note_falling_restitution(const Parameters& p, std::vector<std::string>& notes) {
     for (const auto& [table, wall] :
@@ -222,6 +233,7 @@ System read_system(const MergedFields& l, bool forcing_fitted) {
     const SystemFields fields = system_fields(l.fields);
     if (fields.is_in_si() && !fields.is_reduced()) check_si_is_whole(l, forcing_fitted);
     System system{resolve(fields)};
+    check_gravity(l, system.si);
     system.origin = origins_of(l, system);
     system.notes = notes_on(l, system);
     if (!system.parameters.load) return system;

@@ -1,5 +1,6 @@
 // The core's parameters and initial state from the fields of a request or of a sweep's point.
 #include <algorithm>
+#include <cmath>
 #include <numbers>
 
 #include "api/schema/enum_names.hpp"
@@ -28,8 +29,10 @@ void resolve_laws(const SystemFields& s, ResolvedSystem& system) {
     const double omega0 = system.si ? system.si->omega0() : nan,
                  g = standard_gravity / (omega0 * omega0), inclination = s.number("inclination");
     p.gravity = s.number("gravity", s.has("inclination") ? g * elementary::sin(inclination) : 0);
-    p.friction =
-        s.number("friction", s.has("mu") ? s.number("mu") * g * elementary::cos(inclination) : 0);
+    const double press = s.has("gravity")
+                             ? std::sqrt(std::max(0.0, (g - p.gravity) * (g + p.gravity)))
+                             : g * elementary::cos(inclination);
+    p.friction = s.number("friction", s.has("mu") ? s.number("mu") * press : 0);
     const auto wall = [&](const std::optional<RestitutionField>& own, double& R) {
         const auto& given = own ? own : s.restitution;
         if (!given) return std::shared_ptr<const RestitutionTable>();

@@ -30,6 +30,8 @@ TEST_CASE("inclination and mu are the acceleration and deceleration of the ball 
     const Json q = answer(forced(R"("gravity":1e-5,"friction":2e-5)"))["parameters"];
     CHECK(q["gravity"] == 1e-5);
     CHECK(q["friction"] == 2e-5);
+    const Json r = answer(forced(R"("gravity":1e-4,"mu":0.2)"))["parameters"];
+    CHECK(is_near(r["friction"], 0.2 * std::sqrt(g * g - 1e-8), 1e-14));
 }
 
 TEST_CASE("a table of R applies to both walls or to one, at speeds in m/s or per unit of tau") {
@@ -63,6 +65,7 @@ TEST_CASE("invalid laws are named at their pointers") {
     CHECK(at(R"("gravity":1,"inclination":0.1)") == "/gravity /inclination");
     CHECK(at(R"("friction":1,"mu":0.1)") == "/friction /mu");
     CHECK(at(R"("mu":-0.1)") == "/mu");
+    CHECK(at(R"("gravity":1,"mu":0.1)") == "/gravity");
     CHECK(at(R"("restitution":{"R":[0.5]})") == "/restitution");
     CHECK(at(R"("restitution":{"speed":[1,0],"R":[0.5,0.4]})") == "/restitution/speed/1");
     CHECK(at(R"("restitution":{"speed":[0,1],"R":[0.5,1.4]})") == "/restitution/R/1");
@@ -151,6 +154,31 @@ TEST_CASE("each kind of load moves the base or the oscillator as its fields say"
             R"("rate":"logarithmic","phase":1.5707963267948966})");
     CHECK(chirp["parameters"]["forcing"]["sampling_error"] == 0);
     CHECK(is_near(chirp["parameters"]["forcing"]["length"], 3 * omega0, 1e-12));
+}
+
+TEST_CASE("under a load peaks are relative to the base, and the motion is no free decay") {
+    const Json energy =
+        answer(with(R"("include":["energy"],"forcing":{"kind":"half_sine","acceleration_m_s2":50,)"
+                    R"("duration_s":0.01})"))["energy"];
+    CHECK(energy["peak_least"] < energy["peak"]);
+    CHECK(!energy.contains("decay"));
+}
+
+TEST_CASE("a point under harmonics counts impacts and sticking phases after its transient") {
+    const auto point = [](const std::string& load) {
+        return swept(sweep_request(
+                         R"({"base":{"m1":2,"f0":8,"damping_ratio":0.01,"m2":0.1,"R":0.3,"y0":0,)"
+                         R"("mu":0.02,)" +
+                         load +
+                         R"(},"axes":[{"parameter":"b","values":[0.001]}],"cycles":30,)"
+                         R"("transient_cycles":20})"))
+            .lines[0];
+    };
+    const Json own = point(R"("F":0.0006,"f":8)"),
+               sum = point(R"("forcing":{"kind":"harmonics","F":[0.0006],"f":[8]})");
+    CHECK(own["impacts"] == sum["impacts"]);
+    CHECK(own["sticks"] == sum["sticks"]);
+    CHECK(own["sticks"] > 0);
 }
 
 TEST_CASE("one of harmonics is F and f, and acceleration stands for F") {

@@ -86,7 +86,7 @@ struct AnalysisObservers {
         observe(
             w.parts.energy && (w.parts.unattached || w.parts.extremes == ExtremesWanted::all),
             cycle_peaks);
-        observe(w.parts.energy && w.parameters.G == 0, decay);
+        observe(w.parts.energy && !w.parameters.is_forced(), decay);
         observe(w.parts.manifold, half_cycles);
         if (compared) list.push_back(&*compared);
         return list;
@@ -162,7 +162,6 @@ struct AnalysisConclusion {
 
     void sticks() {
         if (w.parts.impacts) a.touches = last_of(o.grazing, "touches");
-        a.stick_count = o.sticks.seen;
         a.sticks = last_of(o.sticks, "sticks");
         if (!a.touches.empty()) warn(warning::GrazingContact{});
     }
@@ -292,7 +291,7 @@ struct AnalysisConclusion {
         const Parameters& p = w.parameters;
         EnergyResult& e = a.energy.emplace();
         e.balance = o.energy->balance(a.reached);
-        if (p.G == 0)
+        if (!p.is_forced())
             e.decay = {
                 .with_absorber = o.decay.times,
                 .without = unattached_decay(p, w.start, a.reached.from)};

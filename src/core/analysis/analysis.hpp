@@ -203,7 +203,6 @@ struct Analysis {
     std::optional<ImpactRange> unkept_impacts;
     double typical_speed = 1;  ///< median of the impacts' relative speeds
     std::vector<StickingPhase> sticks;
-    long stick_count = 0;  ///< including those that are not listed
     std::vector<GrazingEvent> touches;
     std::optional<WindowExponents> exponents;
     std::vector<WindowExponents> windows;

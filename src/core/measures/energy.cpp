@@ -15,6 +15,9 @@ constexpr double longest_decay = 1e6;  // decays that take longer are not report
 // Relative tolerance of the bisection: a few ulps of tau.
 constexpr double time_rounding = 1e-15;
 
+// A step or a cycle can end with a stretch, up to this much of tau.
+constexpr double step_rounding = 1e-9;
+
 }  // namespace
 
 double energy_of(const Parameters& p, const State& s) {
@@ -30,7 +33,7 @@ void Energy::on_stretch(const Stretch& stretch) {
     if (is_stuck && !sticking_) sticking_ = Law{Flow::shared_sticking(parameters_)};
     const Law& law = is_stuck ? *sticking_ : free_;
     const Oscillation begin = from > 0 ? stretch.flow.after(stretch.start, from) : stretch.start;
-    if (duration_ == 0)
+    if (duration_ == 0 && impacts_ == 0)
         start_ = energy_of(
             parameters_, {begin.x_dot, begin.x, is_stuck ? begin.x_dot : stretch.y_dot, 0});
     const bool in_closed_form = law.antiderivative && duration_ >= law.antiderivative->settled();
@@ -41,7 +44,8 @@ void Energy::on_stretch(const Stretch& stretch) {
     }
     last_ = {begin, to - from, stretch.y_dot, is_stuck, in_closed_form};
     // A step may end with the stretch, up to rounding.
-    if (next_step_ <= stretch.tau + to + 1e-9) add_steps(law, begin, stretch.tau + from, to - from);
+    if (next_step_ <= stretch.tau + to + step_rounding)
+        add_steps(law, begin, stretch.tau + from, to - from);
     sum_ += in_closed_form ? law.antiderivative->over_time(to - from)
                            : law.quadrature->over(begin, to - from);
     peak_ = peak_beyond(peak_, *law.flow, begin, to - from);
@@ -74,11 +78,11 @@ void Energy::add_curved(const Stretch& stretch, double from, double to) {
         const State a = stretch.at(begin), b = stretch.at(end);
         return parameters_.epsilon * parameters_.friction * std::abs((b.x - b.y) - (a.x - a.y));
     };
-    if (duration_ == 0) start_ = energy_of(parameters_, stretch.at(from));
+    if (duration_ == 0 && impacts_ == 0) start_ = energy_of(parameters_, stretch.at(from));
     for (double s = from; s < to;) {
         const double step_end = next_step_ - stretch.tau;
         double next = std::min(to, s + widest);
-        const bool ends_step = step_end <= next + 1e-9;
+        const bool ends_step = step_end <= next + step_rounding;
         if (ends_step) next = std::clamp(step_end, s, to);
         add(s, next);
         friction_ += slid(s, next);
@@ -113,37 +117,42 @@ void CyclePeaks::on_stretch(const Stretch& stretch) {
     double duration = to - from, tau = stretch.tau + from;
     if (!(duration > 0)) return;
     const Flow& flow = stretch.flow;
-    const Polynomial shift = stretch.shift();
+    const Polynomial base = stretch.forces ? stretch.forces->base : Polynomial{},
+                     shift = sum(stretch.shift(), base, -1);
     Oscillation o = from > 0 ? flow.after(stretch.start, from) : stretch.start;
     while (true) {
-        const double part = std::min(duration, end_ - tau), s = tau - stretch.tau;
+        const double left = end() - tau, part = std::clamp(left, 0.0, duration),
+                     s = tau - stretch.tau;
         peak_ = std::max(peak_, std::abs(o.x + shift.at(s)));
         if (peak_ < least_ && part > 0)
             peak_ = shift.is_zero() ? peak_beyond(peak_, flow, o, part)
                                     : peak_beyond(peak_, flow, stretch.start, shift, s, s + part);
-        if (duration < end_ - tau) return;
+        if (duration < left - step_rounding) return;
         least_ = std::min(least_, peak_);
         peak_ = 0;
         if (part > 0) o = flow.after(o, part);
-        tau = end_;
+        tau += part;
         duration -= part;
-        end_ += cycle_;
+        ++whole_;
     }
 }
 
 void Energy::on_impact(const Impact& i) {
     if (i.tau > window_.to) return;
     const Oscillation after = {i.x, i.x_dot_after, i.sin_theta, i.cos_theta};
-    // Rounding can end the stretch before it slightly late.
-    if (i.tau <= window_.from) {
+    const double y = i.x - i.side * parameters_.b;
+    // Rounding can end the stretch before it slightly late. An impact with which the run begins is
+    // part of it.
+    if (i.tau <= window_.from && window_.from > 0) {
         sum_.setZero();
         duration_ = peak_ = friction_ = work_ = 0;
         at_steps_.clear();
-        end_ = {i.x_dot_after, i.x, i.y_dot_after, i.x - i.side * parameters_.b};
+        end_ = {i.x_dot_after, i.x, i.y_dot_after, y};
         start_ = energy_of(parameters_, end_);
         last_ = {after, 0, i.y_dot_after, false, false};
         return;
     }
+    if (duration_ == 0) start_ = energy_of(parameters_, {i.x_dot_before, i.x, i.y_dot_before, y});
     const double w = i.relative_speed_before;
     impacts_ += (1 - i.R * i.R) * w * w * parameters_.epsilon / (2 * (1 + parameters_.epsilon));
     end_.x_dot = i.x_dot_after, end_.y_dot = i.y_dot_after;
@@ -267,7 +276,10 @@ constexpr DecayLevel decay_levels[] = {{&DecayTimes::half, 0.5}, {&DecayTimes::t
 void Decay::on_stretch(const Stretch& stretch) {
     const double from = tau_start_ - stretch.tau;
     if (from > stretch.duration) return;
-    auto energy_at = [&](double s) { return energy_of(parameters_, stretch.at(s)); };
+    // At rest the oscillator is displaced by the ball's weight.
+    const double weight = parameters_.epsilon * std::abs(parameters_.gravity),
+                 at_rest = -weight * (0.5 * weight + parameters_.b);
+    auto energy_at = [&](double s) { return energy_of(parameters_, stretch.at(s)) - at_rest; };
     if (!at_start_) at_start_ = energy_at(std::max(0.0, from));
     if (*at_start_ == 0) return;  // at rest: no energy to lose
     const double end = energy_at(stretch.duration);

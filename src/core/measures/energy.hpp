@@ -32,22 +32,22 @@ struct EnergyBalance {
     double difference_of_halves;  ///< of the mean of x^2 (mean_error.hpp)
 };
 
-/// Smallest of the maxima of |x| in each forcing cycle of a window. A cycle needs no search once a
-/// value of |x| in it, usually at an event, exceeds the smallest maximum so far.
+/// Smallest of the maxima of |x| in each forcing cycle of a window, x relative to the base if a
+/// load moves it. A cycle needs no search once a value of |x| in it, usually at an event, exceeds
+/// the smallest maximum so far.
 class CyclePeaks : public Observer {
 public:
-    CyclePeaks(const Interval& window, double cycle)
-        : window_(window),
-          cycle_(cycle),
-          end_(window.from + cycle) {}
+    CyclePeaks(const Interval& window, double cycle) : window_(window), cycle_(cycle) {}
 
     void on_stretch(const Stretch&) override;
     double least() const { return least_; }  ///< m; infinity without a whole cycle
 
 private:
+    double end() const { return window_.from + (whole_ + 1) * cycle_; }  ///< of the current cycle
+
     const Interval window_;
     const double cycle_;
-    double end_, peak_ = 0, least_ = infinity;
+    double whole_ = 0, peak_ = 0, least_ = infinity;  // whole_: number of complete cycles
 };
 
 /// Observer of the energy balance and the amplitude of x over a window.
@@ -122,7 +122,8 @@ std::optional<double> free_amplitude(const Parameters& parameters);
 /// Steady motion without absorber at tau = 0: x and x', y = y' = 0; empty at undamped resonance.
 std::optional<State> free_steady_state(const Parameters& parameters);
 
-/// First times at which a free decay has a half and a tenth of its initial energy.
+/// First times at which a free decay has a half and a tenth of its initial energy, above that of
+/// the ball at rest where gravity presses it.
 struct DecayTimes {
     std::optional<double> half, tenth;
 };
@@ -140,7 +141,7 @@ public:
 private:
     const Parameters parameters_;
     const double tau_start_;
-    std::optional<double> at_start_;
+    std::optional<double> at_start_;  // energies above that at rest
 };
 
 /// The same times for the linear oscillator without absorber; empty if it is undamped or at rest.

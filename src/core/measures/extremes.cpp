@@ -58,7 +58,7 @@ void ExtremesRecord::on_impact(const Impact& i) {
     const double w = std::abs(i.relative_speed_before), epsilon = parameters_.epsilon;
     extremes_.impact_speed = std::max(extremes_.impact_speed, w);
     extremes_.impulse = std::max(extremes_.impulse, epsilon / (1 + epsilon) * w * (1 + i.R));
-    ++impacts_;
+    ++extremes_.impacts;
 }
 
 }  // namespace vines

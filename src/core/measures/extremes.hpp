@@ -15,6 +15,7 @@ struct Extremes {
     double impact_speed = 0;    ///< of |x' - y'| before an impact, m per unit of tau
     double impulse = 0;         ///< of an impact, per m1: epsilon |jump of y'|, m per unit of tau
     double impact_rate = 0;     ///< impacts per unit of tau
+    long impacts = 0, sticks = 0;
 };
 
 /// A quantity by which motions are compared.
@@ -45,12 +46,13 @@ public:
 
     void on_stretch(const Stretch&) override;
     void on_impact(const Impact&) override;
+    void on_stick(const StickStart& s) override { extremes_.sticks += window_.contains(s.tau); }
 
     /// The extremes of the part of the window that the run reached.
     Extremes result(const Interval& reached) const {
         Extremes all = extremes_;
         if (reached.length() > 0)
-            all.impact_rate = static_cast<double>(impacts_) / reached.length();
+            all.impact_rate = static_cast<double>(all.impacts) / reached.length();
         return all;
     }
 
@@ -68,7 +70,6 @@ private:
                  sin_phi_ = elementary::sin(parameters_.phi()),
                  cos_phi_ = elementary::cos(parameters_.phi());
     Extremes extremes_;
-    long impacts_ = 0;
 };
 
 }  // namespace vines

@@ -17,8 +17,9 @@ namespace {
 // A chatter ends when its remaining duration is below this, less than the accuracy of any result;
 // the relative speed is near 1e-12 of a typical one, far above the effect of rounding.
 constexpr double chatter_rest = 1e-9;
-// A sliding ball rests within each bounce; the last ones are 1e-14 of a typical distance high.
-constexpr double sliding_chatter_rest = 1e-6;
+// A sliding ball reverses within each bounce, where its position rounds: its chatter ends when its
+// remaining duration is below this, or when its bounces are as low as this many rounding errors.
+constexpr double sliding_chatter_rest = 1e-6, lowest_bounce = 100;
 // Largest relative change of the acceleration for which that is a geometric series.
 constexpr double chatter_drift = 1e-4;
 
@@ -295,9 +296,12 @@ private:
             slip_zeros_ = 0;
             if (!(press > 0)) return;
             const double R = p_.restitution(side_, std::abs(relative_speed_));
-            const double rest = rest_of_chatter(std::abs(relative_speed_), press, R);
-            if (rest < (direction_ == 0 ? chatter_rest : sliding_chatter_rest) &&
-                std::abs(press_rate) * rest < chatter_drift * press)
+            const double w = std::abs(relative_speed_), rest = rest_of_chatter(w, press, R),
+                         drift = std::abs(press_rate) * rest / press;
+            const bool is_short = rest < (direction_ == 0 ? chatter_rest : sliding_chatter_rest),
+                       is_low = direction_ != 0 && w * w < 2 * press * lowest_height();
+            if ((is_short && drift < chatter_drift) ||
+                (is_low && drift * rest < sliding_chatter_rest))
                 stick(rest, 0);
             // All three zero: both masses stay at rest together.
         } else if (press > 0 || (press == 0 && press_rate >= 0)) {
@@ -306,6 +310,12 @@ private:
             zeros_ = press < 0 ? 2 : 3;
             slip_zeros_ = zeros_ - 1;
         }
+    }
+
+    /// Height of a bounce below which the rounding of positions affects its duration.
+    double lowest_height() const {
+        return lowest_bounce * std::numeric_limits<double>::epsilon() *
+               (std::abs(lo_.x) + std::abs(y_) + p_.b);
     }
 
     /// Duration of the impacts after one that leaves the ball with the relative speed w, pressed

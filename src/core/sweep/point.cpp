@@ -192,8 +192,6 @@ PointResult measure(
         if (a.energy->decay)
             r.decay_tenth = a.energy->decay->with_absorber.tenth.value_or(infinity);
     }
-    r.impacts = r.outcome.impacts;
-    r.sticks = a.stick_count;
     r.extremes = a.extremes;
     r.objective = objective_of(r, options.objective, options.units);
     if (a.sections) r.sections = std::move(*a.sections);
@@ -215,7 +213,7 @@ PointResult run_point(
     PointResult result = measure(system.parameters, start, options, stop);
     if (result.outcome.reason == End::stopped || stop()) throw Stopped();
     ++control.runs;
-    control.impacts += static_cast<std::size_t>(result.impacts);
+    control.impacts += static_cast<std::size_t>(result.outcome.impacts);
     return result;
 }
 

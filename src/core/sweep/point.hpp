@@ -100,8 +100,7 @@ struct PointResult {
     /// Steady amplitude without absorber, m; empty at undamped resonance.
     std::optional<double> x_free;
     std::optional<double> share_impacts;  ///< fraction of dissipation; empty without dissipation
-    long impacts = 0, sticks = 0;
-    Sections sections;  ///< of the requested kind
+    Sections sections;                    ///< of the requested kind
 };
 
 /// Limit of impacts per cycle in the transient, which only endless chatter (R = 1) reaches.

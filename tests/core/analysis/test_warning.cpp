@@ -152,7 +152,7 @@ TEST_CASE("a window with fewer than two impacts has no exponents") {
 
 TEST_CASE("a product that loses rank gives a warning with the remaining rank") {
     const Analysis sticks = analyse(request(0.015, 100, {.exponents = true}));
-    REQUIRE(sticks.stick_count > 0);
+    REQUIRE(sticks.sticks.size() > 0);
     const auto* two = only<warning::RankLost>(sticks.warnings);
     REQUIRE(two);
     CHECK(two->rank == 2);
@@ -160,7 +160,7 @@ TEST_CASE("a product that loses rank gives a warning with the remaining rank") {
     p.R_plus = 0;
     // At the second impact the wall with R = 0 moves away from the ball: no sticking follows.
     const Analysis soft = analyse(request(p, 47, {.exponents = true}));
-    REQUIRE(soft.stick_count == 0);
+    REQUIRE(soft.sticks.size() == 0);
     const auto* three = only<warning::RankLost>(soft.warnings);
     REQUIRE(three);
     CHECK(three->rank == 3);

@@ -126,6 +126,47 @@ TEST_CASE("without absorber the oscillator reaches its steady amplitude") {
     CHECK_FALSE(unattached(undamped, {}, {0, 10}).amplitude);
 }
 
+TEST_CASE("an impact with which a run begins is part of its energy") {
+    Parameters p;
+    p.epsilon = 0.05, p.lambda = 0.4, p.b = 0.01, p.R_plus = p.R_minus = 0.5;
+    const State start{0.02, 0.01, -0.02, 0};
+    for (const double gravity : {0.0, 1e-4}) {
+        p.gravity = gravity;
+        Energy energy(p, {0, 6});
+        ImpactRecord impacts;
+        record(p, start, 6, 1000, {&energy, &impacts});
+        REQUIRE(impacts.entries[0].tau == 0);
+        double lost = 0;
+        for (const Impact& i : impacts.entries)
+            lost += (1 - i.R * i.R) * i.relative_speed_before * i.relative_speed_before *
+                    p.epsilon / (2 * (1 + p.epsilon));
+        const EnergyBalance balance = energy.balance({0, 6});
+        CHECK(balance.impacts == doctest::Approx(lost).epsilon(1e-12));
+        CHECK(balance.at_start == doctest::Approx(energy_of(p, start)).epsilon(1e-12));
+        CHECK(std::abs(balance.residual) < 1e-12 * balance.at_start);
+    }
+}
+
+TEST_CASE("under gravity a decay is that of the energy above rest") {
+    Parameters p;
+    p.epsilon = 0.05, p.lambda = 0.4, p.b = 0.02, p.G = 0;
+    const State start{0, 0.002, 0, 0.0195};
+    for (const double gravity : {0.01, -0.01}) {
+        p.gravity = gravity;
+        // At rest the ball lies on the lower wall.
+        const double weight = p.epsilon * gravity, side = gravity > 0 ? 1 : -1;
+        const double at_rest = energy_of(p, {0, weight, 0, weight + side * p.b});
+        Decay decay(p, 0);
+        record(p, start, 300, 100000, {&decay});
+        REQUIRE(decay.times.tenth);
+        for (const double change : {-1e-9, 1e-9}) {
+            const State s = simulate(p, start, {*decay.times.tenth + change, 100000, {}}, {}).state;
+            const double left = (energy_of(p, s) - at_rest) / (energy_of(p, start) - at_rest);
+            CHECK((left > 0.1) == (change < 0));
+        }
+    }
+}
+
 TEST_CASE("a system at rest has no time at which half of its energy is left") {
     Parameters p = table1(0.022, Damping::equation_of_motion);
     p.G = 0;
@@ -208,6 +249,20 @@ TEST_CASE("windows of fewer than 32 cycles have no standard errors") {
     const ContactCounts counts = rhythm.finish({0, 31.5 * p.cycle()});
     CHECK(std::isnan(energy.balance({}).rms_error));
     CHECK(std::isnan(counts.z_error));
+}
+
+TEST_CASE("the smallest peak in a cycle includes the last whole cycle, however its end rounds") {
+    Parameters p = table1(0.03, Damping::equation_of_motion);
+    p.G = 0.001;
+    const State start{0, 0.02, 0, 0.02};
+    for (int cycles = 2; cycles < 40; ++cycles) {
+        CAPTURE(cycles);
+        CyclePeaks peaks({0, cycles * p.cycle()}, p.cycle()),
+            longer({0, (cycles + 0.01) * p.cycle()}, p.cycle());
+        record(p, start, cycles * p.cycle(), 100000, {&peaks});
+        record(p, start, (cycles + 0.01) * p.cycle(), 100000, {&longer});
+        CHECK(peaks.least() == doctest::Approx(longer.least()).epsilon(1e-12));
+    }
 }
 
 TEST_CASE("the smallest peak in a cycle is that of dense samples") {

@@ -294,6 +294,21 @@ TEST_CASE("a bouncing ball on a heavy oscillator has the times of the closed for
     CHECK(sticks.entries[0].start.tau == doctest::Approx(fall * (1 + 2 * 0.8 / 0.2)).epsilon(1e-7));
 }
 
+TEST_CASE("the chatter of a sliding ball between nearly elastic walls ends in sticking") {
+    Parameters p;
+    p.epsilon = 0.05, p.lambda = 0.4, p.b = 0.002, p.gravity = 0.02, p.R_plus = p.R_minus = 0.99;
+    // Limits of runs in long double that end each chatter at shorter and shorter remainders.
+    for (const auto& [friction, tau] : {std::pair(1e-4, 12.84962), std::pair(1e-5, 18.13573)}) {
+        CAPTURE(friction);
+        p.friction = friction;
+        StickRecord sticks;
+        record(p, default_state(p), 40, 20000, {&sticks});
+        REQUIRE(sticks.entries.size() == 1);
+        CHECK(sticks.entries[0].start.tau == doctest::Approx(tau).epsilon(1e-6));
+        CHECK(sticks.entries[0].tau_end == 40);
+    }
+}
+
 TEST_CASE("a rest inside the cavity has one exponent of minus infinity") {
     const Parameters p = machine(0, 0.012);
     Lyapunov lyapunov(p, {0, 1000}, {.qr = true, .eigenvalues = true});

@@ -19,8 +19,8 @@ TEST_CASE("a point of a sweep measures the motion after its transient") {
     CHECK(r.regime.type == RegimeType::III);
     CHECK(r.regime.z == 2);
     CHECK(r.verdict == Verdict::regular);
-    CHECK(r.impacts == 2000);
-    CHECK(r.sticks == 0);
+    CHECK(r.extremes.impacts == 2000);
+    CHECK(r.extremes.sticks == 0);
     CHECK(r.lambda[0] == doctest::Approx(-0.0178).epsilon(0.02));
     CHECK(r.x_max == doctest::Approx(0.00262).epsilon(0.01));
     CHECK(r.share_impacts > 0.5);
@@ -47,7 +47,7 @@ TEST_CASE("a section keeps the last points in order of time, at whole cycles too
         CHECK(few.sections.states[i].x == all.sections.states[44 + i].x);
     options.section = SectionKind::impact;
     const PointResult impacts = measure(p, default_state(p), options, {});
-    CHECK(impacts.sections.impact.size() == static_cast<std::size_t>(impacts.impacts));
+    CHECK(impacts.sections.impact.size() == static_cast<std::size_t>(impacts.extremes.impacts));
     CHECK(std::isnan(impacts.sections.impact[0].since));
 }
 
@@ -76,7 +76,7 @@ TEST_CASE("a point stops within 10000 impacts after a stop request") {
     long polls = 0;
     const PointResult r = measure(p, default_state(p), options, [&] { return ++polls > 10; });
     CHECK(r.outcome.reason == End::stopped);
-    CHECK(r.impacts < 10000);
+    CHECK(r.extremes.impacts < 10000);
 }
 
 namespace {
