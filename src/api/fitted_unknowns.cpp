@@ -113,11 +113,12 @@ std::string effect_text(const FittedEffect& e, const JointFit& fit, double omega
     const auto percent = [&](Unknown u) {
         return 100 * std::abs(e.change[static_cast<std::size_t>(u)] / fit.values[u]);
     };
-    return effect_size_text(e, fit, omega0) +
-           fmt::format(
-               ", which the model does not contain: the standard errors include the change that it "
-               "would cause, {:.2g} % of b, {:.2g} % of R at +b and {:.2g} % at -b",
-               percent(Unknown::b), percent(Unknown::R_plus), percent(Unknown::R_minus));
+    std::string text = effect_size_text(e, fit, omega0) + ", which the model does not contain";
+    if (std::isnan(fit.values[Unknown::b])) return text;  // withheld
+    return text + fmt::format(
+                      ": the standard errors include the change that it would cause, {:.2g} % of "
+                      "b, {:.2g} % of R at +b and {:.2g} % at -b",
+                      percent(Unknown::b), percent(Unknown::R_plus), percent(Unknown::R_minus));
 }
 
 }  // namespace
@@ -217,8 +218,8 @@ void add_fitted_warnings(
     for (const FittedEffect& e : fit.effects)
         if (e.effect != Effect::forcing_varies || e.size > named_variation * force_of(fit))
             warnings.push_back(effect_text(e, fit, omega0));
-    // The search fits the oscillator only where the record contradicts it.
-    if (!fit.fixed[Unknown::stiffness] || !fit.fixed[Unknown::damping])
+    if (off(Unknown::stiffness, least_of_stiffness * given[Unknown::stiffness]) ||
+        off(Unknown::damping, least_of_damping * given[Unknown::damping]))
         warnings.push_back(fmt::format(
             "the oscillator moves with omega0 = {:.5g} rad/s and zeta = {:.4g}, not with {:.5g} "
             "rad/s and {:.4g}: is a mass, a stiffness or a damping wrong?",

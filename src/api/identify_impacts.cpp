@@ -101,7 +101,8 @@ private:
 /// Reads the columns into impacts, as far as the list states them; a wall follows from the jump of
 /// x', which decreases at side 1, an acceleration from the phase.
 std::vector<IdentifiedImpact> read_impacts(
-    ImpactColumnReader& list, const Flow& flow, CancelCheck& cancel) {
+    ImpactColumnReader& list, const Parameters& p, CancelCheck& cancel) {
+    const auto flow = Flow::shared_free(p);
     std::vector<IdentifiedImpact> impacts;
     const auto take = [&impacts](
                           const std::vector<double>& column, double IdentifiedImpact::* value) {
@@ -133,8 +134,10 @@ std::vector<IdentifiedImpact> read_impacts(
             list.fail("side/" + std::to_string(k), side[k], "a side is 1 or -1");
         i.side = (side.empty() ? i.x_dot_after > i.x_dot_before : side[k] < 0) ? -1 : 1;
         if (!phase.empty())
-            i.x_ddot_before = flow.acceleration(
-                {i.x, i.x_dot_before, elementary::sin(phase[k]), elementary::cos(phase[k])});
+            i.x_ddot_before =
+                flow->acceleration(
+                    {i.x, i.x_dot_before, elementary::sin(phase[k]), elementary::cos(phase[k])}) -
+                p.epsilon * p.friction * i.side;
     }
     list.refuse_faults();
     return impacts;
@@ -155,6 +158,7 @@ void take_motion(IdentifyRequest& r, CancelCheck& cancel) {
         r.measurement.doubts.push_back(Doubt::no_forcing);
         return;
     }
+    r.measurement.listed_forcing = forcing;
     insert_missing_impacts(p, forcing, impacts, [&cancel] { cancel.step(); });
 }
 
@@ -170,7 +174,7 @@ void read_impact_list(IdentifyRequest& r, Json given, std::size_t most, CancelCh
     ImpactColumnReader list(r, given, most, cancel);
     const Parameters& p = r.system.parameters;
     std::vector<IdentifiedImpact>& impacts = r.measurement.impacts;
-    impacts = read_impacts(list, *Flow::shared_free(p), cancel);
+    impacts = read_impacts(list, p, cancel);
     given = nullptr;
     take_motion(r, cancel);
     set_flight_velocities(p, impacts);

@@ -170,6 +170,21 @@ void change_each(std::vector<double>& values, CancelCheck& cancel, const Change&
     }
 }
 
+/// Removes hum of the mains, with a note of each line, and takes its frequency.
+void take_hum(IdentifyRequest& r, double omega0, CancelCheck& cancel) {
+    std::vector<double>& mains = r.measurement.mains;
+    for (const Hum& hum :
+         remove_hum(r.measurement.record, mains, [&cancel] { cancel.step(hum_steps); })) {
+        r.notes.push_back(fmt::format(
+            "a hum of {:.3g} {} at {:.4g} Hz was removed from the {}",
+            hum.amplitude * (hum.in_displacement ? 1e6 : omega0 * omega0),
+            hum.in_displacement ? "um" : "m/s^2", hum.Omega * omega0 / (2 * std::numbers::pi),
+            hum.in_displacement ? "displacement" : "acceleration"));
+        for (double& Omega : mains)
+            if (std::abs(hum.Omega / Omega - 1) < 0.01) Omega = hum.Omega;
+    }
+}
+
 void read_record(IdentifyRequest& r, const Json& fields, Csv csv, CancelCheck& cancel) {
     std::vector<CsvColumn>& columns = csv.columns;
     const RecordColumn time = find_column(columns, fields, time_channel),
@@ -206,16 +221,7 @@ void read_record(IdentifyRequest& r, const Json& fields, Csv csv, CancelCheck& c
     change_each(record.x, cancel, [&](double v) { return v * x.factor; });
     change_each(record.x_ddot, cancel, [&](double v) { return v * a.factor / (omega0 * omega0); });
     note_flaws(record, omega0, r.notes);
-    for (const Hum& hum :
-         remove_hum(record, r.measurement.mains, [&cancel] { cancel.step(hum_steps); })) {
-        r.notes.push_back(fmt::format(
-            "a hum of {:.3g} {} at {:.4g} Hz was removed from the {}",
-            hum.amplitude * (hum.in_displacement ? 1e6 : omega0 * omega0),
-            hum.in_displacement ? "um" : "m/s^2", hum.Omega * omega0 / (2 * std::numbers::pi),
-            hum.in_displacement ? "displacement" : "acceleration"));
-        for (double& Omega : r.measurement.mains)
-            if (std::abs(hum.Omega / Omega - 1) < 0.01) Omega = hum.Omega;
-    }
+    take_hum(r, omega0, cancel);
     cancel.step(record.tau.size());
     if (!x.column)
         r.notes.push_back(

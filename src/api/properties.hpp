@@ -97,7 +97,9 @@ inline constexpr Property<EnergyBalance> balance[] = {
       "95 % intervals are 2.776 errors on both sides; null for windows of fewer than 32 cycles",
       number_or_null},
      at<&EnergyBalance::rms_error>},
-    {{"peak", "maximum of |x| in the window, m; that of an irregular motion grows with the window"},
+    {{"peak",
+      "maximum of |x| in the window, m, relative to the base if a load moves it; that of an "
+      "irregular motion grows with the window"},
      at<&EnergyBalance::peak>},
 };
 
@@ -315,8 +317,9 @@ inline constexpr Property<MeasuredPoint> point[] = {
     {{"synchronised", "fraction of the contacts that lie in synchronised stretches"},
      at<&PointResult::regime, &Regime::synchronised>},
     {{"x_max",
-      "maximum of |x| over the measured cycles, m; that of an irregular motion grows with their "
-      "number"},
+      "maximum of |x| over the measured cycles, m, relative to the base if a load moves it; that "
+      "of "
+      "an irregular motion grows with their number"},
      at<&PointResult::x_max>},
     {{"x_rms", "rms of x, m"}, at<&PointResult::x_rms>},
     {{"x_rms_standard_error",

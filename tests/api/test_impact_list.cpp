@@ -217,3 +217,34 @@ TEST_CASE("impacts of a ball with a given friction and R of the speed give the r
             a["impacts"]["y_dot_before"][i].get<double>() ==
             doctest::Approx(all["y_dot_before"][80 + i].get<double>()).epsilon(1e-9));
 }
+
+TEST_CASE(
+    "reversals and rests of a sliding ball between listed impacts are part of the exponents") {
+    for (const auto& [mu, R] : {std::pair(0.1, 0.7), std::pair(0.05, 0.5)}) {
+        CAPTURE(mu);
+        Json system = {{"m1", 2},    {"f0", 8},   {"damping_ratio", 0.01},
+                       {"m2", 0.1},  {"F", 8e-4}, {"f", 8},
+                       {"b", 0.012}, {"mu", mu},  {"R", R}};
+        Json request = system;
+        request.update({{"tau_end", 400}, {"window", {100, 400}}});
+        const Json run = simulated(read_simulate_request(request), {});
+        const Json &all = run["impacts"], &truth = run["exponents"]["qr"]["final"];
+        Json list;
+        for (std::size_t i = 0; i < all["tau"].size(); ++i)
+            if (all["tau"][i] >= 100)
+                for (const char* name :
+                     {"tau", "x", "x_dot_before", "x_dot_after", "y_dot_before", "y_dot_after",
+                      "side", "phase"})
+                    list[name].push_back(all[name][i]);
+        system["impacts"] = list;
+        const Json found = identified(read_identify_request(system))["exponents"]["qr"]["final"];
+        for (std::size_t k = 0; k < 4; ++k) {
+            CAPTURE(k);
+            CHECK(found[k].is_null() == truth[k].is_null());
+            if (!truth[k].is_null())
+                CHECK(
+                    found[k].get<double>() ==
+                    doctest::Approx(truth[k].get<double>()).epsilon(1e-6));
+        }
+    }
+}

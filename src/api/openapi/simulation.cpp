@@ -288,7 +288,7 @@ void add_parts(Json& schemas) {
          values_of(properties::energy_ratio),
          {"decay?",
           object_of({decay, {"without_absorber", object_of(decay), "the same without the ball"}}),
-          "decay of the energy; only if G = 0"}}));
+          "decay of the energy, under gravity of that above rest; only without forcing"}}));
     schemas["Regime"] = object_of(
         {{"type", regime, "I to VI, or none"},
          {"description", word, "description of the regime"},

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <numbers>
 #include <numeric>
+#include <optional>
 
 #include "core/measurement/robust.hpp"
 #include "core/motion/elementary.hpp"
@@ -90,22 +91,72 @@ constexpr std::size_t fewest_of_decay = 20;
 constexpr double least_fall = 2;
 constexpr std::size_t false_ones = 1;  // tolerated false impacts in a quarter
 
-/// Appends the transfer matrix from the previous impact to impact i; the flight must be known.
+/// The legs from the first impact of a run to the second.
+class FlightLegs : public TransferObserver {
+public:
+    explicit FlightLegs(const Parameters& p) : TransferObserver(p, {-infinity, infinity}) {}
+
+    std::optional<Impact> end;
+    std::vector<Leg> legs;
+
+private:
+    void on_transfer(const Impact& impact, const Saltation&, std::span<const Leg> passed) override {
+        if (end) return;
+        end = impact;
+        legs.assign(passed.begin(), passed.end());
+    }
+};
+
+// Distance within which a run reaches a measured impact, in tau.
+constexpr double same_impact = 0.1;
+
+/// The legs of a run of the system from its state at `leaves` to an impact; none if it leads to
+/// another one.
+std::optional<std::vector<Leg>> legs_between(
+    const IdentifiedSystem& system, const Release& leaves, double y, double y_dot,
+    const IdentifiedImpact& to) {
+    FlightLegs flight(system.own);
+    Impact first{};
+    first.tau = system.start_of(leaves.tau);
+    flight.on_impact(first);
+    Observer* const observers[] = {&flight};
+    system.run(
+        leaves.tau, {leaves.x_dot, leaves.x, y_dot, y},
+        {.tau_end = to.tau + same_impact, .max_impacts = 1}, observers);
+    if (!flight.end || flight.end->side != to.side ||
+        std::abs(system.measured_time(flight.end->tau, leaves.tau) - to.tau) > same_impact)
+        return std::nullopt;
+    return std::move(flight.legs);
+}
+
+/// Appends the transfer matrix from the previous impact to impact i; the flight must be known. With
+/// a system it is in the units of its runs, which changes no exponent.
 void append(
-    const Parameters& p, const Flow& free, const Flow& stuck, const IdentifiedImpact& before,
-    const IdentifiedImpact& i, TransferProduct& product) {
+    const Parameters& p, const Flow& free, const Flow& stuck, const IdentifiedSystem* system,
+    const IdentifiedImpact& before, const IdentifiedImpact& i, TransferProduct& product) {
+    const double faster = system ? system->faster : 1;
     Impact impact{};
     impact.side = i.side;
     impact.relative_speed_before = i.x_dot_before - i.y_dot_before;
     impact.R = p.restitution(i.side, std::abs(impact.relative_speed_before));
-    impact.x_ddot_before = i.x_ddot_before;
-    impact.y_ddot_before = p.friction * i.side;
+    impact.x_ddot_before = i.x_ddot_before / (faster * faster);
+    impact.y_ddot_before = p.friction * i.side / (faster * faster);
+    impact.relative_speed_before /= faster;
     const double duration = i.tau - before.tau,
                  sticking = before.release ? before.release->tau - before.tau : 0;
-    const Leg legs[] = {leg_of(stuck, sticking, true), leg_of(free, duration - sticking, false)};
-    product.append(
-        std::span(legs).subspan(before.release ? 0 : 1), saltation(p, impact),
-        product.end_tau() + duration);
+    std::vector<Leg> legs;
+    if (before.release) legs.push_back(leg_of(stuck, faster * sticking, true));
+    std::optional<std::vector<Leg>> flight;
+    if (system) {
+        const Release leaves =
+            before.release.value_or(Release{before.tau, before.x, before.x_dot_after});
+        flight = legs_between(
+            *system, leaves, leaves.x - before.side * p.b,
+            before.release ? leaves.x_dot : before.y_dot_after, i);
+    }
+    if (flight) legs.insert(legs.end(), flight->begin(), flight->end());
+    else legs.push_back(leg_of(free, faster * (duration - sticking), false));
+    product.append(legs, saltation(system ? system->own : p, impact), product.end_tau() + duration);
 }
 
 /// Whether the mass can have flown freely from one impact to the next: with one velocity, from wall
@@ -189,15 +240,18 @@ Continuity continuity_of(
 
 MeasuredExponents::MeasuredExponents(
     const Parameters& p, const UnknownValues& v, const IdentifiedImpacts& impacts,
-    const std::vector<KnownStretch>& stretches, const ExponentOptions& o)
+    const std::vector<KnownStretch>& stretches, const ExponentOptions& o,
+    const IdentifiedSystem* system)
     : zeta_(0.5 * v[Unknown::damping]),
       all_(p.epsilon, {.qr = true, .history = o.history}),
       longest_(
           p.epsilon,
           {.eigenvalues = o.eigenvalues, .raw_product = o.raw_product, .history = o.history}) {
     // The growth of deviations does not depend on the forcing.
-    const double k = v[Unknown::stiffness], c = v[Unknown::damping], mass = 1 + p.epsilon;
-    const Flow free(k, c, 0, p.Omega), stuck(k / mass, c / mass, 0, p.Omega);
+    const double faster = system ? system->faster : 1,
+                 k = v[Unknown::stiffness] / (faster * faster), c = v[Unknown::damping] / faster,
+                 mass = 1 + p.epsilon;
+    const Flow free(k, c, 0, p.Omega / faster), stuck(k / mass, c / mass, 0, p.Omega / faster);
     const std::vector<SlowState> states = slow_states(p, impacts);
     SlowState slow = SlowState::Zero();
     for (const KnownStretch& s : stretches) {
@@ -205,7 +259,7 @@ MeasuredExponents::MeasuredExponents(
         if (starts_.empty()) all_.start(tau);
         starts_.push_back({starts_.empty() ? tau : all_.end_tau(), tau});
         for (std::size_t i = s.first + 1; i <= s.last; ++i) {
-            append(p, free, stuck, impacts[i - 1], impacts[i], all_);
+            append(p, free, stuck, system, impacts[i - 1], impacts[i], all_);
             slow += states[i] - states[i - 1];
             slow_.push_back({all_.end_tau(), slow});
         }
@@ -216,7 +270,7 @@ MeasuredExponents::MeasuredExponents(
     if (longest == stretches.end()) return;
     longest_.start(impacts[longest->first].tau);
     for (std::size_t i = longest->first + 1; i <= longest->last; ++i)
-        append(p, free, stuck, impacts[i - 1], impacts[i], longest_);
+        append(p, free, stuck, system, impacts[i - 1], impacts[i], longest_);
 }
 
 double MeasuredExponents::moment(double clock) const {

@@ -9,8 +9,7 @@
 #include <Eigen/Core>
 #include <vector>
 
-#include "core/measurement/identified_impact.hpp"
-#include "core/measurement/measured_record.hpp"
+#include "core/measurement/hidden_contacts.hpp"
 #include "core/measurement/unknowns.hpp"
 #include "core/stability/lyapunov.hpp"
 #include "core/stability/verdict.hpp"
@@ -49,10 +48,13 @@ Continuity continuity_of(
 
 class MeasuredExponents {
 public:
-    /// `values`: stiffness and damping of the oscillator, in tau of the given omega0.
+    /// `values`: stiffness and damping of the oscillator, in tau of the given omega0. `system`: of
+    /// a sliding ball, whose reversals and rests between impacts follow from runs; null without
+    /// friction.
     MeasuredExponents(
         const Parameters& parameters, const UnknownValues& values, const IdentifiedImpacts& impacts,
-        const std::vector<KnownStretch>& stretches, const ExponentOptions& options);
+        const std::vector<KnownStretch>& stretches, const ExponentOptions& options,
+        const IdentifiedSystem* system = nullptr);
 
     /// The oscillator's own damping, per unit of tau.
     double zeta() const { return zeta_; }

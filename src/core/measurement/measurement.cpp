@@ -300,6 +300,15 @@ void withhold_values(
 constexpr int most_rounds_of_laws = 8;
 constexpr double settled_share = 0.1;
 
+/// The system of a list of impacts; none without a forcing that fits them.
+std::optional<IdentifiedSystem> listed_system(const Measurement& m, const Parameters& p) {
+    if (!m.listed_forcing) return std::nullopt;
+    UnknownValues values = given_unknowns(p);
+    values[Unknown::force_sin] = m.listed_forcing->sin;
+    values[Unknown::force_cos] = m.listed_forcing->cos;
+    return IdentifiedSystem(p, values, 0, nullptr);
+}
+
 /// The measurement with the given laws of the ball.
 MeasurementResult evaluated(const Measurement& m, IdentificationProgress& progress) {
     Parameters p = m.parameters;
@@ -334,7 +343,10 @@ MeasurementResult evaluated(const Measurement& m, IdentificationProgress& progre
     }
     progress.reach(IdentificationStage::exponents);
     Continuity continuity = continuity_of(p, found.impacts, time_gaps(m.record));
-    MeasuredExponents exponents(p, values, found.impacts, continuity.stretches, m.estimators);
+    const auto sliding = refined ? system : listed_system(m, p);
+    MeasuredExponents exponents(
+        p, values, found.impacts, continuity.stretches, m.estimators,
+        p.friction > 0 && sliding ? &*sliding : nullptr);
     const bool is_sound = doubts.empty() && !continuity.is_incomplete();
     const IdentifiedExponents judged = judged_exponents(p, exponents, found.impacts, is_sound);
     progress.look();

@@ -38,9 +38,10 @@ struct Measurement {
     MeasuredRecord record = {};             ///< empty if the impacts are given with their states
     std::vector<double> impact_times = {};  ///< known times of impacts, in tau; empty: detect them
     IdentifiedImpacts impacts = {};         ///< with complete_impacts(); replaces a record
-    std::vector<Doubt> doubts = {};         ///< known doubts about these impacts
-    double threshold = 6;                   ///< of a spike, in standard deviations of the noise
-    FixedUnknowns fixed = {};               ///< unknowns of the fit that keep their given values
+    std::optional<ListedForcing> listed_forcing = {};  ///< that of these impacts
+    std::vector<Doubt> doubts = {};                    ///< known doubts about these impacts
+    double threshold = 6;      ///< of a spike, in standard deviations of the noise
+    FixedUnknowns fixed = {};  ///< unknowns of the fit that keep their given values
     KnownForcing forcing = {};
     std::vector<double> mains = {};  ///< frequencies of the mains, like Omega
     GivenUncertainty uncertainty = {};

@@ -25,7 +25,7 @@ constexpr int alignments = 3;  // alignments of the pulses with their template a
 constexpr double most_spoiled = 0.35;
 // The record contradicts the given oscillator if a value is off by this many standard errors, and k
 // or c by more than these fractions.
-constexpr double contradiction = 5, least_of_stiffness = 3e-4, least_of_damping = 0.01;
+constexpr double contradiction = 5;
 // Plausible deviations from the given values: stiffness is known far better, damping to a factor.
 constexpr double most_of_stiffness = 0.04, most_of_damping = 2.5, slack_of_damping = 0.005;
 // Standard errors from which on the sign of a jump of x' is certain.

@@ -130,7 +130,8 @@ void add_overlooked_kinks(const ImpactSearch& s, Candidates& found) {
     const JointFit& fit = s.found.fit;
     const UnknownValues& v = fit.values;
     const IntervalFlows flows(v, false, fit.epsilon, fit.forcing.load.get());
-    const double noise = std::max(fit.x.noise, s.statistics.x.noise);
+    const double noise = std::max(fit.x.noise, s.statistics.x.noise),
+                 typical = typical_jump(s.candidates);
     for (std::size_t i = 0; i < fit.intervals.size(); ++i) {
         s.progress.look();
         const bool is_last = i + 1 == fit.intervals.size();
@@ -140,8 +141,11 @@ void add_overlooked_kinks(const ImpactSearch& s, Candidates& found) {
         const auto missed = find_kink(
             {s.record, fit.x.left, s.statistics.x.bad, noise, v[Unknown::x_delay], from, to},
             flows.of(fit.intervals[i]).parts.flow, false);
-        if (missed)
-            found.push_back({.tau = missed->tau, .jump = missed->jump / v[Unknown::x_gain]});
+        if (!missed) continue;
+        // A weaker one is none (CandidateJudge), but a reversal of the sliding or a similar effect.
+        const double jump = missed->jump / v[Unknown::x_gain];
+        if (std::abs(jump) > least_jump * typical)
+            found.push_back({.tau = missed->tau, .jump = jump});
     }
 }
 

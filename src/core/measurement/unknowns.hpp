@@ -89,6 +89,9 @@ struct FixedUnknowns : ForUnknowns<bool> {
 
 class MeasuredLoad;
 
+/// Smallest deviations from given values, relative to them, for which the record contradicts these.
+inline constexpr double least_of_stiffness = 3e-4, least_of_damping = 0.01;
+
 /// Given parameters of the forcing f sin(Omega tau + phase), and its measured load.
 struct KnownForcing {
     std::optional<double> amplitude = {};  ///< f, m

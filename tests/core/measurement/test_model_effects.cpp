@@ -97,6 +97,46 @@ TEST_CASE("a given friction of the ball is part of the model" * doctest::test_su
     }
 }
 
+TEST_CASE("reversals of a sliding ball in many flights are not taken for impacts") {
+    constexpr double omega0 = 2 * std::numbers::pi * 8, step = omega0 / 2048, from = 100, to = 600,
+                     pulse = 0.8e-3 * omega0;
+    Parameters p;
+    p.epsilon = 0.05, p.lambda = 0.4, p.G = 0.016, p.b = 0.012, p.R_plus = p.R_minus = 0.7;
+    p.friction = 0.02 * 9.80665 / (omega0 * omega0);
+    SeriesRecord series(step);
+    ImpactRecord impacts;
+    record(p, default_state(p), to, 100000, {&series, &impacts});
+    Measurement m;
+    m.parameters = p;
+    std::mt19937_64 engine(1);
+    std::normal_distribution<double> normal;
+    std::size_t k = 0;
+    for (; series.series.tau[k] < from;) ++k;
+    for (; k < series.series.tau.size(); ++k) {
+        m.record.tau.push_back(series.series.tau[k]);
+        m.record.x.push_back(series.series.x[k] + 1e-6 * normal(engine));
+        m.record.x_ddot.push_back(
+            series.series.x_ddot[k] + 0.02 / (omega0 * omega0) * normal(engine));
+    }
+    std::size_t seen = 0;
+    for (const Impact& i : impacts.entries) {
+        seen += i.tau > from;
+        const double height = (i.x_dot_after - i.x_dot_before) * std::numbers::pi / (2 * pulse);
+        for (std::size_t n = first_index(m.record, i.tau - 0.5 * pulse);
+             n < m.record.tau.size() && m.record.tau[n] < i.tau + 0.5 * pulse; ++n)
+            m.record.x_ddot[n] +=
+                height * std::cos(std::numbers::pi * (m.record.tau[n] - i.tau) / pulse);
+    }
+    const MeasurementResult r = evaluate_measurement(m);
+    CHECK(r.refined->settled);
+    CHECK(r.doubts.empty());
+    CHECK(r.refined->fit.impacts.size() == seen);
+    CHECK(std::abs(r.found.b_fitted - p.b) < 4 * r.found.b_error);
+    CHECK(std::abs(r.found.plus.R - 0.7) < 4 * r.found.plus.error);
+    CHECK(std::abs(r.found.minus.R - 0.7) < 4 * r.found.minus.error);
+    CHECK(r.judged.verdict == Verdict::regular);
+}
+
 TEST_CASE("a given R of the speed is part of the model" * doctest::test_suite("long")) {
     constexpr double slope = -0.2, fast = 4;  // per m/s, m/s
     const Experiment e = unmodelled_experiment(0.015, {.R_slope = slope});
