@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <complex>
+#include <utility>
 #include <vector>
 
 #include "core/measures/golden_section.hpp"
@@ -24,16 +25,17 @@ constexpr double bracket_tolerance = 1e-5;
 constexpr int side_points = 15, tuning_rounds = 12;
 constexpr double frequency_range = 1.6, damping_range = 12, narrowing = 0.45;
 
-// Step of the Runge-Kutta method in tau, or over the damper's frequency: peaks exact to 3e-4.
+// Step of the Runge-Kutta method in tau, or over the damper's frequency: peaks of x'' to 3e-4.
 constexpr double linear_step = 0.05;
 
 /// Motion of host and tuned mass damper under a load, in tau and m, at the end of a step.
 struct LinearState {
-    double tau, x, x_ddot;  ///< x relative to the base, which a load can move far away
-    double energy;          ///< per m1, in m^2
+    double tau, x, x_dot;  ///< relative to the base, which a load can move far away
+    double x_ddot;
+    double energy;  ///< per m1, in m^2
 };
 
-/// Calls see(LinearState) at the ends of all steps.
+/// Calls see(LinearState) at tau = 0 and at the ends of all steps.
 template <class See>
 void follow_linear_motion(
     const Host& host, const Load* load, const LinearAbsorber& t, double until, const See& see) {
@@ -57,6 +59,12 @@ void follow_linear_motion(
                      length = end - tau;
         const Polynomial force = load ? load->force(interval, tau, load_damping) : Polynomial{},
                          base = load ? load->base(interval, tau) : Polynomial{};
+        const auto state = [&](double s) {
+            return LinearState{
+                tau + s, z[0] - base.at(s), z[1] - base.rate(s), rates(z, force.at(s))[1],
+                energy_of(z)};
+        };
+        if (tau == 0) see(state(0));
         const auto steps =
             static_cast<int>(std::max(1.0, std::ceil(length * std::max(1.0, nu) / linear_step)));
         const double h = length / steps;
@@ -66,10 +74,25 @@ void follow_linear_motion(
                                   c = rates(z + 0.5 * h * b, middle),
                                   d = rates(z + h * c, force.at(k * h + h));
             z += h * ((a + 2 * b + 2 * c + d) / 6);
-            see(LinearState{tau + s, z[0] - base.at(s), rates(z, force.at(s))[1], energy_of(z)});
+            see(state(s));
         }
         tau = end;
     }
+}
+
+/// |x| at the extremum between the ends of a step, of the cubic with their values and slopes.
+double peak_between(const LinearState& a, const LinearState& b) {
+    if (!(a.x_dot * b.x_dot < 0)) return 0;
+    const double h = b.tau - a.tau, u = a.x_dot / (a.x_dot - b.x_dot), v = 1 - u;
+    return std::abs(
+        v * v * ((1 + 2 * u) * a.x + u * h * a.x_dot) +
+        u * u * ((1 + 2 * v) * b.x - v * h * b.x_dot));
+}
+
+/// Integral of x^2 over a step, of the fourth order.
+double square_between(const LinearState& a, const LinearState& b) {
+    const double h = b.tau - a.tau;
+    return 0.5 * h * (a.x * a.x + b.x * b.x) + h * h / 6 * (a.x * a.x_dot - b.x * b.x_dot);
 }
 
 }  // namespace
@@ -78,18 +101,21 @@ double linear_response(
     const Host& host, const Load* load, const LinearAbsorber& t, Objective objective,
     const Interval& measured) {
     const double omega0 = host.si.omega0(), x_dot = host.initial_velocity / omega0;
-    double most = 0, most_acceleration = 0, squares = 0, last = measured.from,
+    LinearState last{};
+    double most = 0, most_acceleration = 0, squares = 0,
            level = elementary::log(0.05 * x_dot * x_dot),
            before = elementary::log(0.5 * x_dot * x_dot), tenth = infinity;
     follow_linear_motion(host, load, t, measured.to, [&](const LinearState& at) {
-        if (at.tau < measured.from) return;
-        most = std::max(most, std::abs(at.x));
+        const LinearState from = std::exchange(last, at);
+        if (at.tau <= measured.from) return;
+        most = std::max({most, std::abs(at.x), peak_between(from, at)});
         most_acceleration = std::max(most_acceleration, std::abs(at.x_ddot));
-        squares += at.x * at.x * (at.tau - last);
+        const double part = (at.tau - std::max(from.tau, measured.from)) / (at.tau - from.tau);
+        squares += part * square_between(from, at);
         const double now = elementary::log(at.energy);
         if (tenth == infinity && now <= level)
-            tenth = last + (at.tau - last) * (before - level) / (before - now);
-        before = now, last = at.tau;
+            tenth = from.tau + (at.tau - from.tau) * (before - level) / (before - now);
+        before = now;
     });
     switch (objective) {
         case Objective::x_max:

@@ -156,7 +156,11 @@ TEST_CASE("linear responses to a load settle on those to its frequency") {
                         objective == Objective::x_acceleration_max
                             ? linear_response(host, t, objective, f)
                             : relative / (objective == Objective::x_rms ? std::sqrt(2.0) : 1))
-                        .epsilon(2e-3));
+                        // The window of an rms is no whole number of cycles.
+                        .epsilon(
+                            objective == Objective::x_rms                ? 2e-3
+                            : objective == Objective::x_acceleration_max ? 3e-4
+                                                                         : 1e-6));
             }
 }
 
