@@ -299,8 +299,8 @@ TEST_CASE("the chatter of a sliding ball between nearly elastic walls ends in st
     p.epsilon = 0.05, p.lambda = 0.4, p.b = 0.002, p.gravity = 0.02, p.R_plus = p.R_minus = 0.99;
     // Limits of runs in long double that end each chatter at shorter and shorter remainders.
     for (const auto& [friction, tau] : {std::pair(1e-4, 12.84962), std::pair(1e-5, 18.13573)}) {
-        CAPTURE(friction);
         p.friction = friction;
+        CAPTURE(p.friction);
         StickRecord sticks;
         record(p, default_state(p), 40, 20000, {&sticks});
         REQUIRE(sticks.entries.size() == 1);
