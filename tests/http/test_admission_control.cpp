@@ -325,11 +325,12 @@ TEST_CASE("background work waits for foreground work of one client for a limited
     std::thread second([&] { second_entered = admission.acquire(client) != nullptr; });
     wait_until([&] { return admission.foreground_waits(); });
     wait_until([&] { return admission.others_are_due(client); });
+    const auto released = Permit::Clock::now();
     first.reset();
     waiting.join();
     REQUIRE(background);
     CHECK(!second_entered);
-    CHECK(!admission.must_yield(background));
+    CHECK((!admission.must_yield(background) || Permit::Clock::now() - released >= time_slice));
     wait_until([&] { return admission.must_yield(background); });  // after a time slice
     background.reset();
     second.join();
@@ -346,6 +347,7 @@ TEST_CASE(
         const std::lock_guard lock(mutex);
         order += mark;
     };
+    Permit::Clock::time_point released, served;
     std::vector<std::thread> threads;
     for (int i = 0; i < 5; ++i)
         threads.emplace_back([&] {
@@ -356,12 +358,18 @@ TEST_CASE(
     wait_until([&] { return admission.others_are_due(client); });
     threads.emplace_back([&] {
         const Slot own = admission.acquire("other");
+        served = Permit::Clock::now();
         note('f');
     });
     wait_until([&] { return admission.foreground_waits(); });
+    released = Permit::Clock::now();
     held.reset();
     for (std::thread& thread : threads) thread.join();
-    CHECK(order == "bfbbbb");
+    CHECK(order.size() == 6);
+    // One, and where the machine is very busy another one for each 200 ms.
+    const auto overtaken = (served - released) / std::chrono::milliseconds(200);
+    if (overtaken == 0) CHECK(order == "bfbbbb");
+    else CHECK(static_cast<long>(order.find('f')) <= 1 + overtaken);
 }
 
 TEST_CASE("interrupted work does not lose its place in a full queue") {

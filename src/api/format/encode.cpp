@@ -310,7 +310,7 @@ std::string shape_of(const AnswerList& list) {
     return fmt::format("({},{})", list.size(), entry);
 }
 
-/// What precedes the entries in the NPY format, version 1.0, padded to a multiple of 64 bytes.
+/// Header of the NPY format, version 1.0, padded to a multiple of 64 bytes.
 std::string npy_header(const std::string& type, const AnswerList& list) {
     std::string header = fmt::format(
         "{{'descr': '{}', 'fortran_order': False, 'shape': {}, }}", type, shape_of(list));

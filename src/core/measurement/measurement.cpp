@@ -343,7 +343,8 @@ MeasurementResult evaluated(const Measurement& m, IdentificationProgress& progre
     }
     progress.reach(IdentificationStage::exponents);
     Continuity continuity = continuity_of(p, found.impacts, time_gaps(m.record));
-    const auto sliding = refined ? system : listed_system(m, p);
+    const auto listed = listed_system(m, p);
+    const auto& sliding = refined ? std::as_const(system) : listed;
     MeasuredExponents exponents(
         p, values, found.impacts, continuity.stretches, m.estimators,
         p.friction > 0 && sliding ? &*sliding : nullptr);
