@@ -16,6 +16,7 @@ RUN cd web && { npm ls --omit=dev >/dev/null 2>&1 || npm ci --omit=dev --no-audi
 COPY CMakeLists.txt ./
 COPY docs docs
 COPY src src
+COPY clients/report clients/report
 COPY packaging packaging
 # Here is no git to ask for it.
 ARG VINES_COMMIT=
