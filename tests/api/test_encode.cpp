@@ -50,7 +50,7 @@ std::string array_head(std::size_t length) {
 
 }  // namespace
 
-TEST_CASE("encoding stops when it is cancelled, in every format") {
+TEST_CASE("encoding stops when it is cancelled, in every format" * doctest::test_suite("long")) {
     for (const FormatName& name : format_names) {
         CAPTURE(name.word);
         const std::string whole = encoded(long_answer(), name.format, std::nullopt);

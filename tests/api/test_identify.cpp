@@ -98,7 +98,9 @@ TEST_CASE(
     CHECK(b["impacts"]["tau"] == a["impacts"]["tau"]);
 }
 
-TEST_CASE("laws of the ball are fitted to a record without friction: none, with their errors") {
+TEST_CASE(
+    "laws of the ball are fitted to a record without friction: none, with their errors" *
+    doctest::test_suite("long")) {
     const std::string csv = measured("fig15", 12);
     const Json a = identified(read_identify_request({{"preset", "fig15"}, {"fit", {"mu"}}}, csv)),
                &laws = a["laws"];
@@ -272,7 +274,9 @@ TEST_CASE("a record that consists of a gap is refused") {
     CHECK(contains(problem.what(), "spans 1e+08 s, of which 0.2 s have samples"));
 }
 
-TEST_CASE("a record without impacts, clipping, gaps, slow sampling and a wrong b cause warnings") {
+TEST_CASE(
+    "a record without impacts, clipping, gaps, slow sampling and a wrong b cause warnings" *
+    doctest::test_suite("long")) {
     std::string quiet = header;
     for (int k = 0; k < 5000; ++k) {
         char line[80];

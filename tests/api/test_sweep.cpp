@@ -94,7 +94,9 @@ TEST_CASE("a point has its axis values, exponents, regime, amplitude, energy and
     CHECK(Json::parse(line.dump()) == line);
 }
 
-TEST_CASE("extremes of a point are those of a simulation's samples and impacts") {
+TEST_CASE(
+    "extremes of a point are those of a simulation's samples and impacts" *
+    doctest::test_suite("long")) {
     std::string fields = platform;
     fields.replace(fields.find("0.03"), 4, "0.012");
     const Json line = run(sweep_request(

@@ -78,7 +78,9 @@ TEST_CASE("sensor errors and forcing are identified within five standard errors"
     }
 }
 
-TEST_CASE("a fixed value stays as given, and a record that contradicts it gets no verdict") {
+TEST_CASE(
+    "a fixed value stays as given, and a record that contradicts it gets no verdict" *
+    doctest::test_suite("long")) {
     const Experiment m = regular_record(0.85, 0.85, {.delay = 1e-3, .gain = 0.03});
     Measurement measurement = measurement_of(m);
     measurement.fixed[Unknown::x_gain] = true;
@@ -103,7 +105,9 @@ TEST_CASE(
     }
 }
 
-TEST_CASE("stiffness and damping keep the given values unless the record contradicts them") {
+TEST_CASE(
+    "stiffness and damping keep the given values unless the record contradicts them" *
+    doctest::test_suite("long")) {
     const TrueMotion motion = settled_motion(0.015, 0.85, 0.85, 12);
     const JointFit as_given = identified(measured(motion, {})).refined->fit;
     CHECK(as_given.fixed[Unknown::stiffness]);

@@ -64,7 +64,9 @@ TEST_CASE(
     }
 }
 
-TEST_CASE("nine of ten 90 % intervals of the slope contain the long-run exponent") {
+TEST_CASE(
+    "nine of ten 90 % intervals of the slope contain the long-run exponent" *
+    doctest::test_suite("long")) {
     constexpr int windows = 200;
     struct Case {
         double seconds, least, most, width;

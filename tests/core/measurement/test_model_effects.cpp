@@ -285,7 +285,7 @@ TEST_CASE(
     }
 }
 
-TEST_CASE("with a measured forcing zeta is fitted under modulation") {
+TEST_CASE("with a measured forcing zeta is fitted under modulation" * doctest::test_suite("long")) {
     const UnmodelledEffects effects{.amplitude_modulation = 0.03};
     Experiment e = unmodelled_experiment(0.015, effects);
     e.parameters.lambda *= 1.3;
@@ -308,7 +308,7 @@ TEST_CASE("a channel of a clean sine is no load") {
             CHECK(!load_of(unmodelled_channel(e, {}, kind, noise)));
 }
 
-TEST_CASE("hum of the mains is removed before impacts are searched") {
+TEST_CASE("hum of the mains is removed before impacts are searched" * doctest::test_suite("long")) {
     for (const double hertz : {50.0, 49.97, 60.02}) {
         const Experiment e = unmodelled_experiment(0.015, {.hum = 30e-6, .hum_hertz = hertz});
         Measurement m = measurement_of(e);
@@ -335,7 +335,9 @@ TEST_CASE("a record without hum is not changed") {
     CHECK(r.x == e.record.x);
 }
 
-TEST_CASE("the uncertainty of the given m2 is part of the errors of b and R") {
+TEST_CASE(
+    "the uncertainty of the given m2 is part of the errors of b and R" *
+    doctest::test_suite("long")) {
     const Experiment e = unmodelled_experiment(0.009, {.given_m2 = 0.05});
     const MeasurementResult r = identified_with_mains(e, 0.05), exact = identified_with_mains(e);
     CHECK(exact.refined->fit.errors[Unknown::b] < 0.01 * e.true_parameters.b);

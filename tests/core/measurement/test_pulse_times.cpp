@@ -32,7 +32,9 @@ TEST_CASE(
     CHECK(last.x_dot_before == doctest::Approx(e.impacts.back().x_dot_before).epsilon(0.02));
 }
 
-TEST_CASE("each impact has a standard error of its time that covers the truth") {
+TEST_CASE(
+    "each impact has a standard error of its time that covers the truth" *
+    doctest::test_suite("long")) {
     struct Case {
         double rate, pulse, most_us;
     };

@@ -60,7 +60,8 @@ TEST_CASE("lambda1 over 100 windows of 1700 is the known value of each response"
     }
 }
 
-TEST_CASE("the sum rule holds to 1e-10 in every window without sticking") {
+TEST_CASE(
+    "the sum rule holds to 1e-10 in every window without sticking" * doctest::test_suite("long")) {
     int free_of_sticks = 0;
     for (double b : {0.040, 0.034, 0.028, 0.025, 0.022, 0.018, 0.0165, 0.015, 0.008, 0.0046, 0.003})
         for (Damping damping : {Damping::closed_form, Damping::equation_of_motion}) {
