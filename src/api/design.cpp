@@ -37,7 +37,9 @@ Json described(const DesignRequest& r, const BandMaximum& m) {
 
 Json described(const DesignRequest& r, const LinearAbsorber& t, const BandMaximum& m) {
     Json j = described(r, m);
-    j.update({{"frequency_ratio", t.frequency_ratio}, {"damping_ratio", t.damping_ratio}});
+    j.update(
+        {{"frequency_ratio", finite_or_null(t.frequency_ratio)},
+         {"damping_ratio", finite_or_null(t.damping_ratio)}});
     return j;
 }
 
@@ -63,7 +65,7 @@ std::string recommendation_of(const DesignRequest& r, const Design& d) {
         "A cavity with b = {:.3g} mm and R = {:.2g} for a ball of {:.3g} g keeps {} at {} {}",
         1000 * d.best.b, d.best.R, 1000 * d.best.m2, r.objective, quantity_text(r, value),
         r.excitation->where);
-    if (r.plan.objective == Objective::impact_speed_max) return text + ".";
+    if (std::isnan(damper)) return text + ".";  // an objective of impacts, or a stopped search
     text += fmt::format(
         "; without absorber it is {}, with a tuned mass damper of the same mass (frequency ratio "
         "{:.3g}, damping ratio {:.2g}) {}",

@@ -25,7 +25,7 @@ struct DesignRequest {
 };
 
 /// Problem 422 naming every invalid field.
-DesignRequest read_design_request(const Json& object);
+DesignRequest read_design_request(const Json& object, const std::function<bool()>& gives_up = {});
 /// The name of a value with a tolerance: of an amplitude, that of the load's field.
 const char* name_in(const DesignRequest& request, Toleranced what);
 

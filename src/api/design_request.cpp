@@ -6,6 +6,7 @@
 #include <numeric>
 #include <set>
 
+#include "api/cancellation.hpp"
 #include "api/schema/enum_names.hpp"
 
 namespace vines::api {
@@ -201,13 +202,28 @@ void read_tolerances(DesignRequest& r, const Json& given, std::vector<FieldError
     }
 }
 
+/// The largest x without absorber, m. Throws Cancelled.
+double largest_without(const DesignPlan& plan, const std::function<bool()>& gives_up) {
+    struct Control : RunControl {
+        explicit Control(const std::function<bool()>& given) : gives_up(given) {}
+        bool stop_or_yield() override { return gives_up && gives_up(); }
+        const std::function<bool()>& gives_up;
+    } control(gives_up);
+    const LinearResponse linear = linear_response_of(plan, Objective::x_max, control);
+    try {
+        return band_maximum([&](double f) { return linear({}, f); }, plan.f).value;
+    } catch (const Stopped&) {
+        throw Cancelled();
+    }
+}
+
 }  // namespace
 
 const char* name_in(const DesignRequest& r, Toleranced what) {
     return what == Toleranced::amplitude ? r.excitation->amplitude : enum_name(what);
 }
 
-DesignRequest read_design_request(const Json& object) {
+DesignRequest read_design_request(const Json& object, const std::function<bool()>& gives_up) {
     const Json given = with_lists(object);
     DesignRequest r;
     r.given = object;
@@ -241,8 +257,7 @@ DesignRequest read_design_request(const Json& object) {
     plan.cycles = designed(given, "cycles");
     if (given.contains("b")) plan.b = interval_of(given, "b", b_range, errors);
     else {
-        const LinearResponse linear = linear_response_of(plan, Objective::x_max);
-        const double most = band_maximum([&](double f) { return linear({}, f); }, plan.f).value;
+        const double most = largest_without(plan, gives_up);
         if (!(most > 0)) refuse(harmonic ? "/base" : "/forcing", "nothing moves the host");
         plan.b = {least_b_of_amplitude * most, most_b_of_amplitude * most};
     }

@@ -104,8 +104,10 @@ inline constexpr Property<EnergyBalance> balance[] = {
 };
 
 inline constexpr Property<Unattached> unattached[] = {
-    {{"rms", "rms of x, m"}, at<&Unattached::rms>},
-    {{"peak", "maximum of |x| in the window, m"}, at<&Unattached::peak>},
+    {{"rms", "rms of x, m; null under a load if the time limit ended it", number_or_null},
+     at<&Unattached::rms>},
+    {{"peak", "maximum of |x| in the window, m; null like rms", number_or_null},
+     at<&Unattached::peak>},
     {{"amplitude", "steady amplitude, m; null if undamped at resonance", number_or_null},
      at<&Unattached::amplitude>},
 };

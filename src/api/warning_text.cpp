@@ -107,7 +107,10 @@ struct Sentence {
     std::string operator()(const PerturbedRunCut& w) const {
         return fmt::format(
             "the perturbed run ended at tau = {:.6g}, before the run itself: {}", w.tau,
-            w.stopped ? "it was stopped from outside" : "by max_impacts");
+            w.stopped ? "it was stopped from outside"
+                      : fmt::format(
+                            "by max_impacts, or the {} impacts that are compared at most",
+                            most_compared / 2));
     }
     std::string operator()(const NoDistanceSlope& w) const {
         return fmt::format(

@@ -12,16 +12,13 @@ constexpr auto give_up_check = std::chrono::milliseconds(50);
 // Grace periods at once per slot: they share its core.
 constexpr int graces_per_slot = 4;
 
-// Work that waits after a time slice, per slot: it holds memory.
-constexpr int interrupted_per_slot = 8;
-
 // Time after which background work no longer waits for foreground work.
 constexpr auto patience = std::chrono::milliseconds(200);
 
-// Bodies up to this size need no permit. Larger ones run together up to `bodies_at_once` bytes, or
-// one alone. While they are read and computed they take up to fifteen times their size, one of the
-// largest up to 340 MB. Bytes.
-constexpr std::size_t immediate_body = 1 << 20, bodies_at_once = 8 << 20;
+// Bodies up to this size need no permit. Larger ones run together up to `bodies_at_once` bytes; of
+// those that are larger still one at a time, beside them. While they are read and computed they
+// take up to fifteen times their size, one of the largest up to 340 MB. Bytes.
+constexpr std::size_t immediate_body = 1 << 20, bodies_at_once = 4 << 20;
 
 // Larger bodies that wait, and their bytes; each occupies a worker.
 constexpr std::size_t most_waiting_bodies = 32, most_waiting_bytes = 256 << 20;
@@ -54,9 +51,11 @@ void AdmissionControl::assign() {
     }
     foreground_waits_ = !foreground_.empty();
     background_waits_ = !background_.empty();
-    while (!bodies_.empty() &&
-           (bodies_in_work_ == 0 || bodies_in_work_ + bodies_.front()->bytes <= bodies_at_once))
-        bodies_in_work_ += grant_next(bodies_).bytes;
+    for (Bodies* const bodies : {&large_bodies_, &lesser_bodies_})
+        while (!bodies->waiting.empty() &&
+               (bodies->in_work == 0 ||
+                bodies->in_work + bodies->waiting.front()->bytes <= bodies_at_once))
+            bodies->in_work += grant_next(bodies->waiting).bytes;
 }
 
 /// Ends a wait; returns whether it was granted.
@@ -137,9 +136,8 @@ AdmissionControl::Slot AdmissionControl::resume(
 bool AdmissionControl::others_are_due(const std::string& client) const {
     if (!foreground_waits_ && !background_waits_) return false;
     const std::lock_guard lock(mutex_);
-    if (interrupted_ >= interrupted_per_slot * limits_.running) return false;
-    return foreground_.has([&client](const std::string& other) { return other != client; }) ||
-           may_overtake();
+    const auto is_other = [&client](const std::string& other) { return other != client; };
+    return (foreground_.has(is_other) || may_overtake()) && resident_bytes() < limits_.memory;
 }
 
 AdmissionControl::Slot AdmissionControl::acquire_background(
@@ -169,12 +167,14 @@ void AdmissionControl::release(bool is_grace) {
     }
 }
 
+/// True if not all sweeps but one are this client's.
+bool AdmissionControl::may_sweep(const std::string& client) const {
+    return limits_.sweeps == 1 || std::ranges::count(sweeps_, client) < limits_.sweeps - 1;
+}
+
 AdmissionControl::SweepSlot AdmissionControl::acquire_sweep(const std::string& client) {
     std::unique_lock lock(mutex_);
-    const auto running = static_cast<int>(sweeps_.size()),
-               own = static_cast<int>(std::ranges::count(sweeps_, client));
-    if (running >= limits_.sweeps || (limits_.sweeps > 1 && own >= limits_.sweeps - 1) ||
-        sweeps_stopped_)
+    if (static_cast<int>(sweeps_.size()) >= limits_.sweeps || !may_sweep(client) || sweeps_stopped_)
         return nullptr;
     const auto place = sweeps_.insert(sweeps_.end(), client);
     lock.unlock();
@@ -184,26 +184,33 @@ AdmissionControl::SweepSlot AdmissionControl::acquire_sweep(const std::string& c
             }};
 }
 
-void AdmissionControl::pass_on(const SweepSlot& slot, const std::string& client) {
+bool AdmissionControl::pass_on(const SweepSlot& slot, const std::vector<std::string>& clients) {
     const std::lock_guard lock(mutex_);
-    *slot = client;
+    const auto heir =
+        std::ranges::find_if(clients, [this](const auto& client) { return may_sweep(client); });
+    if (heir == clients.end()) return false;
+    *slot = *heir;
+    return true;
 }
 
 bool AdmissionControl::sweeps_left() const { return load().sweeps < limits_.sweeps; }
 
-/// False if a body finds no space in the queue, even instead of the last one.
-bool AdmissionControl::make_space(const std::string& client, std::size_t bytes) {
+AdmissionControl::Bodies& AdmissionControl::bodies_like(std::size_t bytes) {
+    return bytes > bodies_at_once ? large_bodies_ : lesser_bodies_;
+}
+
+/// False if a body finds no space in its queue, even instead of the last one.
+bool AdmissionControl::make_space(Queue& queue, const std::string& client, std::size_t bytes) {
     std::size_t waiting = 0;
-    bodies_.for_each([&waiting](const Waiter* body) { waiting += body->bytes; });
+    queue.for_each([&waiting](const Waiter* body) { waiting += body->bytes; });
     const auto fits = [bytes](std::size_t bodies, std::size_t others) {
         return bodies == 0 ||
                (bodies < most_waiting_bodies && others + bytes <= most_waiting_bytes);
     };
-    if (fits(bodies_.size(), waiting)) return true;
-    if (!bodies_.precedes_last(client) ||
-        !fits(bodies_.size() - 1, waiting - bodies_.back()->bytes))
+    if (fits(queue.size(), waiting)) return true;
+    if (!queue.precedes_last(client) || !fits(queue.size() - 1, waiting - queue.back()->bytes))
         return false;
-    displace_last(bodies_);
+    displace_last(queue);
     return true;
 }
 
@@ -211,15 +218,16 @@ AdmissionControl::BodyPermit AdmissionControl::acquire_body(
     const std::string& client, std::size_t bytes, const std::function<bool()>& gives_up) {
     if (bytes <= immediate_body) return {this, [](void*) {}};
     std::unique_lock lock(mutex_);
-    if (!make_space(client, bytes)) return nullptr;
+    Bodies& bodies = bodies_like(bytes);
+    if (!make_space(bodies.waiting, client, bytes)) return nullptr;
     Waiter body{.bytes = bytes};
-    bodies_.push(client, &body);
-    if (!wait(lock, bodies_, body, gives_up)) return nullptr;
+    bodies.waiting.push(client, &body);
+    if (!wait(lock, bodies.waiting, body, gives_up)) return nullptr;
     lock.unlock();
-    return {this, [this, bytes](void*) {
+    return {this, [this, &bodies, bytes](void*) {
                 trim_memory();
                 const std::lock_guard ending(mutex_);
-                bodies_in_work_ -= bytes;
+                bodies.in_work -= bytes;
                 assign();
             }};
 }

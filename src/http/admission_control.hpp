@@ -19,6 +19,7 @@
 #include <list>
 #include <mutex>
 #include <stop_token>
+#include <vector>
 
 #include "http/fair_queue.hpp"
 #include "program/process.hpp"
@@ -29,6 +30,8 @@ struct AdmissionLimits {
     int running = cores();
     int waiting = 64;  ///< foreground requests in the queue, in addition to the running ones
     int sweeps = 4;    ///< sweeps at once; they share the slots that requests leave free
+    /// Memory of the process from which on work is not interrupted, since it holds memory: bytes.
+    std::size_t memory = 512 << 20;
 };
 
 struct AdmissionLoad {
@@ -88,14 +91,15 @@ public:
     /// or sweeps are stopped.
     using SweepSlot = std::shared_ptr<std::string>;  // its client
     SweepSlot acquire_sweep(const std::string& client);
-    /// From now on the sweep counts as this client's.
-    void pass_on(const SweepSlot& slot, const std::string& client);
+    /// From now on the sweep counts as the first of these clients that may have one more; false if
+    /// none may.
+    bool pass_on(const SweepSlot& slot, const std::vector<std::string>& clients);
     bool sweeps_left() const;  ///< by the limit of all clients
 
-    /// The right to read a large body and to compute with it. At most one, or several that are
-    /// small together, have it at once, since these take many times their size; others wait. Null
-    /// if too many wait whose turn is earlier, or gives_up() returned true; it is polled every
-    /// 50 ms. Smaller bodies have it at once.
+    /// The right to read a large body and to compute with it. At most one of the largest, and
+    /// several that are small together, have it at once, since these take many times their size;
+    /// others wait. Null if too many wait whose turn is earlier, or gives_up() returned true; it is
+    /// polled every 50 ms. Smaller bodies have it at once.
     using BodyPermit = std::shared_ptr<void>;
     BodyPermit acquire_body(
         const std::string& client, std::size_t bytes, const std::function<bool()>& gives_up);
@@ -125,12 +129,19 @@ private:
 
     bool is_full() const;
     bool may_overtake() const;
+    bool may_sweep(const std::string& client) const;
     void assign();
     bool end_wait(Queue& queue, Waiter& waiter);
     static bool any(const Waiter*) { return true; }
     static void displace_last(Queue& queue, bool (*may)(const Waiter*) = any);
     bool wait(Lock& lock, Queue& queue, Waiter& waiter, const std::function<bool()>& gives_up);
-    bool make_space(const std::string& client, std::size_t bytes);
+    /// Bodies that wait, and the bytes of those at work.
+    struct Bodies {
+        Queue waiting = {};
+        std::size_t in_work = 0;
+    };
+    Bodies& bodies_like(std::size_t bytes);
+    static bool make_space(Queue& queue, const std::string& client, std::size_t bytes);
 
     const AdmissionLimits limits_;
     mutable std::mutex mutex_;
@@ -139,8 +150,7 @@ private:
     Clock::time_point next_overtaking_ = {};
     std::list<std::string> sweeps_;  // their clients
     Queue foreground_, background_;
-    Queue bodies_;
-    std::size_t bodies_in_work_ = 0;  // bytes
+    Bodies large_bodies_, lesser_bodies_;
     // Written under the mutex; running work reads them without it.
     std::atomic<bool> foreground_waits_ = false, background_waits_ = false;
     std::atomic<bool> sweeps_stopped_ = false, all_stopped_ = false;

@@ -90,8 +90,8 @@ public:
             if (!permit_ || request_.left()) throw_without_permit();
             throw Problem(
                 413, fmt::format(
-                         "the server's time limit of {} s for one request was over before all of "
-                         "the body was read: send a smaller one",
+                         "the server's time limit of {} s for one request was over before it was "
+                         "read: send a smaller one",
                          service_.options.deadline));
         }
     }
@@ -285,12 +285,12 @@ Response stream_answer(api::Answer answer, const Request& request, AdmissionCont
         .compressible = true};
 }
 
-/// The request that read(json) makes of the body.
+/// The request that read(json, gives_up) makes of the body.
 template <class Read>
 auto read_body(const Request& r, const Service& service, Stopwatch& watch, const Read& read) {
     Computing computing(r, service, watch);
-    auto request =
-        computing.read([&](const api::ReadLimits& limits) { return read(body_of(r, limits)); });
+    auto request = computing.read(
+        [&](const api::ReadLimits& limits) { return read(body_of(r, limits), limits.gives_up); });
     computing.lap("parse");
     return request;
 }
@@ -330,15 +330,15 @@ Response answer(Request& r, const Service& service, Stopwatch& watch) {
         .body = std::move(bytes),
         .tag = std::move(tag),
         .headers = {varies}};
-    // Not interrupted: it holds the whole text.
-    if (!compress(response, r, r.left)) throw_client_left();
+    const auto gives_up = [&] { return r.left() || !computing.renew(); };
+    if (!compress(response, r, gives_up)) computing.throw_without_permit();
     computing.lap("encode");
     return response;
 }
 
 Response sweep(Request& r, const Service& service, Stopwatch& watch) {
     std::optional<api::Format> format;
-    api::SweepRequest request = read_body(r, service, watch, [&](const Json& body) {
+    api::SweepRequest request = read_body(r, service, watch, [&](const Json& body, const auto&) {
         format = api::format_in(body, api::sweep_format_names);
         const auto read =
             r.head.path() == "/v1/basins" ? api::read_basins_request : api::read_sweep_request;
@@ -351,9 +351,10 @@ Response sweep(Request& r, const Service& service, Stopwatch& watch) {
 }
 
 Response continuation(Request& r, const Service& service, Stopwatch& watch) {
-    return stream_lines(
-        api::continuation_lines(read_body(r, service, watch, api::read_continue_request)), r,
-        service);
+    const auto read = [](const Json& body, const auto&) {
+        return api::read_continue_request(body);
+    };
+    return stream_lines(api::continuation_lines(read_body(r, service, watch, read)), r, service);
 }
 
 Response design(Request& r, const Service& service, Stopwatch& watch) {

@@ -80,8 +80,11 @@ Connection::Progress Connection::read_request() {
     if (!request_) return Progress::waits;
     const auto is_whole = [this] { return request_->refused || bytes_.size() >= body_size(); };
     // Large bodies only: the number of connections bounds the small ones.
-    if (!is_whole() && body_size() > small_body && memory_.is_full_for(client()))
-        request_->refused = memory_refusal();
+    if (!is_whole() && body_size() > small_body) {
+        const std::size_t held = bytes_.capacity();
+        if (memory_.is_full_for(client(), std::max(body_size(), held) - held))
+            request_->refused = memory_refusal();
+    }
     return is_whole() ? Progress::complete : Progress::waits;
 }
 

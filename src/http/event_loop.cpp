@@ -22,6 +22,9 @@ constexpr int next_request_wait = 1;
 constexpr int max_answers_in_row = 16;
 constexpr auto longest_turn = 1ms;
 
+// Time for turns before new connections and other clients are looked for.
+constexpr auto round_time = 5ms;
+
 // Time for which a resource counts as scarce after a request was refused for lack of it: longer
 // than a client that reads slowly may pause then, and than a refused one waits (Retry-After: 1).
 constexpr auto scarce_time = 4s;
@@ -101,7 +104,6 @@ void EventLoop::wait() {
     const int n = ::epoll_wait(
         poll_.number(), events.data(), events.size(),
         ready_.empty() ? static_cast<int>((stopping_ ? 20ms : expiry_interval).count()) : 0);
-    std::set<int> due = std::exchange(ready_, {});  // each has one turn
     for (int i = 0; i < n; ++i) {
         const epoll_event& event = events[static_cast<std::size_t>(i)];
         const int socket = event.data.fd;
@@ -110,9 +112,20 @@ void EventLoop::wait() {
             std::uint64_t count = 0;
             static_cast<void>(!::read(wake_.number(), &count, sizeof count));
         } else if (event.events & (EPOLLERR | EPOLLHUP)) handle(socket, true);
-        else due.insert(socket);
+        else queue(socket);
     }
-    for (const int socket : due) handle(socket);
+    const Clock::time_point until = Clock::now() + round_time;
+    while (const std::optional<int> socket = ready_.pop()) {
+        queued_.erase(*socket);
+        handle(*socket);
+        if (Clock::now() > until) break;
+    }
+}
+
+/// Lets a connection take its turn among those of its owner; the owners take turns.
+void EventLoop::queue(int socket) {
+    const Owned& connection = connections_[static_cast<std::size_t>(socket)];
+    if (connection && queued_.insert(socket).second) ready_.push(connection->owner(), socket);
 }
 
 void EventLoop::change_events(int operation, int socket, std::uint32_t events) const {
@@ -234,7 +247,7 @@ void EventLoop::read(Connection& connection) {
         }
         if (!connection.is_answered_on_loop()) return hand_over(release(connection.socket()));
         if (n >= max_answers_in_row || Clock::now() - began > longest_turn) {
-            ready_.insert(connection.socket());
+            queue(connection.socket());
             return;
         }
         if (!answer_here(connection)) return;
@@ -267,7 +280,7 @@ bool EventLoop::answer_here(Connection& connection) {
 void EventLoop::deliver(Connection& connection) {
     connection.deliver(max_sent);
     if (connection.is_delivering()) {
-        if (connection.outbox().can_send_more()) ready_.insert(connection.socket());
+        if (connection.outbox().can_send_more()) queue(connection.socket());
         return;
     }
     --delivering_;

@@ -7,6 +7,7 @@
 #include <set>
 
 #include "http/connection.hpp"
+#include "http/fair_queue.hpp"
 #include "http/metrics.hpp"
 #include "http/worker_pool.hpp"
 
@@ -49,6 +50,7 @@ private:
     using Clock = Connection::Clock;
 
     void wait();
+    void queue(int socket);
     void accept(int most);
     Connection* eviction_candidate(const std::string& owner = {}) const;
     void change_events(int operation, int socket, std::uint32_t events) const;
@@ -81,7 +83,8 @@ private:
     MemoryBudget memory_;
     std::vector<Owned> connections_;           // indexed by socket; used by run() only
     std::map<std::string, std::size_t> open_;  // connections by client, also those with workers
-    std::set<int> ready_;                      // sockets with more to read or to send
+    FairQueue<int> ready_;                     // sockets with more to read or to send, by owner
+    std::set<int> queued_;                     // those in ready_
     std::atomic<std::size_t> count_ = 0;       // number of connections_
     std::atomic<std::size_t> delivering_ = 0;  // those of them that take an answer
     bool is_memory_to_return_ = false;

@@ -2,12 +2,15 @@
 // keeps.
 #pragma once
 
+#include <unistd.h>
+
 #include <cstdlib>  // __GLIBC__
 
 #include <algorithm>
 #include <atomic>
 #include <chrono>
 #include <cstddef>
+#include <fstream>
 #include <map>
 #include <mutex>
 #include <string>
@@ -27,12 +30,14 @@ public:
     explicit MemoryBudget(std::size_t limit) : limit_(limit) {}
     /// True if nothing large should be accepted.
     bool is_full() const { return held_ >= limit_; }
-    /// True if nothing large should be accepted of a client: also if it holds more than is left.
-    /// One client so has half of the budget, a second one a quarter, and so on.
-    bool is_full_for(const std::string& client) const {
+    /// True if `more` bytes should not be accepted of a client: also if it would then hold more
+    /// than is left. One client so has half of the budget, a second one a quarter, and so on; but
+    /// more than a quarter alone, as long as it is not full.
+    bool is_full_for(const std::string& client, std::size_t more) const {
         const std::lock_guard lock(mutex_);
         const auto own = clients_.find(client);
-        const bool full = is_full() || (own != clients_.end() && own->second >= limit_ - held_);
+        const std::size_t held = own == clients_.end() ? 0 : own->second;
+        const bool full = is_full() || held + std::min(more, limit_ / 4) >= limit_ - held_;
         if (full) last_full_ = Clock::now();
         return full;
     }
@@ -84,6 +89,14 @@ inline void configure_malloc([[maybe_unused]] int computing) {
     mallopt(M_TRIM_THRESHOLD, 8 << 20);
     mallopt(M_ARENA_MAX, computing);
 #endif
+}
+
+/// Memory of this process; 0 where the system does not tell. Bytes.
+inline std::size_t resident_bytes() {
+    std::ifstream status("/proc/self/statm");
+    std::size_t all = 0, resident = 0;
+    status >> all >> resident;
+    return resident * static_cast<std::size_t>(::sysconf(_SC_PAGESIZE));
 }
 
 /// Returns free memory to the system, after large requests and answers.

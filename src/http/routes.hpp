@@ -16,7 +16,7 @@ struct RouteOptions {
     /// A JSON answer that lists more impacts is streamed; the columns of impacts are then generated
     /// while it is sent.
     std::size_t most_kept_impacts = api::most_kept_impacts;
-    int most_followers = 32;  ///< at once, see RunningStreams
+    std::size_t most_followers = 64;  ///< at once, see RunningStreams
     PageOptions page = {};
 };
 
@@ -26,8 +26,8 @@ class LineComputation;  // of a stream (streams.cpp)
 struct RunningStreams {
     std::mutex mutex;
     std::map<std::string, std::weak_ptr<LineComputation>> streams;
-    /// Requests that get the lines of another one's computation; each takes a thread.
-    std::atomic<int> followers = 0;
+    /// Clients of requests that get the lines of another one's computation; each takes a thread.
+    std::multiset<std::string> followers;
 };
 
 struct Service {

@@ -190,6 +190,7 @@ int wait_for_stop(ApiKeys* keys) {
 
 int serve(ServeOptions options) {
     configure_malloc(options.compute.running);
+    options.compute.memory = options.server.limits.held_bytes;
     AdmissionControl admission(options.compute);
     Metrics metrics(admission);
     std::optional<Server> server;
@@ -198,7 +199,8 @@ int serve(ServeOptions options) {
         // Read before signals are blocked: a disk can be slow and a folder large.
         if (!options.key_file.empty()) keys = std::make_shared<ApiKeys>(options.key_file);
         options.server.access.keys = keys;
-        options.routes.most_followers = std::max(1, options.server.limits.workers / 4);
+        options.routes.most_followers =
+            static_cast<std::size_t>(std::max(1, options.server.limits.workers / 2));
         std::vector<Route> routes = make_routes(options.routes, admission, metrics);
         if (keys) std::signal(SIGHUP, SIG_DFL);  // it reloads them, also under nohup
         block_end_signals();

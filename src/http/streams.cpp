@@ -148,7 +148,8 @@ private:
     }
     bool is_late(Clock::time_point now) const { return now - started_ > deadline_; }
     bool stops(Clock::time_point now) const {
-        return stop_.stop_requested() || admission_.sweeps_stopped() || is_late(now);
+        return stop_.stop_requested() || admission_.sweeps_stopped() || is_late(now) ||
+               is_disowned_;
     }
 
     /// The client for which it counts as a sweep: the first one, then one of those that remain.
@@ -164,7 +165,7 @@ private:
         const std::lock_guard lock(clients_mutex_);
         clients_.erase(std::ranges::find(clients_, client));
         if (!clients_.empty() && std::ranges::count(clients_, *sweep_slot_) == 0)
-            admission_.pass_on(sweep_slot_, clients_.front());
+            is_disowned_ = !admission_.pass_on(sweep_slot_, clients_);
     }
 
     void start() {
@@ -222,11 +223,14 @@ private:
         if (end == SweepEnd::complete || !stream_->remedy()) return last;
         const bool failed = end == SweepEnd::failed, late = end == SweepEnd::deadline;
         const std::string detail =
-            failed ? "the server failed; the reason is in its log"
-                   : fmt::format(
-                         "the {}; {}",
-                         late ? "time limit of one sweep is reached" : "server is stopping",
-                         stream_->remedy());
+            failed
+                ? "the server failed; the reason is in its log"
+                : fmt::format(
+                      "the {}; {}",
+                      late           ? "time limit of one sweep is reached"
+                      : is_disowned_ ? "client that began this sweep has left, and you have others"
+                                     : "server is stopping",
+                      stream_->remedy());
         return last + api::json_line(
                           {{"type", "error"},
                            {"status", failed ? 500 : 503},
@@ -244,6 +248,7 @@ private:
     mutable std::mutex clients_mutex_;
     std::vector<std::string> clients_;  // to which it sends
     std::atomic<bool> is_cut_off_ = false;
+    std::atomic<bool> is_disowned_ = false;  // its client left, and the others have too many
     LineQueue lines_;
     std::stop_source stop_;
     std::once_flag is_started_;
@@ -275,6 +280,7 @@ Response sweep_refusal(const Service& service, bool is_begun) {
 Response stream_lines(
     std::shared_ptr<api::LineStream> stream, const Request& asked, const Service& service,
     bool is_shared) {
+    std::shared_ptr<void> following;  // ends without the lock, which it takes
     const std::lock_guard lock(service.running->mutex);
     auto& streams = service.running->streams;
     std::erase_if(streams, [](const auto& entry) { return entry.second.expired(); });
@@ -282,12 +288,16 @@ Response stream_lines(
     // The body of a large sweep is not copied.
     auto& running = is_shared ? streams[std::string(asked.head.path()) + asked.body] : own;
     auto lines = running.lock();
-    std::shared_ptr<void> following;
     if (lines && !lines->is_cut_off()) {
-        if (service.running->followers >= service.options.most_followers)
-            return sweep_refusal(service, true);
-        ++service.running->followers;
-        following = {nullptr, [all = service.running](void*) { --all->followers; }};
+        // One client has at most half of the places, a second one a quarter, and so on.
+        auto& followers = service.running->followers;
+        const std::string client = asked.sender.client();
+        const std::size_t left = service.options.most_followers - followers.size();
+        if (followers.count(client) >= left) return sweep_refusal(service, true);
+        following = {nullptr, [all = service.running, at = followers.insert(client)](void*) {
+                         const std::lock_guard ending(all->mutex);
+                         all->followers.erase(at);
+                     }};
     } else {
         auto slot = service.admission.acquire_sweep(asked.sender.client());
         if (!slot) return sweep_refusal(service, false);

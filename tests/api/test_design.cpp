@@ -85,7 +85,11 @@ TEST_CASE("under a load a design has neither frequency nor amplitude") {
             problem_of([&] { read_design_request(both); }).errors.front().pointer ==
             std::string("/") + harmonic);
     }
-    request["forcing"]["acceleration_m_s2"] = 0;
+    // Without b the largest x without absorber is computed while the request is read.
+    request["forcing"] = {{"kind", "harmonics"}, {"f", {8}}, {"F", {1e-3}}};
+    request["cycles"] = 100000;
+    CHECK_THROWS_AS(read_design_request(request, [] { return true; }), Cancelled);
+    request["forcing"] = {{"kind", "half_sine"}, {"duration_s", 0.03}, {"acceleration_m_s2", 0}};
     CHECK(problem_of([&] { read_design_request(request); }).errors.front().pointer == "/forcing");
     request["forcing"]["duration_s"] = -1;
     CHECK(

@@ -4,6 +4,7 @@
 
 #include <atomic>
 #include <mutex>
+#include <optional>
 #include <string>
 #include <thread>
 #include <vector>
@@ -480,4 +481,39 @@ TEST_CASE("one client cannot have all sweeps") {
     CHECK(admission.acquire_sweep("modest"));
     slots.pop_back();
     CHECK(admission.acquire_sweep("greedy"));
+}
+
+TEST_CASE("a sweep passes to a client that may have one more, or ends") {
+    AdmissionControl admission({.running = 1, .waiting = 1, .sweeps = 3});
+    const auto first = admission.acquire_sweep("greedy"),
+               second = admission.acquire_sweep("greedy"),
+               third = admission.acquire_sweep("modest");
+    CHECK(!admission.pass_on(third, {"greedy"}));
+    CHECK(admission.pass_on(third, {"greedy", "other"}));
+    CHECK(*third == "other");
+}
+
+TEST_CASE("work is not interrupted while the process uses all of its memory") {
+    AdmissionControl admission({.running = 1, .memory = 0});
+    std::optional<Permit> run(std::in_place, admission, client, std::function<bool()>(), false);
+    std::atomic<bool> served = false;
+    std::thread other([&] { served = admission.acquire("other") != nullptr; });
+    wait_until([&] { return admission.load().waiting == 1; });
+    CHECK(!admission.others_are_due(client));
+    run.reset();
+    other.join();
+    CHECK(served);
+}
+
+TEST_CASE("small bodies are read beside one of the largest, which take turns") {
+    AdmissionControl admission({});
+    const auto gives_up = [] { return true; };
+    auto large = admission.acquire_body(client, 60 << 20, gives_up);
+    CHECK(large);
+    const auto small = admission.acquire_body("other", 3 << 20, gives_up);
+    CHECK(small);
+    CHECK(!admission.acquire_body("other", 60 << 20, gives_up));
+    CHECK(!admission.acquire_body("third", 3 << 20, gives_up));  // together they are large
+    large.reset();
+    CHECK(admission.acquire_body("other", 60 << 20, gives_up));
 }

@@ -121,7 +121,7 @@ TEST_CASE(
         CHECK(late.status == 413);
         CHECK(
             std::string(late.problem.value().what())
-                .find("limit of 0 s for one request was over before all of the body was read") !=
+                .find("limit of 0 s for one request was over before it was read") !=
             std::string::npos);
         CHECK(answer_of(admission, {}, "POST", path, body).status == 422);
         CHECK(answer_of(admission, {.deadline = 0}, "POST", path, body, true).status == 499);

@@ -297,7 +297,7 @@ struct AnalysisConclusion {
                 .without = unattached_decay(p, w.start, a.reached.from)};
         if (!w.parts.unattached) return;
         e.peak_least = o.cycle_peaks.least();
-        e.unattached = unattached(p, w.start, a.reached);
+        e.unattached = unattached(p, w.start, a.reached, interrupt.late);
         e.rms_ratio = ratio(e.balance.rms, e.unattached->rms);
         e.peak_ratio = ratio(e.balance.peak, e.unattached->peak);
     }

@@ -53,7 +53,7 @@ void ComparedRun::on_stretch(const Stretch& stretch) {
 }
 
 void ComparedRun::on_impact(const Impact& i) {
-    contacts.push_back(
+    add(
         {.tau = i.tau,
          .side = i.side,
          .stick = false,
@@ -65,7 +65,8 @@ void ComparedRun::on_impact(const Impact& i) {
     deviation_ = saltation(parameters_, i).times(deviation_);  // (26)
 }
 
-void ComparedRun::look_ahead(const Outcome& outcome) {
+double ComparedRun::look_ahead(const Outcome& outcome) {
+    if (is_cut_) return contacts.end()[-most_ahead].tau;
     ComparedRun ahead(parameters_, 0, {});
     simulate(
         parameters_, outcome.state,
@@ -82,6 +83,7 @@ void ComparedRun::look_ahead(const Outcome& outcome) {
         ++from;
     }
     contacts.insert(contacts.end(), from, ahead.contacts.end());
+    return outcome.tau;
 }
 
 namespace {
@@ -271,7 +273,8 @@ Perturbation perturbation_of(
     const Outcome& outcome, Limits limits, double step) {
     const State perturbed = displaced(start, difference);
     ComparedRun second(p, step, {});
-    limits.tau_end = outcome.tau;
+    limits.tau_end = reference.look_ahead(outcome);
+    limits.max_impacts = std::min(limits.max_impacts, static_cast<long>(most_compared / 2));
     Perturbation r{};
     r.start = difference_of(perturbed, start);
     r.outcome = outcome.tau > 0 ? simulate(p, perturbed, limits, {&second})
@@ -280,7 +283,6 @@ Perturbation perturbation_of(
     if (r.outcome.tau == outcome.tau || second.series().tau.empty()) second.finish(r.outcome);
     for (const ComparedContact& c : second.contacts)
         if (!c.stick) r.impacts.push_back({c.tau, c.side});
-    reference.look_ahead(outcome);
     second.look_ahead(r.outcome);
     r.series = second.take_series();
     keep_common(r.series, reference.series());

@@ -368,7 +368,8 @@ struct DesignSearch {
 
 }  // namespace
 
-LinearResponse linear_response_of(const DesignPlan& plan, Objective objective) {
+LinearResponse linear_response_of(
+    const DesignPlan& plan, Objective objective, RunControl& control) {
     const Host& host = plan.host;
     if (host.is_harmonic())
         return [host, objective](const LinearAbsorber& absorber, double f) {
@@ -379,8 +380,12 @@ LinearResponse linear_response_of(const DesignPlan& plan, Objective objective) {
     if (host.load) p.load = host.load(host.si);
     const Interval measured =
         measured_part(p, {.transient_cycles = plan.transient_cycles, .cycles = plan.cycles});
-    return [host, objective, load = p.load, measured](const LinearAbsorber& absorber, double) {
-        return linear_response(host, load.get(), absorber, objective, measured);
+    return [host, objective, load = p.load, measured, &control](
+               const LinearAbsorber& absorber, double) {
+        const ComputePermit permit(control);
+        return linear_response(host, load.get(), absorber, objective, measured, [&control] {
+            return control.stop_or_yield();
+        });
     };
 }
 
@@ -400,28 +405,30 @@ std::optional<Design> find_design(
     const DesignPlan& plan, int threads, RunControl& control, const DesignSink& sink,
     const SampleSink& sample_sink) {
     const DesignSearch search{plan, threads, control, sink};
+    const LinearResponse linear = linear_response_of(plan, plan.objective, control);
+    const auto response = [&](const LinearAbsorber& t) {
+        return band_maximum([&](double f) { return linear(t, f); }, plan.f);
+    };
+    Design d{};
+    d.with_tuned_mass_damper = d.with_den_hartog = {nan, nan};
     std::vector<DesignPoint> all;
     std::optional<DesignPoint> best;
     try {
+        d.without = response({});
         all = search.search_maps();
         search.refine(all, best);
     } catch (const Stopped&) {}
     if (!best && all.empty()) return std::nullopt;
     if (!best) best = all.front();
-    Design d{};
     d.best = *best;
-    const LinearResponse linear = linear_response_of(plan, plan.objective);
-    const auto response = [&](const LinearAbsorber& t) {
-        return band_maximum([&](double f) { return linear(t, f); }, plan.f);
-    };
-    d.without = response({});
-    d.tuned_mass_damper = best_tuned_mass_damper(
-        plan.host.si.m1, best->m2, [&](const LinearAbsorber& t) { return response(t).value; },
-        threads);
-    d.with_tuned_mass_damper = response(d.tuned_mass_damper);
     d.den_hartog = den_hartog(plan.host.si.m1, best->m2);
-    d.with_den_hartog = response(d.den_hartog);
+    d.tuned_mass_damper = {best->m2, nan, nan};
     try {
+        d.tuned_mass_damper = best_tuned_mass_damper(
+            plan.host.si.m1, best->m2, [&](const LinearAbsorber& t) { return response(t).value; },
+            threads);
+        d.with_tuned_mass_damper = response(d.tuned_mass_damper);
+        d.with_den_hartog = response(d.den_hartog);
         search.set_response(d, linear);
         d.at_worst = search.worst_motion(
             search.map(

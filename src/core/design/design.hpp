@@ -72,7 +72,7 @@ struct Design {
     Interval works;
     std::optional<double> activation;
     std::vector<ToleranceSample> samples;  ///< in any order
-    bool complete = true;                  ///< false if stopped: later members are then empty
+    bool complete = true;  ///< false if stopped: later members are then empty or NaN
 };
 
 /// Receives each absorber that was tried, on the calling thread.
@@ -80,9 +80,10 @@ using DesignSink = std::function<void(const DesignPoint&)>;
 /// Receives each sample, on any thread, one at a time.
 using SampleSink = std::function<void(const ToleranceSample&)>;
 
-/// The objective with a linear absorber, at a frequency f if the host is harmonic.
+/// The objective with a linear absorber, at a frequency f if the host is harmonic. Otherwise it
+/// computes with a permit of `control` and throws Stopped.
 using LinearResponse = std::function<double(const LinearAbsorber& absorber, double f)>;
-LinearResponse linear_response_of(const DesignPlan& plan, Objective objective);
+LinearResponse linear_response_of(const DesignPlan& plan, Objective objective, RunControl& control);
 
 /// Number of motions of the first map and of the samples; others are a few more.
 std::size_t design_runs(const DesignPlan& plan);

@@ -27,6 +27,8 @@ constexpr double frequency_range = 1.6, damping_range = 12, narrowing = 0.45;
 
 // Step of the Runge-Kutta method in tau, or over the damper's frequency: peaks of x'' to 3e-4.
 constexpr double linear_step = 0.05;
+// Steps between two checks for a stop, half a millisecond.
+constexpr std::size_t steps_between_checks = 4096;
 
 /// Motion of host and tuned mass damper under a load, in tau and m, at the end of a step.
 struct LinearState {
@@ -35,10 +37,12 @@ struct LinearState {
     double energy;  ///< per m1, in m^2
 };
 
-/// Calls see(LinearState) at tau = 0 and at the ends of all steps.
+/// Calls see(LinearState) at tau = 0 and at the ends of all steps. Throws Stopped.
 template <class See>
 void follow_linear_motion(
-    const Host& host, const Load* load, const LinearAbsorber& t, double until, const See& see) {
+    const Host& host, const Load* load, const LinearAbsorber& t, double until,
+    const StopRequest& stop, const See& see) {
+    std::size_t seen = 0;
     const double mu = t.m2 / host.si.m1, nu = t.m2 > 0 ? t.frequency_ratio : 0,
                  own_damping = 2 * t.damping_ratio * nu,
                  load_damping = host.si.c1 / (host.si.m1 * host.si.omega0()),
@@ -75,6 +79,7 @@ void follow_linear_motion(
                                   d = rates(z + h * c, force.at(k * h + h));
             z += h * ((a + 2 * b + 2 * c + d) / 6);
             see(state(s));
+            if (stop && ++seen % steps_between_checks == 0 && stop()) throw Stopped();
         }
         tau = end;
     }
@@ -99,13 +104,13 @@ double square_between(const LinearState& a, const LinearState& b) {
 
 double linear_response(
     const Host& host, const Load* load, const LinearAbsorber& t, Objective objective,
-    const Interval& measured) {
+    const Interval& measured, const StopRequest& stop) {
     const double omega0 = host.si.omega0(), x_dot = host.initial_velocity / omega0;
     LinearState last{};
     double most = 0, most_acceleration = 0, squares = 0,
            level = elementary::log(0.05 * x_dot * x_dot),
            before = elementary::log(0.5 * x_dot * x_dot), tenth = infinity;
-    follow_linear_motion(host, load, t, measured.to, [&](const LinearState& at) {
+    follow_linear_motion(host, load, t, measured.to, stop, [&](const LinearState& at) {
         const LinearState from = std::exchange(last, at);
         if (at.tau <= measured.from) return;
         most = std::max({most, std::abs(at.x), peak_between(from, at)});

@@ -35,10 +35,10 @@ struct Host {
 double linear_response(
     const Host& host, const LinearAbsorber& absorber, Objective objective, double f);
 /// The same of the motion from rest under a load, or without one after the host's impulse, measured
-/// in an interval of tau.
+/// in an interval of tau. Throws Stopped once stop() returns true.
 double linear_response(
     const Host& host, const Load* load, const LinearAbsorber& absorber, Objective objective,
-    const Interval& measured);
+    const Interval& measured, const StopRequest& stop = {});
 
 /// Largest value of a function of the frequency in a band, and where: local maxima are refined.
 struct BandMaximum {

@@ -227,15 +227,18 @@ std::optional<State> free_steady_state(const Parameters& p) {
         .x = *amplitude * elementary::sin(theta)};
 }
 
-Unattached unattached(const Parameters& p, const State& start, const Interval& window) {
+Unattached unattached(
+    const Parameters& p, const State& start, const Interval& window, const StopRequest& stop) {
     if (p.load) {
         Parameters alone = p;
         alone.gravity = alone.friction = 0;
         alone.b = std::numeric_limits<double>::max();
         Energy energy(alone, window);
-        simulate(
+        const Outcome outcome = simulate(
             alone, {start.x_dot, start.x, 0, 0},
-            {.tau_end = window.to, .max_impacts = std::numeric_limits<long>::max()}, {&energy});
+            {.tau_end = window.to, .max_impacts = std::numeric_limits<long>::max(), .stop = stop},
+            {&energy});
+        if (outcome.reason == End::stopped) return {nan, nan, std::nullopt};
         const EnergyBalance balance = energy.balance(window);
         return {balance.rms, balance.peak, std::nullopt};
     }

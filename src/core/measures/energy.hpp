@@ -112,11 +112,13 @@ double energy_of(const Parameters& parameters, const State& state);
 
 /// Amplitudes of the linear oscillator without absorber, with the same forcing and start.
 struct Unattached {
-    double rms, peak;  ///< of x over a window, m
+    double rms, peak;  ///< of x over a window, m; NaN if stopped
     /// epsilon A/sqrt((1 - Omega^2)^2 + 4 zeta^2 Omega^2), steady, m; empty at undamped resonance.
     std::optional<double> amplitude;
 };
-Unattached unattached(const Parameters& parameters, const State& start, const Interval& window);
+Unattached unattached(
+    const Parameters& parameters, const State& start, const Interval& window,
+    const StopRequest& stop = {});
 /// Unattached::amplitude for these parameters.
 std::optional<double> free_amplitude(const Parameters& parameters);
 /// Steady motion without absorber at tau = 0: x and x', y = y' = 0; empty at undamped resonance.

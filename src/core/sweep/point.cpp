@@ -90,9 +90,9 @@ std::optional<double> chaotic_cycles_of(const Analysis& a, double cycle) {
 /// Rms of the steady motion without absorber, or, if none exists, from the same start.
 double reference_rms(
     const Parameters& p, const State& begin, std::optional<double> amplitude,
-    const Interval& window) {
+    const Interval& window, const StopRequest& stop) {
     return amplitude && *amplitude > 0 ? *amplitude / std::numbers::sqrt2
-                                       : unattached(p, begin, window).rms;
+                                       : unattached(p, begin, window, stop).rms;
 }
 
 /// Last state at a whole cycle: a run that ended within a cycle continues to its end.
@@ -186,7 +186,7 @@ PointResult measure(
         r.x_max = energy.peak;
         r.x_rms = energy.rms;
         r.x_rms_error = energy.rms_error;
-        r.x_rms_ratio = r.x_rms / reference_rms(p, begin, r.x_free, energy.window);
+        r.x_rms_ratio = r.x_rms / reference_rms(p, begin, r.x_free, energy.window, stop);
         r.share_impacts = energy.share_impacts;
         r.share_impacts_error = energy.share_impacts_error;
         if (a.energy->decay)

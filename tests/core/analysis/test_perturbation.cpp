@@ -135,6 +135,23 @@ TEST_CASE("the linear stretch ends before the distance misses the prediction by 
     CHECK(largest_miss(r, r.linear->tau.to) <= linear_share);
 }
 
+TEST_CASE("of a long run the first impacts are compared, and a warning says so") {
+    const Parameters p = table1(0.015, Damping::closed_form);
+    AnalysisRequest w{.parameters = p, .start = settled(p, 400), .tau_end = 7e5};
+    w.max_impacts = 1'000'000;
+    w.parts = {.series = true};
+    w.samples_per_cycle = 0.01;
+    w.perturbation = random_difference(1, 1e-6);
+    const Analysis a = analyse(w);
+    REQUIRE(a.outcome.impacts > static_cast<long>(most_compared));
+    CHECK(a.perturbation->outcome.impacts == static_cast<long>(most_compared / 2));
+    CHECK_FALSE(a.perturbation->parted);
+    CHECK(a.perturbation->distance.back() < 1e-11);
+    CHECK(std::ranges::any_of(a.warnings, [](const Warning& warning) {
+        return std::holds_alternative<warning::PerturbedRunCut>(warning);
+    }));
+}
+
 TEST_CASE("between the two times of an impact the distance shows no jump of the velocities") {
     const Parameters p = table1(0.008, Damping::closed_form);
     const State start = settled(p, 300);

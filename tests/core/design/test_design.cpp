@@ -207,6 +207,32 @@ TEST_CASE(
 }
 
 TEST_CASE(
+    "a design under a load that is stopped while dampers are tuned has the best absorber alone" *
+    doctest::test_suite("long")) {
+    DesignPlan plan = machine();
+    plan.host.load = [](const SiParameters&) {
+        return std::make_shared<const Load>(std::vector<LoadHarmonic>{{1e-3, 1, 0}});
+    };
+    plan.f = {}, plan.f_count = 1, plan.default_set = false;
+    plan.b_count = 3;
+    struct Control : RunControl {
+        bool stop_or_yield() override { return left == 0; }
+        std::atomic<int> left = 1000;
+    } control;
+    int tried = 0;
+    const auto whole = find_design(plan, 1, control, [&](const DesignPoint&) { ++tried; });
+    REQUIRE(whole);
+    CHECK(whole->complete);
+    control.left = tried;
+    const auto d = find_design(plan, 1, control, [&](const DesignPoint&) { --control.left; });
+    REQUIRE(d);
+    CHECK_FALSE(d->complete);
+    CHECK(d->best.b == whole->best.b);
+    CHECK(d->without.value == whole->without.value);
+    CHECK(std::isnan(d->with_tuned_mass_damper.value));
+}
+
+TEST_CASE(
     "after an impulse the time to a tenth of the energy is that of a free decay" *
     doctest::test_suite("long")) {
     Host host = machine().host;

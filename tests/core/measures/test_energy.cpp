@@ -8,6 +8,7 @@
 #include "../support.hpp"
 #include "core/measures/energy.hpp"
 #include "core/measures/rhythm.hpp"
+#include "core/motion/load.hpp"
 
 using namespace vines;
 using namespace vines::test;
@@ -124,6 +125,16 @@ TEST_CASE("without absorber the oscillator reaches its steady amplitude") {
     Parameters undamped = table1(0.022, Damping::closed_form);
     undamped.lambda = 0;
     CHECK_FALSE(unattached(undamped, {}, {0, 10}).amplitude);
+}
+
+TEST_CASE("without absorber the motion under a load can be stopped") {
+    Parameters p = table1(0.022, Damping::closed_form);
+    p.G = 0;
+    p.load = std::make_shared<const Load>(std::vector<LoadHarmonic>{{1.7e-4, 1, 0}});
+    CHECK(unattached(p, {}, {0, 1000}).rms > 0);
+    const Unattached stopped = unattached(p, {}, {0, 1e9}, [] { return true; });
+    CHECK(std::isnan(stopped.rms));
+    CHECK(std::isnan(stopped.peak));
 }
 
 TEST_CASE("an impact with which a run begins is part of its energy") {
