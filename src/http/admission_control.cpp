@@ -20,6 +20,9 @@ constexpr auto patience = std::chrono::milliseconds(200);
 // take up to fifteen times their size, one of the largest up to 340 MB. Bytes.
 constexpr std::size_t immediate_body = 1 << 20, bodies_at_once = 4 << 20;
 
+// Texts of large answers that are made at once, or one alone: the bytes that they are made from.
+constexpr std::size_t texts_at_once = 48 << 20;
+
 // Larger bodies that wait, and their bytes; each occupies a worker.
 constexpr std::size_t most_waiting_bodies = 32, most_waiting_bytes = 256 << 20;
 
@@ -27,6 +30,13 @@ constexpr std::size_t most_waiting_bodies = 32, most_waiting_bytes = 256 << 20;
 constexpr auto grace_time = std::chrono::milliseconds(1);
 
 }  // namespace
+
+AdmissionControl::AdmissionControl(const AdmissionLimits& limits)
+    : limits_(limits),
+      free_(limits.running),
+      large_bodies_{bodies_at_once},
+      lesser_bodies_{bodies_at_once},
+      texts_{texts_at_once} {}
 
 /// True if background work may overtake foreground work: it then has a tenth of the time.
 bool AdmissionControl::may_overtake() const {
@@ -51,11 +61,10 @@ void AdmissionControl::assign() {
     }
     foreground_waits_ = !foreground_.empty();
     background_waits_ = !background_.empty();
-    for (Bodies* const bodies : {&large_bodies_, &lesser_bodies_})
-        while (!bodies->waiting.empty() &&
-               (bodies->in_work == 0 ||
-                bodies->in_work + bodies->waiting.front()->bytes <= bodies_at_once))
-            bodies->in_work += grant_next(bodies->waiting).bytes;
+    for (BySize* const g : {&large_bodies_, &lesser_bodies_, &texts_})
+        while (!g->waiting.empty() &&
+               (g->in_work == 0 || g->in_work + g->waiting.front()->bytes <= g->at_once))
+            g->in_work += grant_next(g->waiting).bytes;
 }
 
 /// Ends a wait; returns whether it was granted.
@@ -120,9 +129,7 @@ AdmissionControl::Slot AdmissionControl::resume(
     const std::string& client, const std::function<bool()>& gives_up, Slot begun) {
     std::unique_lock lock(mutex_);
     const bool had_slot = !is_grace(begun);
-    begun.release();
-    if (had_slot) ++free_;
-    else --graces_;
+    if (begun.release()) had_slot ? ++free_ : --graces_;
     Waiter waiter{.is_interrupted = had_slot};
     foreground_.push_before(client, &waiter, [&waiter](const Waiter* other) {
         return waiter.is_interrupted && !other->is_interrupted;
@@ -195,10 +202,6 @@ bool AdmissionControl::pass_on(const SweepSlot& slot, const std::vector<std::str
 
 bool AdmissionControl::sweeps_left() const { return load().sweeps < limits_.sweeps; }
 
-AdmissionControl::Bodies& AdmissionControl::bodies_like(std::size_t bytes) {
-    return bytes > bodies_at_once ? large_bodies_ : lesser_bodies_;
-}
-
 /// False if a body finds no space in its queue, even instead of the last one.
 bool AdmissionControl::make_space(Queue& queue, const std::string& client, std::size_t bytes) {
     std::size_t waiting = 0;
@@ -214,22 +217,34 @@ bool AdmissionControl::make_space(Queue& queue, const std::string& client, std::
     return true;
 }
 
-AdmissionControl::BodyPermit AdmissionControl::acquire_body(
+AdmissionControl::SizePermit AdmissionControl::acquire_by_size(
+    Lock& lock, BySize& group, const std::string& client, std::size_t bytes,
+    const std::function<bool()>& gives_up) {
+    Waiter waiter{.bytes = bytes};
+    group.waiting.push(client, &waiter);
+    if (!wait(lock, group.waiting, waiter, gives_up)) return nullptr;
+    lock.unlock();
+    return {this, [this, &group, bytes](void*) {
+                trim_memory();
+                const std::lock_guard ending(mutex_);
+                group.in_work -= bytes;
+                assign();
+            }};
+}
+
+AdmissionControl::SizePermit AdmissionControl::acquire_body(
     const std::string& client, std::size_t bytes, const std::function<bool()>& gives_up) {
     if (bytes <= immediate_body) return {this, [](void*) {}};
     std::unique_lock lock(mutex_);
-    Bodies& bodies = bodies_like(bytes);
+    BySize& bodies = bytes > bodies_at_once ? large_bodies_ : lesser_bodies_;
     if (!make_space(bodies.waiting, client, bytes)) return nullptr;
-    Waiter body{.bytes = bytes};
-    bodies.waiting.push(client, &body);
-    if (!wait(lock, bodies.waiting, body, gives_up)) return nullptr;
-    lock.unlock();
-    return {this, [this, &bodies, bytes](void*) {
-                trim_memory();
-                const std::lock_guard ending(mutex_);
-                bodies.in_work -= bytes;
-                assign();
-            }};
+    return acquire_by_size(lock, bodies, client, bytes, gives_up);
+}
+
+AdmissionControl::SizePermit AdmissionControl::acquire_text(
+    const std::string& client, std::size_t bytes, const std::function<bool()>& gives_up) {
+    std::unique_lock lock(mutex_);
+    return acquire_by_size(lock, texts_, client, bytes, gives_up);
 }
 
 void AdmissionControl::stop_sweeps() {
@@ -262,6 +277,15 @@ bool Permit::renew() {
     slot_ = admission_.resume(client_, gives_up_, std::move(slot_));
     since_ = Clock::now();
     waited_ += since_ - now;
+    return slot_ != nullptr;
+}
+
+bool Permit::wait_without_slot(const std::function<bool()>& wait) {
+    const Clock::time_point began = Clock::now();
+    slot_.reset();
+    if (wait()) slot_ = admission_.resume(client_, gives_up_, nullptr);
+    since_ = Clock::now();
+    waited_ += since_ - began;
     return slot_ != nullptr;
 }
 

@@ -54,9 +54,7 @@ private:
     };
 
 public:
-    explicit AdmissionControl(const AdmissionLimits& limits)
-        : limits_(limits),
-          free_(limits.running) {}
+    explicit AdmissionControl(const AdmissionLimits& limits);
 
     int threads() const { return limits_.running; }
 
@@ -70,8 +68,8 @@ public:
     /// earlier, or gives_up() returned true; it is polled every 50 ms.
     Slot acquire(const std::string& client, const std::function<bool()>& gives_up = {});
     /// For foreground work that has begun: gives its slot or grace period back and waits for a
-    /// slot; always finds space in the queue. Work that had a slot waits before the client's other
-    /// work. Null as above.
+    /// slot; always finds space in the queue. Work that had a slot, or has given it back before
+    /// (null), waits before the client's other work. Null as above.
     Slot resume(const std::string& client, const std::function<bool()>& gives_up, Slot begun);
     /// True if foreground work with a slot should resume(): other clients' work is due.
     bool others_are_due(const std::string& client) const;
@@ -100,8 +98,13 @@ public:
     /// several that are small together, have it at once, since these take many times their size;
     /// others wait. Null if too many wait whose turn is earlier, or gives_up() returned true; it is
     /// polled every 50 ms. Smaller bodies have it at once.
-    using BodyPermit = std::shared_ptr<void>;
-    BodyPermit acquire_body(
+    using SizePermit = std::shared_ptr<void>;
+    SizePermit acquire_body(
+        const std::string& client, std::size_t bytes, const std::function<bool()>& gives_up);
+    /// The right to make the text of an answer from more than immediate_text bytes and to compress
+    /// it: likewise one of the largest at once. Null if gives_up() returned true. Not to be waited
+    /// for with a slot.
+    SizePermit acquire_text(
         const std::string& client, std::size_t bytes, const std::function<bool()>& gives_up);
 
     /// Running sweeps end at their next check and no new one starts. Requests still compute.
@@ -117,11 +120,11 @@ public:
 private:
     struct Waiter {
         std::condition_variable_any changed = {};
-        bool granted = false;    ///< a slot, or a large body's permit
+        bool granted = false;    ///< a slot, or a permit by size
         bool displaced = false;  ///< by another client, whose turn is earlier
         bool overtakes = false;  ///< granted although foreground work waits
         bool is_interrupted = false;
-        std::size_t bytes = 0;  ///< of a large body
+        std::size_t bytes = 0;  ///< of a large body or answer
         Clock::time_point since = Clock::now();
     };
     using Queue = FairQueue<Waiter*>;
@@ -135,12 +138,16 @@ private:
     static bool any(const Waiter*) { return true; }
     static void displace_last(Queue& queue, bool (*may)(const Waiter*) = any);
     bool wait(Lock& lock, Queue& queue, Waiter& waiter, const std::function<bool()>& gives_up);
-    /// Bodies that wait, and the bytes of those at work.
-    struct Bodies {
+    /// Work that is admitted by its size: several that have at most `at_once` bytes together, or
+    /// one.
+    struct BySize {
+        std::size_t at_once;
         Queue waiting = {};
-        std::size_t in_work = 0;
+        std::size_t in_work = 0;  ///< bytes
     };
-    Bodies& bodies_like(std::size_t bytes);
+    SizePermit acquire_by_size(
+        Lock& lock, BySize& group, const std::string& client, std::size_t bytes,
+        const std::function<bool()>& gives_up);
     static bool make_space(Queue& queue, const std::string& client, std::size_t bytes);
 
     const AdmissionLimits limits_;
@@ -150,11 +157,15 @@ private:
     Clock::time_point next_overtaking_ = {};
     std::list<std::string> sweeps_;  // their clients
     Queue foreground_, background_;
-    Bodies large_bodies_, lesser_bodies_;
+    BySize large_bodies_, lesser_bodies_, texts_;
     // Written under the mutex; running work reads them without it.
     std::atomic<bool> foreground_waits_ = false, background_waits_ = false;
     std::atomic<bool> sweeps_stopped_ = false, all_stopped_ = false;
 };
+
+// Bytes from which the text of an answer, which is two to three times as long, is made without a
+// permit.
+inline constexpr std::size_t immediate_text = 4 << 20;
 
 // Time for which work keeps a slot that other work of its class waits for.
 inline constexpr auto time_slice = std::chrono::milliseconds(20);
@@ -176,6 +187,10 @@ public:
     /// To be called regularly: waits for a slot after the grace period, and after a time slice if
     /// other clients' work is due. False if it gave up.
     bool renew();
+
+    /// Gives the slot back while wait() waits for something else. False if that or the wait for a
+    /// slot gave up.
+    bool wait_without_slot(const std::function<bool()>& wait);
 
     /// Time spent waiting, without the initial wait.
     Clock::duration waited() const { return waited_; }

@@ -106,6 +106,19 @@ public:
     void lap(const char* name) { watch_.lap(name, permit_.waited()); }
     bool renew() { return permit_.renew(); }  ///< see Permit
     void release_body() { body_permit_.reset(); }
+    /// Waits for the permit to make the text of an answer from these bytes.
+    void wait_for_text(std::size_t bytes) {
+        if (bytes <= immediate_text) return;
+        const auto gives_up = [this] {
+            return request_.left() || service_.admission.all_stopped();
+        };
+        const auto wait = [&] {
+            text_permit_ =
+                service_.admission.acquire_text(request_.sender.client(), bytes, gives_up);
+            return text_permit_ != nullptr;
+        };
+        if (!permit_.wait_without_slot(wait)) throw_without_permit();
+    }
 
     /// Ends a request that has no permit: its client has left, or work whose turn is earlier came.
     [[noreturn]] void throw_without_permit() const {
@@ -119,7 +132,7 @@ private:
 
     bool identifies() const { return request_.head.path() == "/v1/identify"; }
 
-    AdmissionControl::BodyPermit wait_for_body_permit() const {
+    AdmissionControl::SizePermit wait_for_body_permit() const {
         AdmissionControl& admission = service_.admission;
         // One turn of another client, which parses and has a deadline, and more.
         const std::chrono::duration<double> longest(2 * service_.options.deadline);
@@ -151,7 +164,7 @@ private:
     const Request& request_;
     const Service& service_;
     Stopwatch& watch_;
-    AdmissionControl::BodyPermit body_permit_;
+    AdmissionControl::SizePermit body_permit_, text_permit_;
     Permit permit_;
     const Clock::time_point began_ = Clock::now();
     Clock::time_point checked_ = began_;
@@ -321,6 +334,7 @@ Response answer(Request& r, const Service& service, Stopwatch& watch) {
     if (!renewed) computing.throw_without_permit();
     service.metrics.count_impacts(answer.impacts);
     if (answer.run) return stream_answer(std::move(answer), r, service.admission);
+    computing.wait_for_text(api::packed_bytes(answer.json));
     std::string bytes = encoded(
         std::move(answer), *format, options.answer_limit, provenance.size() + max_hash, r.left);
     computing.release_body();

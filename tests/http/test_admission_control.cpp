@@ -517,3 +517,27 @@ TEST_CASE("small bodies are read beside one of the largest, which take turns") {
     large.reset();
     CHECK(admission.acquire_body("other", 60 << 20, gives_up));
 }
+
+TEST_CASE("texts of large answers are made one at a time, without a slot while they wait") {
+    AdmissionControl admission({.running = 1});
+    const auto never = [] { return false; };
+    auto first = admission.acquire_text(client, 40 << 20, never);
+    Permit run(admission, "other", {}, false);
+    AdmissionControl::SizePermit second;
+    std::atomic<bool> waits = false;
+    std::thread waiting([&] {
+        CHECK(run.wait_without_slot([&] {
+            waits = true;
+            second = admission.acquire_text("other", 40 << 20, never);
+            return second != nullptr;
+        }));
+    });
+    wait_until([&] { return waits && admission.load().running == 0; });
+    CHECK(admission.acquire("third"));
+    first.reset();
+    waiting.join();
+    CHECK(second);
+    CHECK(admission.load().running == 1);
+    CHECK(!run.wait_without_slot([] { return false; }));
+    CHECK(admission.load().running == 0);
+}
