@@ -244,6 +244,7 @@ AdmissionControl::SizePermit AdmissionControl::acquire_body(
 AdmissionControl::SizePermit AdmissionControl::acquire_text(
     const std::string& client, std::size_t bytes, const std::function<bool()>& gives_up) {
     std::unique_lock lock(mutex_);
+    if (texts_.in_work > 0 && resident_bytes() >= limits_.memory) return nullptr;
     return acquire_by_size(lock, texts_, client, bytes, gives_up);
 }
 

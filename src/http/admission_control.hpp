@@ -102,8 +102,8 @@ public:
     SizePermit acquire_body(
         const std::string& client, std::size_t bytes, const std::function<bool()>& gives_up);
     /// The right to make the text of an answer from more than immediate_text bytes and to compress
-    /// it: likewise one of the largest at once. Null if gives_up() returned true. Not to be waited
-    /// for with a slot.
+    /// it: likewise one of the largest at once. Null if gives_up() returned true, or if another one
+    /// is being made while the process uses all of its memory. Not to be waited for with a slot.
     SizePermit acquire_text(
         const std::string& client, std::size_t bytes, const std::function<bool()>& gives_up);
 

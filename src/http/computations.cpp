@@ -117,7 +117,11 @@ public:
                 service_.admission.acquire_text(request_.sender.client(), bytes, gives_up);
             return text_permit_ != nullptr;
         };
-        if (!permit_.wait_without_slot(wait)) throw_without_permit();
+        if (permit_.wait_without_slot(wait)) return;
+        if (!text_permit_ && !gives_up())
+            throw Problem::unavailable(
+                "memory", "other large answers are being made; try again in a second");
+        throw_without_permit();
     }
 
     /// Ends a request that has no permit: its client has left, or work whose turn is earlier came.

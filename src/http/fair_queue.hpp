@@ -20,9 +20,9 @@ public:
 
     void push(const std::string& client, T value) {
         const long turn = last_turns_[client] = next_turn(client);
-        const auto later = std::find_if(
-            entries_.begin(), entries_.end(), [turn](const Entry& e) { return e.turn > turn; });
-        entries_.insert(later, {client, turn, std::move(value)});
+        const auto not_later = std::find_if(
+            entries_.rbegin(), entries_.rend(), [turn](const Entry& e) { return e.turn <= turn; });
+        entries_.insert(not_later.base(), {client, turn, std::move(value)});
     }
     /// The same, before the client's first entry with is_later(value): these move on by one turn.
     template <class IsLater>
@@ -54,10 +54,12 @@ public:
         const auto found = std::find_if(
             entries_.begin(), entries_.end(), [&may](const Entry& e) { return may(e.client); });
         if (found == entries_.end()) return std::nullopt;
-        now_ = std::max(now_, found->turn);
+        if (found->turn > now_) {
+            now_ = found->turn;
+            std::erase_if(last_turns_, [this](const auto& last) { return last.second < now_; });
+        }
         T value = std::move(found->value);
         entries_.erase(found);
-        std::erase_if(last_turns_, [this](const auto& last) { return last.second < now_; });
         return value;
     }
     std::optional<T> pop() {

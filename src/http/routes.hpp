@@ -1,6 +1,8 @@
 // All routes of the service.
 #pragma once
 
+#include <set>
+
 #include "api/simulate.hpp"
 #include "http/metrics.hpp"
 #include "http/page.hpp"

@@ -137,6 +137,9 @@ void add_log_and_page_options(CLI::App& c, std::string& log_format, PageOptions&
         ->check(CLI::ExistingDirectory);
 }
 
+// Memory of the service beside requests and answers, with that of runs in work, bytes.
+constexpr std::size_t memory_without_requests = 64 << 20;
+
 /// Time for requests in progress after the drain; then time for computations to end early.
 constexpr auto finish_time = std::chrono::seconds(10);
 constexpr auto final_time = std::chrono::seconds(5);
@@ -190,7 +193,7 @@ int wait_for_stop(ApiKeys* keys) {
 
 int serve(ServeOptions options) {
     configure_malloc(options.compute.running);
-    options.compute.memory = options.server.limits.held_bytes;
+    options.compute.memory = options.server.limits.held_bytes + memory_without_requests;
     AdmissionControl admission(options.compute);
     Metrics metrics(admission);
     std::optional<Server> server;

@@ -540,4 +540,8 @@ TEST_CASE("texts of large answers are made one at a time, without a slot while t
     CHECK(admission.load().running == 1);
     CHECK(!run.wait_without_slot([] { return false; }));
     CHECK(admission.load().running == 0);
+    AdmissionControl scarce({.running = 1, .memory = 0});
+    const auto only = scarce.acquire_text(client, 40 << 20, never);
+    CHECK(only);
+    CHECK(!scarce.acquire_text("other", 40 << 20, never));
 }
