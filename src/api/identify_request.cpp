@@ -173,8 +173,9 @@ void change_each(std::vector<double>& values, CancelCheck& cancel, const Change&
 /// Removes hum of the mains, with a note of each line, and takes its frequency.
 void take_hum(IdentifyRequest& r, double omega0, CancelCheck& cancel) {
     std::vector<double>& mains = r.measurement.mains;
-    for (const Hum& hum :
-         remove_hum(r.measurement.record, mains, [&cancel] { cancel.step(hum_steps); })) {
+    for (const Hum& hum : remove_hum(
+             r.measurement.record, mains, r.measurement.parameters.Omega,
+             [&cancel] { cancel.step(hum_steps); })) {
         r.notes.push_back(fmt::format(
             "a hum of {:.3g} {} at {:.4g} Hz was removed from the {}",
             hum.amplitude * (hum.in_displacement ? 1e6 : omega0 * omega0),

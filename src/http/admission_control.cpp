@@ -12,6 +12,9 @@ constexpr auto give_up_check = std::chrono::milliseconds(50);
 // Grace periods at once per slot: they share its core.
 constexpr int graces_per_slot = 4;
 
+// Work that waits after a time slice, per slot, whatever its memory.
+constexpr int interrupted_per_slot = 8;
+
 // Time after which background work no longer waits for foreground work.
 constexpr auto patience = std::chrono::milliseconds(200);
 
@@ -144,7 +147,9 @@ bool AdmissionControl::others_are_due(const std::string& client) const {
     if (!foreground_waits_ && !background_waits_) return false;
     const std::lock_guard lock(mutex_);
     const auto is_other = [&client](const std::string& other) { return other != client; };
-    return (foreground_.has(is_other) || may_overtake()) && resident_bytes() < limits_.memory;
+    return (foreground_.has(is_other) || may_overtake()) &&
+           (interrupted_ < interrupted_per_slot * limits_.running ||
+            resident_bytes() < limits_.memory);
 }
 
 AdmissionControl::Slot AdmissionControl::acquire_background(

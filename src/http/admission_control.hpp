@@ -30,7 +30,8 @@ struct AdmissionLimits {
     int running = cores();
     int waiting = 64;  ///< foreground requests in the queue, in addition to the running ones
     int sweeps = 4;    ///< sweeps at once; they share the slots that requests leave free
-    /// Memory of the process from which on work is not interrupted, since it holds memory: bytes.
+    /// Memory of the process from which on little work is interrupted, since it holds memory:
+    /// bytes.
     std::size_t memory = 512 << 20;
 };
 

@@ -86,8 +86,8 @@ public:
                  .most_containers = std::max(least_parts, parts_of_a_point * points),
                  .most_impacts = most_impacts});
         } catch (const api::Cancelled&) {
-            if (service_.admission.all_stopped()) throw *stopping_refusal().problem;
-            if (!permit_ || request_.left()) throw_without_permit();
+            if (!permit_ || request_.left() || service_.admission.all_stopped())
+                throw_without_permit();
             throw Problem(
                 413, fmt::format(
                          "the server's time limit of {} s for one request was over before it was "
@@ -127,6 +127,7 @@ public:
     /// Ends a request that has no permit: its client has left, or work whose turn is earlier came.
     [[noreturn]] void throw_without_permit() const {
         if (request_.left()) throw_client_left();
+        if (service_.admission.all_stopped()) throw *stopping_refusal().problem;
         throw Problem::unavailable(
             "computing", "the queue for computing is full; try again in a second");
     }

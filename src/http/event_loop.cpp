@@ -18,9 +18,10 @@ constexpr auto expiry_interval = 250ms;
 // connection to the event loop and get it back.
 constexpr int next_request_wait = 1;
 
-// Answers to one client in a row, and the time for them; then the others get their turn.
+// Answers to one client in a row, and the time for them; then the others get their turn. Turns of
+// all clients take 200 ms, or one answer each.
 constexpr int max_answers_in_row = 16;
-constexpr auto longest_turn = 1ms;
+constexpr auto longest_turn = 1ms, all_turns = 200ms;
 
 // Time for turns before new connections and other clients are looked for.
 constexpr auto round_time = 5ms;
@@ -239,6 +240,7 @@ void EventLoop::handle(int socket, bool failed) {
 
 void EventLoop::read(Connection& connection) {
     const Clock::time_point began = Clock::now();
+    const auto turn = std::min<Clock::duration>(longest_turn, all_turns / (open_.size() + 1));
     for (int n = 0;; ++n) {
         switch (connection.advance()) {
             case Connection::Progress::waits: return;
@@ -246,7 +248,7 @@ void EventLoop::read(Connection& connection) {
             case Connection::Progress::complete: break;
         }
         if (!connection.is_answered_on_loop()) return hand_over(release(connection.socket()));
-        if (n >= max_answers_in_row || Clock::now() - began > longest_turn) {
+        if (n >= max_answers_in_row || Clock::now() - began > turn) {
             queue(connection.socket());
             return;
         }

@@ -114,7 +114,7 @@ public:
     }
 
     /// True if it has ended without all lines.
-    bool is_cut_off() const { return is_cut_off_; }
+    bool is_cut_off() const { return is_cut_off_ || is_disowned_; }
 
     // Called by the threads that compute.
     void begin() override {
@@ -164,7 +164,8 @@ private:
     void leave(const std::string& client) {
         const std::lock_guard lock(clients_mutex_);
         clients_.erase(std::ranges::find(clients_, client));
-        if (!clients_.empty() && std::ranges::count(clients_, *sweep_slot_) == 0)
+        if (client == *sweep_slot_ && !clients_.empty() &&
+            std::ranges::count(clients_, client) == 0)
             is_disowned_ = !admission_.pass_on(sweep_slot_, clients_);
     }
 

@@ -4,7 +4,6 @@
 
 #include <atomic>
 #include <mutex>
-#include <optional>
 #include <string>
 #include <thread>
 #include <vector>
@@ -493,16 +492,27 @@ TEST_CASE("a sweep passes to a client that may have one more, or ends") {
     CHECK(*third == "other");
 }
 
-TEST_CASE("work is not interrupted while the process uses all of its memory") {
-    AdmissionControl admission({.running = 1, .memory = 0});
-    std::optional<Permit> run(std::in_place, admission, client, std::function<bool()>(), false);
-    std::atomic<bool> served = false;
-    std::thread other([&] { served = admission.acquire("other") != nullptr; });
-    wait_until([&] { return admission.load().waiting == 1; });
-    CHECK(!admission.others_are_due(client));
-    run.reset();
-    other.join();
-    CHECK(served);
+TEST_CASE("much work is not interrupted while the process uses all of its memory") {
+    for (const std::size_t memory : {std::size_t{0}, std::size_t{1} << 40}) {
+        AdmissionControl admission({.running = 1, .memory = memory});
+        std::vector<std::thread> threads;
+        std::atomic<int> begun = 0;
+        std::atomic<bool> ended = false;
+        for (int i = 0; i < 30; ++i) {
+            threads.emplace_back([&, i] {
+                const std::string name = std::to_string(i);
+                Permit run(admission, name, {}, false);
+                ++begun;
+                while (!ended) CHECK(run.renew());
+            });
+        }
+        // All begin, or those of which eight are interrupted.
+        const int most = memory == 0 ? 9 : 30;
+        wait_until([&] { return begun == most; });
+        CHECK(begun == most);
+        ended = true;
+        for (std::thread& thread : threads) thread.join();
+    }
 }
 
 TEST_CASE("small bodies are read beside one of the largest, which take turns") {

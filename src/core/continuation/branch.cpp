@@ -24,6 +24,8 @@ constexpr double growth = 1.5;
 constexpr double at_end = 1e-12;
 // Steps after which the section of a return is moved to the middle of a flight again.
 constexpr int steps_of_section = 10;
+// Largest change of an orbit's unknowns there; another orbit is farther.
+constexpr double moved_unknowns = 1e-4;
 // Largest step back to the birth of a sticking phase, over the distance to where none was.
 constexpr double most_back = 1.5;
 // Special points are bracketed to this arclength; the parameter changes less in it.
@@ -244,7 +246,8 @@ private:
         const auto moved = on_.equations->by_return(on_.at.z, on_.approach);
         if (!moved) return false;
         auto node = node_at_parameter(*moved, on_.parameter(), on_.fold > 0 ? 1 : -1);
-        if (!node) return false;
+        if (!node || !((node->at.z - moved->z).norm() < moved_unknowns) || node->check().fault)
+            return false;
         on_ = std::move(*node);
         h_ = std::max(h_, first_arc);
         return true;

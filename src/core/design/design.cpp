@@ -347,7 +347,7 @@ struct DesignSearch {
             drawn(plan.tolerances, {host_with(best.m2), best.b, best.R}, plan.seed, index);
         std::vector<double> all = amplitudes();
         for (double& a : all) a *= built.amplitude;
-        const DesignMap m = map({built.b}, all, frequencies(), built.R, built.si);
+        const DesignMap m = map({built.b}, all, denser_frequencies(best.f), built.R, built.si);
         ToleranceSample s{index, built, judged(m, built.b, all), std::nullopt};
         if (std::isfinite(s.point.objective)) s.worst = worst_motion(m, s.point);
         return s;

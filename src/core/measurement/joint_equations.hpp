@@ -174,7 +174,8 @@ public:
     /// Derivatives of y' at the start (+1) or the end (-1) of the flight between borders p and p
     /// + 1.
     double flight(std::size_t p, double sign) const;
-    double mean_speed = 0;  ///< mean of |x' - y'| before the impacts
+    // Of |x' - y'| before the impacts:
+    double mean_speed = 0, speed_scatter = 0;  ///< its mean; its scatter at one wall, relative
 
 private:
     void slow(double u, Eigen::Index first, double factor);

@@ -232,9 +232,20 @@ void add_mass_flights(JointFitState& state, const std::vector<FittedBorder>& bor
     const auto jump = [](const MassResidual& r) { return std::abs(r.jump); };
     const auto speed = [](const MassResidual& r) { return std::abs(r.approach); };
     const std::vector<double> speeds = values_of(residuals, speed);
-    if (state.effects && !speeds.empty())
+    if (state.effects && !speeds.empty()) {
         state.effects->mean_speed =
             std::accumulate(speeds.begin(), speeds.end(), 0.0) / count_of(speeds);
+        for (const int side : {1, -1}) {
+            const std::vector<double> at_wall = values_of(residuals, [&](const MassResidual& r) {
+                return borders[r.impact].side == side ? speed(r) : nan;
+            });
+            const double usual = median(at_wall);
+            std::vector<double> off;
+            for (const double v : at_wall) off.push_back(v / usual - 1);
+            if (const double scatter = robust_deviation(std::move(off)); scatter > 0)
+                state.effects->speed_scatter = std::max(state.effects->speed_scatter, scatter);
+        }
+    }
     // The scatter of the residuals, with a lower bound since no wall is perfectly constant.
     const double of_momentum = std::max(
                      robust_deviation(values_of(residuals, &MassResidual::momentum)),

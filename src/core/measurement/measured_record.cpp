@@ -152,9 +152,10 @@ struct NearLine {
     }
 };
 
-/// Removes the line near Omega, if there is one.
+/// Removes the line near Omega, if there is one that is no harmonic of the forcing.
 std::optional<Hum> remove_line(
-    const std::vector<double>& tau, std::vector<double>& v, double Omega, const Look& look) {
+    const std::vector<double>& tau, std::vector<double>& v, double Omega, double forcing,
+    const Look& look) {
     if ((tau.back() - tau.front()) * Omega > most_periods * 2 * std::numbers::pi)
         return std::nullopt;
     const NearLine near(tau, v, Omega, look);
@@ -174,6 +175,8 @@ std::optional<Hum> remove_line(
     const double noise = third_difference_noise(tau, v);
     if (!(highest > stands_above * median(std::move(around)) && highest > above_noise * noise))
         return std::nullopt;
+    const double orders = (Omega + best) / forcing;
+    if (std::abs(orders - std::round(orders)) * forcing < near.resolution) return std::nullopt;
     const Complex line = near.at(best);
     for (std::size_t k = 0; k < tau.size(); ++k)
         v[k] -= (line * elementary::phasor((Omega + best) * (tau[k] - tau.front()))).real();
@@ -208,12 +211,13 @@ RecordStatistics::RecordStatistics(const MeasuredRecord& r) : step(median(steps_
     set_noise(r.tau, r.x, x), set_noise(r.tau, r.x_ddot, a);
 }
 
-std::vector<Hum> remove_hum(MeasuredRecord& r, const std::vector<double>& mains, const Look& look) {
+std::vector<Hum> remove_hum(
+    MeasuredRecord& r, const std::vector<double>& mains, double forcing, const Look& look) {
     std::vector<Hum> found;
     for (const double Omega : mains)
         for (std::vector<double>* channel : {&r.x, &r.x_ddot}) {
             if (channel->empty()) continue;
-            const std::optional<Hum> hum = remove_line(r.tau, *channel, Omega, look);
+            const std::optional<Hum> hum = remove_line(r.tau, *channel, Omega, forcing, look);
             if (hum) found.push_back({hum->Omega, hum->amplitude, channel == &r.x});
         }
     return found;

@@ -53,9 +53,11 @@ struct Hum {
 };
 
 /// Removes lines within .3 % of the given frequencies from both channels if they exceed twice the
-/// noise and are far above their neighbourhood. Returns them. A record of more than 90,000 periods
-/// of the mains is not searched: their frequency is not constant for so long.
+/// noise and are far above their neighbourhood. Returns them. A line that may be a harmonic of the
+/// forcing, which regular impacts have, stays. A record of more than 90,000 periods of the mains is
+/// not searched: their frequency is not constant for so long.
 std::vector<Hum> remove_hum(
-    MeasuredRecord& record, const std::vector<double>& mains, const Look& look = [] {});
+    MeasuredRecord& record, const std::vector<double>& mains, double forcing,
+    const Look& look = [] {});
 
 }  // namespace vines

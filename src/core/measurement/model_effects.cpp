@@ -27,6 +27,9 @@ constexpr Eigen::Index slow_harmonics = 4, slow_columns = 2 * slow_harmonics + 1
 // effect is present; it matters if it moves b, R or the forcing by this many standard errors.
 constexpr double sure_deviations = 6, sure = 25, matters = 1;
 constexpr double most_lead = 0.5;  // largest phase lead of a high pass, rad
+// Relative scatter of the speeds at a wall from which on they determine a slope of R: that of a
+// periodic motion comes from the noise.
+constexpr double least_scatter = 0.03;
 
 Flow harmonic_flow(const JointFitState& state, double times) {
     const UnknownValues& v = state.fit.values;
@@ -59,6 +62,7 @@ std::vector<FittedEffect> tested_effects(
     std::vector<FittedEffect> found;
     for (const EffectDerivatives::Columns& c : effects.columns()) {
         if (c.effect == Effect::given_mass_ratio || c.effect == Effect::given_oscillator) continue;
+        if (c.effect == Effect::R_varies && effects.speed_scatter < least_scatter) continue;
         // Scaled: the sizes have different units.
         const Eigen::VectorXd scale =
             S.diagonal().segment(c.first, c.count).cwiseMax(1e-300).cwiseSqrt().cwiseInverse();

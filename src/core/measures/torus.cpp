@@ -29,6 +29,8 @@ constexpr double most_phase_gap = 0.05;
 constexpr double most_drift = 3;
 // Largest error of the rotation number, in turns over all points.
 constexpr double most_error = 0.01;
+// Error of a refined frequency, in turns: a maximum is flat within rounding.
+constexpr double refinement_error = 3e-10;
 // Largest relative difference of the line's amplitude between both halves: constant on a torus.
 constexpr double most_decay = 0.01;
 
@@ -236,7 +238,7 @@ std::optional<QuasiPeriodic> on_one_curve(std::span<const State> points, const S
         const double width = 1 / count;
         const double early = line_at(windowed(first), line), late = line_at(windowed(last), line);
         if (!(std::abs(late - early) < most_decay * early)) continue;
-        double error = 0;
+        double error = refinement_error;
         for (const auto& part : {first, last})
             error = std::max(error, std::abs(refined(windowed(part), line, width) - line));
         if (error > most_error * width) continue;

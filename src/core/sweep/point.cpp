@@ -240,8 +240,9 @@ std::vector<NamedStart> default_starts(const Parameters& p) {
     return starts;
 }
 
-State carried(const State& s, const Parameters& from, const Parameters& to) {
+State carried(const State& s, const Parameters& from, const Parameters& to, double faster) {
     State next = s;
+    next.x_dot /= faster, next.y_dot /= faster;
     next.y = s.x + (s.y - s.x) * (to.b / from.b);
     return next;
 }

@@ -36,7 +36,8 @@ std::vector<NamedStart> default_starts(const Parameters& parameters);
 inline constexpr std::size_t most_starts = 6;
 
 /// State at which a run with other parameters takes over: the ball keeps its place in the cavity.
-State carried(const State& state, const Parameters& from, const Parameters& to);
+/// `faster`: omega0 of `to` over that of `from`; velocities in m/s stay.
+State carried(const State& state, const Parameters& from, const Parameters& to, double faster = 1);
 
 class KnownMotions;
 

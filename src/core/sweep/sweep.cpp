@@ -201,9 +201,15 @@ struct Sweep {
         }
     }
 
+    /// The last state of a point.
     struct Carried {
         Parameters parameters;
+        double omega0;
         State state;
+
+        State to(const PointSystem& next) const {
+            return carried(state, parameters, next.parameters, next.units.omega0 / omega0);
+        }
     };
 
     /// One motion per point, continued from its neighbour's last state. Each line is handed out at
@@ -216,13 +222,12 @@ struct Sweep {
             const std::size_t k = plan.carry == Carry::up ? step : n - 1 - step;
             SweepPoint& point = row.points[k];
             if (point.system) {
-                const Parameters& p = point.system->parameters;
+                const PointSystem& s = *point.system;
                 point.afresh = step > 0 && !before;
-                const State start =
-                    before ? carried(before->state, before->parameters, p) : point.system->start;
-                point.motions.push_back(run_from(*point.system, "", start));
+                point.motions.push_back(run_from(s, "", before ? before->to(s) : s.start));
                 const auto& end = point.motions[0].result.at_end;
-                before = end ? std::optional(Carried{p, *end}) : std::nullopt;
+                before =
+                    end ? std::optional(Carried{s.parameters, s.units.omega0, *end}) : std::nullopt;
             }
             if (plan.grid.reduced) continue;
             const std::size_t line = row.wanted[0] / n * n + k;
@@ -241,16 +246,15 @@ struct Sweep {
         for (std::size_t step = 0; step < n; ++step) {
             const std::size_t k = up ? step : n - 1 - step;
             if (!points[k].system) continue;
-            const Parameters& p = points[k].system->parameters;
-            if (before) {
-                const State start = carried(before->state, before->parameters, p);
-                found[k] = run_from(*points[k].system, up ? "previous" : "next", start);
-            }
+            const PointSystem& s = *points[k].system;
+            if (before) found[k] = run_from(s, up ? "previous" : "next", before->to(s));
             const Motion* worst = found[k] && found[k]->result.at_end ? &*found[k] : nullptr;
             for (const Motion& m : points[k].motions)
                 if (m.result.at_end && (!worst || m.result.objective > worst->result.objective))
                     worst = &m;
-            before = worst ? std::optional(Carried{p, *worst->result.at_end}) : std::nullopt;
+            before =
+                worst ? std::optional(Carried{s.parameters, s.units.omega0, *worst->result.at_end})
+                      : std::nullopt;
         }
         return found;
     }

@@ -17,7 +17,7 @@ MeasurementResult identified_with_mains(const Experiment& e, double given_m2 = 0
     Measurement m = measurement_of(e);
     m.mains = {2 * std::numbers::pi * 50 / e.omega0, 2 * std::numbers::pi * 60 / e.omega0};
     m.uncertainty.m2 = given_m2;
-    remove_hum(m.record, m.mains);
+    remove_hum(m.record, m.mains, m.parameters.Omega);
     return evaluate_measurement(m);
 }
 
@@ -313,7 +313,7 @@ TEST_CASE("hum of the mains is removed before impacts are searched" * doctest::t
         const Experiment e = unmodelled_experiment(0.015, {.hum = 30e-6, .hum_hertz = hertz});
         Measurement m = measurement_of(e);
         m.mains = {2 * std::numbers::pi * 50 / e.omega0, 2 * std::numbers::pi * 60 / e.omega0};
-        const std::vector<Hum> hum = remove_hum(m.record, m.mains);
+        const std::vector<Hum> hum = remove_hum(m.record, m.mains, m.parameters.Omega);
         REQUIRE(hum.size() == 1);
         CHECK(hum[0].in_displacement);
         CHECK(hum[0].amplitude == doctest::Approx(30e-6).epsilon(0.03));
@@ -330,9 +330,16 @@ TEST_CASE("a record without hum is not changed") {
     MeasuredRecord r = e.record;
     const std::vector<double> mains = {2 * std::numbers::pi * 50 / e.omega0};
     CHECK_THROWS_AS(
-        remove_hum(r, mains, [] { throw IdentificationStopped{}; }), IdentificationStopped);
-    CHECK(remove_hum(r, mains).empty());
+        remove_hum(r, mains, e.parameters.Omega, [] { throw IdentificationStopped{}; }),
+        IdentificationStopped);
+    CHECK(remove_hum(r, mains, e.parameters.Omega).empty());
     CHECK(r.x == e.record.x);
+    // A harmonic of regular impacts at a frequency of the mains is no hum.
+    const double sixth = 6 * e.parameters.Omega;
+    for (std::size_t k = 0; k < r.tau.size(); ++k)
+        r.x[k] += 1e-4 * std::sin(sixth * (r.tau[k] - r.tau[0]));
+    CHECK(remove_hum(r, {0.999 * sixth}, e.parameters.Omega).empty());
+    CHECK(remove_hum(r, {0.999 * sixth}, 0.9 * e.parameters.Omega).size() == 1);
 }
 
 TEST_CASE(

@@ -197,6 +197,10 @@ TEST_CASE("a carried state keeps the relative position of the ball in its cavity
     // y - x = -0.014 scales with b, to -0.007.
     CHECK(s.y == doctest::Approx(0.005 - 0.007));
     CHECK(std::abs(s.x - s.y) <= narrow.b);
+    // Of an oscillator that is twice as fast: the same velocities in m/s.
+    const State slow{.x_dot = 0.1, .x = 0.005, .y_dot = 0.2, .y = -0.009};
+    CHECK(carried(slow, wide, wide, 2).x_dot == 0.05);
+    CHECK(carried(slow, wide, wide, 2).y_dot == 0.1);
 }
 
 TEST_CASE(
