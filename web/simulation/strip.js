@@ -134,12 +134,14 @@ export class Strip extends Plot {
   /** Takes the sweep from the browser's store, or requests it. */
   async find(fields) {
     const {key} = this;
-    this.waiting = setTimeout(() => this.job.start(this.sweep(fields)), pause);
+    const paused = new Promise((resolve) => {
+      this.waiting = setTimeout(resolve, pause);
+    });
     const file = await read("strips", stored(key));
     const text = await file?.text();
-    if (!text || this.key !== key) return;
-    clearTimeout(this.waiting);
-    this.job.cancel();
+    if (!text) await paused;
+    if (this.key !== key) return;
+    if (!text) return this.job.start(this.sweep(fields));
     this.layers = new Layers(this.sweep(fields));
     this.layers.base.takeAll(text);
     countUp(this.canvas);
