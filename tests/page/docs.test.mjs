@@ -28,9 +28,10 @@ const narrow = {width: 360, height: 740};
 /** Clicks "Try it" of an operation's nth example; returns status and text of the response. */
 async function tried(page, id, n = 0) {
   const example = page.locator(`#${id} .example`).nth(n);
-  await example.getByRole("button", {name: "Try it"}).click();
+  const button = example.getByRole("button", {name: "Try it"});
+  await button.click();
+  await button.waitFor(); // it says "Stop" meanwhile
   const answer = example.locator(".answer");
-  await answer.waitFor();
   return {
     status: await example.locator(".message").textContent(),
     text: await answer.textContent(),
