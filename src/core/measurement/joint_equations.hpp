@@ -174,8 +174,8 @@ public:
     /// Derivatives of y' at the start (+1) or the end (-1) of the flight between borders p and p
     /// + 1.
     double flight(std::size_t p, double sign) const;
-    // Of |x' - y'| before the impacts:
-    double mean_speed = 0, speed_scatter = 0;  ///< its mean; its scatter at one wall, relative
+    // The speeds |x' - y'| before the impacts:
+    double mean_speed = 0, speed_scatter = 0;  ///< mean; relative scatter at one wall
 
 private:
     void slow(double u, Eigen::Index first, double factor);
