@@ -204,12 +204,7 @@ void read_tolerances(DesignRequest& r, const Json& given, std::vector<FieldError
 
 /// The largest x without absorber, m. Throws Cancelled.
 double largest_without(const DesignPlan& plan, const std::function<bool()>& gives_up) {
-    struct Control : RunControl {
-        explicit Control(const std::function<bool()>& given) : gives_up(given) {}
-        bool stop_or_yield() override { return gives_up && gives_up(); }
-        const std::function<bool()>& gives_up;
-    } control(gives_up);
-    const LinearResponse linear = linear_response_of(plan, Objective::x_max, control);
+    const LinearResponse linear = linear_response_of(plan, Objective::x_max, gives_up);
     try {
         return band_maximum([&](double f) { return linear({}, f); }, plan.f).value;
     } catch (const Stopped&) {

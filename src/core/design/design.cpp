@@ -322,6 +322,7 @@ struct DesignSearch {
         const DesignPoint& p = d.best;
         const DesignMap m = map({p.b}, {1}, denser_frequencies(p.f), p.R, host_with(p.m2));
         const double omega0 = m.si.omega0();
+        const ComputePermit permit(control);
         for (std::size_t j = 0; j < m.f.size(); ++j) {
             const auto& [worst, best, start, extremes] = m.at(0, j);
             d.response.push_back(
@@ -369,7 +370,7 @@ struct DesignSearch {
 }  // namespace
 
 LinearResponse linear_response_of(
-    const DesignPlan& plan, Objective objective, RunControl& control) {
+    const DesignPlan& plan, Objective objective, const StopRequest& stop) {
     const Host& host = plan.host;
     if (host.is_harmonic())
         return [host, objective](const LinearAbsorber& absorber, double f) {
@@ -380,13 +381,10 @@ LinearResponse linear_response_of(
     if (host.load) p.load = host.load(host.si);
     const Interval measured =
         measured_part(p, {.transient_cycles = plan.transient_cycles, .cycles = plan.cycles});
-    return [host, objective, load = p.load, measured, &control](
-               const LinearAbsorber& absorber, double) {
-        const ComputePermit permit(control);
-        return linear_response(host, load.get(), absorber, objective, measured, [&control] {
-            return control.stop_or_yield();
-        });
-    };
+    return
+        [host, objective, load = p.load, measured, stop](const LinearAbsorber& absorber, double) {
+            return linear_response(host, load.get(), absorber, objective, measured, stop);
+        };
 }
 
 std::size_t design_runs(const DesignPlan& plan) {
@@ -405,8 +403,10 @@ std::optional<Design> find_design(
     const DesignPlan& plan, int threads, RunControl& control, const DesignSink& sink,
     const SampleSink& sample_sink) {
     const DesignSearch search{plan, threads, control, sink};
-    const LinearResponse linear = linear_response_of(plan, plan.objective, control);
+    const LinearResponse linear =
+        linear_response_of(plan, plan.objective, [&control] { return control.stop_or_yield(); });
     const auto response = [&](const LinearAbsorber& t) {
+        const ComputePermit permit(control);
         return band_maximum([&](double f) { return linear(t, f); }, plan.f);
     };
     Design d{};

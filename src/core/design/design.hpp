@@ -81,9 +81,10 @@ using DesignSink = std::function<void(const DesignPoint&)>;
 using SampleSink = std::function<void(const ToleranceSample&)>;
 
 /// The objective with a linear absorber, at a frequency f if the host is harmonic. Otherwise it
-/// computes with a permit of `control` and throws Stopped.
+/// throws Stopped once stop() returns true.
 using LinearResponse = std::function<double(const LinearAbsorber& absorber, double f)>;
-LinearResponse linear_response_of(const DesignPlan& plan, Objective objective, RunControl& control);
+LinearResponse linear_response_of(
+    const DesignPlan& plan, Objective objective, const StopRequest& stop);
 
 /// Number of motions of the first map and of the samples; others are a few more.
 std::size_t design_runs(const DesignPlan& plan);
