@@ -100,9 +100,12 @@ bool AdmissionControl::wait(
     return end_wait(queue, waiter);
 }
 
-bool AdmissionControl::is_full() const {
-    return static_cast<int>(foreground_.size()) - interrupted_ + graces_ >= limits_.waiting;
+/// Requests in the queue that have not had a time slice.
+int AdmissionControl::new_waiting() const {
+    return static_cast<int>(foreground_.size()) - interrupted_;
 }
+
+bool AdmissionControl::is_full() const { return new_waiting() + graces_ >= limits_.waiting; }
 
 AdmissionControl::Slot AdmissionControl::try_acquire() {
     const std::lock_guard lock(mutex_);
@@ -120,8 +123,9 @@ AdmissionControl::Slot AdmissionControl::acquire(
     std::unique_lock lock(mutex_);
     if (free_ == 0 && is_full()) {
         const auto is_new = [](const Waiter* waiter) { return !waiter->is_interrupted; };
-        if (!foreground_.precedes_last(client, is_new)) return nullptr;
-        displace_last(foreground_, is_new);
+        const auto is_own = [&client](const std::string& other) { return other == client; };
+        if (foreground_.precedes_last(client, is_new)) displace_last(foreground_, is_new);
+        else if (new_waiting() >= limits_.waiting || foreground_.has(is_own)) return nullptr;
     }
     Waiter waiter;
     foreground_.push(client, &waiter);

@@ -66,7 +66,8 @@ public:
     /// For foreground work; does not wait: a slot, a grace period or null.
     Slot try_acquire();
     /// For foreground work: waits for a slot. Null if the queue is full of work whose turn is
-    /// earlier, or gives_up() returned true; it is polled every 50 ms.
+    /// earlier, or gives_up() returned true; it is polled every 50 ms. Grace periods fill the queue
+    /// only for a client that waits in it: they have no clients whose turns could be compared.
     Slot acquire(const std::string& client, const std::function<bool()>& gives_up = {});
     /// For foreground work that has begun: gives its slot or grace period back and waits for a
     /// slot; always finds space in the queue. Work that had a slot, or has given it back before
@@ -131,6 +132,7 @@ private:
     using Queue = FairQueue<Waiter*>;
     using Lock = std::unique_lock<std::mutex>;
 
+    int new_waiting() const;
     bool is_full() const;
     bool may_overtake() const;
     bool may_sweep(const std::string& client) const;

@@ -52,6 +52,10 @@ constexpr std::size_t parts_of_a_point = 10, least_parts = 100'000;
 // Largest part of the provenance that is not the request's: a hash and the answer's limit, bytes.
 constexpr std::size_t max_hash = 256;
 
+// Time after which a request, with all its waiting, ends as at its deadline if others need its
+// thread: the longest that they are delayed. A fraction of it is left to finish the answer.
+constexpr std::chrono::duration<double> age_in_need(5);
+
 /// Ends the request of a client that has left; only the log shows its status.
 [[noreturn]] void throw_client_left() { throw Problem(499, "the client has left"); }
 
@@ -154,16 +158,20 @@ private:
     }
 
     /// True after this multiple of the deadline, not counting the time in which the permit waits;
-    /// without a permit; once the client has left; or if the server stops. One thread at a time.
+    /// after 5 s in all, once others need the thread; without a permit; once the client has left;
+    /// or if the server stops. One thread at a time.
     bool is_over(double fraction) {
         if (!permit_.renew()) return true;
         const auto now = Clock::now();
         if (now - checked_ > client_check_interval) {
             checked_ = now;
             is_abandoned_ = request_.left() || service_.admission.all_stopped();
+            if (!needed_ && now - began_ > age_in_need && request_.others_need_threads())
+                needed_ = now;
         }
         const std::chrono::duration<double> time(fraction * service_.options.deadline);
-        return is_abandoned_ || now - permit_.waited() > began_ + time;
+        return is_abandoned_ || now - permit_.waited() > began_ + time ||
+               (needed_ && now >= *needed_ + (fraction - 1) * age_in_need);
     }
 
     const Request& request_;
@@ -174,6 +182,7 @@ private:
     const Clock::time_point began_ = Clock::now();
     Clock::time_point checked_ = began_;
     bool is_abandoned_ = false;
+    std::optional<Clock::time_point> needed_;  // by others, from age_in_need on
 };
 
 Json body_of(

@@ -48,6 +48,19 @@ public:
             std::prev(std::find_if(entries_.rbegin(), entries_.rend(), by_value(may)).base()));
     }
     T pop_last() { return pop_last(any); }
+    /// The last entry of the client with the most, if this client, with one more, has fewer.
+    std::optional<T> pop_for(const std::string& client) {
+        std::map<std::string, std::size_t> counts;
+        for (const Entry& e : entries_) ++counts[e.client];
+        const std::size_t own = counts[client] + 1;
+        const auto most =
+            std::ranges::max_element(counts, {}, [](const auto& c) { return c.second; });
+        if (most->second <= own) return std::nullopt;
+        const auto last = std::find_if(entries_.rbegin(), entries_.rend(), [&](const Entry& e) {
+            return e.client == most->first;
+        });
+        return take(std::prev(last.base()));
+    }
     /// The first entry whose client may(client); nothing if there is none.
     template <class May>
     std::optional<T> pop(const May& may) {

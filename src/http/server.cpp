@@ -89,6 +89,7 @@ Task Server::answer(Connection& connection, Request received) {
     Request& request = delivery->request;
     request.id = request_id(request.head);
     request.left = [&outbox = delivery->outbox] { return outbox.client_has_left(); };
+    request.others_need_threads = [this] { return event_loop_.requests_wait(); };
     {
         const std::lock_guard lock(mutex_);
         deliveries_.insert(delivery);

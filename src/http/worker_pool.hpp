@@ -39,8 +39,8 @@ public:
     WorkerPool(const WorkerPool&) = delete;
     WorkerPool& operator=(const WorkerPool&) = delete;
 
-    /// Queues a job. If the queue is full, returns the job that finds no place: this one, or one
-    /// whose turn is later or whose client has its share of threads.
+    /// Queues a job. If the queue is full, returns the job that finds no place: this one, or the
+    /// last one of a client that has more in the queue, or its share of threads.
     std::optional<Job> add(const std::string& client, Job job) {
         std::optional<Job> refused;
         {
@@ -51,9 +51,10 @@ public:
                 } catch (const std::system_error&) {}  // the existing threads do the work
             }
             if (jobs_.size() >= free_ + max_threads_) {
-                const bool could_begin = may_begin()(client) && !may_begin()(jobs_.last_client());
-                if (!could_begin && !jobs_.precedes_last(client)) return job;
-                refused = jobs_.pop_last();
+                refused = jobs_.pop_for(client);
+                if (!refused && (!may_begin()(client) || may_begin()(jobs_.last_client())))
+                    return job;
+                if (!refused) refused = jobs_.pop_last();
             }
             jobs_.push(client, std::move(job));
         }

@@ -83,6 +83,31 @@ test("so are they while many clients have long runs", async (t) => {
   assert.ok(sockets.every(({text}) => statuses(text()).length === 0));
 });
 
+test("a request begins within 5 s while as many clients as there are threads have long runs", async (t) => {
+  const one = await startService([...trust, "--threads", "4", "--deadline", "600"]);
+  const sockets = [];
+  t.after(async () => {
+    for (const {socket} of sockets) socket.destroy();
+    await one.stop();
+  });
+  const long = '{"tau_end": 1e7, "max_impacts": 2e6, "include": ["exponents"]}';
+  for (let i = 0; i < 4; ++i) {
+    const connection = await connect(one.url);
+    connection.socket.write(post("/v1/simulate", long, from(`192.0.2.${10 + i}`)));
+    sockets.push(connection);
+  }
+  await until(async () => (await metric(one.url, "vines_compute_queue_depth")) >= 2);
+  await textOf(await send(one.url, "/v1/simulate", run, other));
+  await until(() => sockets.some(({text}) => statuses(text()).length > 0));
+  const {status} = JSON.parse(
+    sockets
+      .find(({text}) => text())
+      .text()
+      .split("\r\n\r\n")[1],
+  );
+  assert.equal(status.reason, "deadline");
+});
+
 test("so are they, however many, while it has more streams than there are threads", async (t) => {
   const one = await withGreedy(t, [...trust, "--threads", "8"], 40, streamed);
   for (let i = 0; i < 100; ++i) {

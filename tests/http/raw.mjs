@@ -27,7 +27,7 @@ export const send = (url, path, body, options = {}) =>
 /** Reads an answer to its end; its status must be 200. */
 export async function textOf(answer) {
   const text = await answer.text();
-  assert.equal(answer.status, 200);
+  assert.equal(answer.status, 200, text.slice(0, 1000));
   return text;
 }
 

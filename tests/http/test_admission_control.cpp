@@ -222,8 +222,20 @@ TEST_CASE("without a free slot foreground work starts in grace periods, up to th
     CHECK(admission.is_grace(second));
     CHECK(admission.is_grace(third));
     CHECK(!admission.try_acquire());
-    CHECK(!admission.acquire(client));
     CHECK(admission.load().running == 1);
+}
+
+TEST_CASE("grace periods that fill the queue leave one place to each client") {
+    AdmissionControl admission({.running = 1, .waiting = 2});
+    Slot slot = admission.try_acquire();
+    const Slot grace = admission.try_acquire(), other_grace = admission.try_acquire();
+    bool is_served = false;
+    std::thread modest([&] { is_served = admission.acquire("modest") != nullptr; });
+    wait_until([&] { return admission.load().waiting == 1; });
+    CHECK(!admission.acquire("modest"));
+    slot.reset();
+    modest.join();
+    CHECK(is_served);
 }
 
 TEST_CASE("the number of grace periods per slot is limited; one that ends allows another") {

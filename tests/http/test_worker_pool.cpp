@@ -1,0 +1,34 @@
+#include "http/worker_pool.hpp"
+
+#include <doctest/doctest.h>
+#include <atomic>
+#include <latch>
+
+using vines::http::WorkerPool;
+
+TEST_CASE("a full queue refuses the last job of the client with the most, whose share is in work") {
+    enum Job { quick, blocked };
+    std::latch end(1);
+    std::atomic<int> done = 0, begun = 0;
+    WorkerPool<Job> pool(4, [&](Job job) {
+        ++begun;
+        if (job == blocked) end.wait();
+        ++done;
+    });
+    const auto fill = [&pool] {
+        while (!pool.add("greedy", blocked)) {}
+    };
+    fill();
+    for (int i = 1; i <= 20; ++i) {
+        CHECK(pool.add("modest", quick).value_or(blocked) == blocked);
+        while (done < i) std::this_thread::yield();
+    }
+    // Its share of the threads is in work too, and it has had more turns.
+    pool.add("modest", blocked);
+    while (begun < 23) std::this_thread::yield();
+    fill();
+    const std::optional<Job> refused = pool.add("modest", quick);
+    REQUIRE(refused);
+    CHECK(*refused == blocked);
+    end.count_down();
+}
