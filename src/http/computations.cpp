@@ -92,6 +92,9 @@ public:
         } catch (const api::Cancelled&) {
             if (!permit_ || request_.left() || service_.admission.all_stopped())
                 throw_without_permit();
+            if (needed_)
+                throw Problem::unavailable(
+                    "threads", "others need the thread that reads it; try again in a second");
             throw Problem(
                 413, fmt::format(
                          "the server's time limit of {} s for one request was over before it was "

@@ -8,9 +8,10 @@ namespace vines {
 namespace {
 
 // Newton's method: largest number of steps, and the step after which only rounding remains. A step
-// below `last_correction` leaves an error of its square.
+// below `last_correction` leaves an error of its square, once the residual before it is small: next
+// to an event without speed derivatives are large, and change within a step.
 constexpr int most_corrections = 8;
-constexpr double last_correction = 1e-8, rounding_step = 1e-14;
+constexpr double last_correction = 1e-8, rounding_step = 1e-14, converged_residual = 1e-10;
 constexpr int most_evaluations = 60;
 
 /// The Jacobian with a last row.
@@ -47,7 +48,9 @@ std::optional<CurvePoint> point_in_plane(
         const double size = correction.cwiseAbs().maxCoeff();
         if (!(size < last_correction || size < 2 * before)) return std::nullopt;  // also NaN
         at.z -= correction;
-        if (size < last_correction && (size < rounding_step || before < last_correction)) {
+        const bool has_converged =
+            before < last_correction && residual.cwiseAbs().maxCoeff() < converged_residual;
+        if (size < last_correction && (size < rounding_step || has_converged)) {
             const auto tangent = tangent_of(jacobian, normal);
             if (!tangent) return std::nullopt;
             at.tangent = *tangent;

@@ -135,11 +135,17 @@ private:
         for (; h_ > shortest_arc; h_ *= 0.5) {
             auto b = on_.after(h_);
             if (!b && (b = node_at_end())) h_ = on_.at.tangent.dot(b->at.z - on_.at.z);
-            if (!b || !(b->at.tangent.dot(on_.at.tangent) > most_bend)) continue;
+            if (!b || !(b->at.tangent.dot(on_.at.tangent) > most_bend || is_corner(*b))) continue;
             if (h_ > watched_arc && !is_small_step(on_, *b)) continue;
             return b;
         }
         return std::nullopt;
+    }
+
+    /// True if the branch of a return has an edge before b, as where slips come or go: the tangents
+    /// differ, however short the step.
+    bool is_corner(const BranchNode& b) const {
+        return h_ <= watched_arc && on_.is_return() && (b.at.z - on_.at.z).norm() < most_back * h_;
     }
 
     /// The node at the end of the parameter's range if the step leads beyond.

@@ -8,6 +8,7 @@ namespace vines {
 namespace {
 
 // Step of the central differences, in units of the parameter: truncation and rounding are 1e-11.
+// That of a return is shorter where deviations grow, as next to an event without speed.
 constexpr double parameter_step = 1e-5;
 // Distance of values at which a family is compared with a symmetric one, in units of the parameter.
 constexpr double near_value = 1e-3;
@@ -83,16 +84,18 @@ std::optional<OrbitValues> OrbitEquations::values(
     if (jacobian) jacobian->setZero(equations(), unknowns());
     auto at = evaluated(z, *p, jacobian);
     if (!at || !jacobian) return at;
+    const double step =
+        at->approach.empty() ? parameter_step / std::max(1.0, at->transfer.norm()) : parameter_step;
     for (Eigen::Index c = equations(); c < unknowns(); ++c) {
         // One-sided at the end of a parameter's range.
         Unknowns beside = z;
         Eigen::VectorXd difference = Eigen::VectorXd::Zero(equations());
         double width = 0;
         for (const double side : {1.0, -1.0}) {
-            beside(c) = z(c) + side * parameter_step;
+            beside(c) = z(c) + side * step;
             const auto other = values(beside);
             difference += side * (other ? other->residual : at->residual);
-            if (other) width += parameter_step;
+            if (other) width += step;
         }
         if (width == 0) return std::nullopt;
         jacobian->col(c) = difference / width;

@@ -390,6 +390,37 @@ TEST_CASE("branches under friction are orbits of the simulated motion, also alon
     CHECK(r.ends() == std::vector{BranchEnd::range, BranchEnd::range});
 }
 
+TEST_CASE(
+    "under friction a branch passes edges where slips change, and ends where the ball grazes") {
+    Parameters base = table1(0.006, Damping::equation_of_motion);
+    base.epsilon = 0.03;
+    base.lambda = 2.0 / 3;
+    const auto with = [&base](double friction, double F) {
+        Parameters p = base;
+        p.friction = friction;
+        p.G = F / p.epsilon;
+        return p;
+    };
+    const Change change = [](Parameters& p, double Omega) { p.Omega = Omega; };
+    Parameters p = with(6.3369e-5, 5e-4);
+    p.Omega = 13.0 / 14;
+    const Recorded past = continued(p, change, p.Omega, p.Omega, 0.95);
+    check_points(past, [&p](double Omega) {
+        Parameters q = p;
+        q.Omega = Omega;
+        return q;
+    });
+    CHECK(past.at(SpecialKind::stick) == doctest::Approx(13.0076145 / 14).epsilon(1e-8));
+    CHECK(past.ends() == std::vector{BranchEnd::range, BranchEnd::range});
+    p = with(1.26737e-4, 2e-4);
+    p.Omega = 1;
+    // The last impacts become grazing contacts, next to which multipliers grow beyond all limits.
+    const Recorded grazing = continued(p, change, 1, 0.8, 1.3);
+    CHECK(grazing.points.size() < 500);
+    for (const Recorded::Special& s : grazing.specials)
+        if (s.point.end) CHECK(s.point.orbit.measures.share_impacts.value_or(1) < 1e-8);
+}
+
 TEST_CASE("a branch that returns to its start is reported once, as closed") {
     Parameters p = table1(0.015, Damping::closed_form);
     const Recorded r =
