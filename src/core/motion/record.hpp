@@ -90,7 +90,8 @@ public:
     }
     void on_stretch(const Stretch&) override;
     void finish(const Outcome& outcome) {
-        if (series.tau.empty() || series.tau.back() < outcome.tau)
+        constexpr double rounding = 1e-6;  // of a long run, in steps
+        if (series.tau.empty() || series.tau.back() < outcome.tau - rounding * step_)
             add(outcome.tau, outcome.state, x_ddot_at_end_, base_at_end_);
     }
 

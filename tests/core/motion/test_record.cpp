@@ -61,6 +61,12 @@ TEST_CASE("a series whose last step is the end of the run contains the end once"
     series.finish(run.outcome);
     REQUIRE(series.series.tau.size() == 41);
     CHECK(series.series.tau.back() == 10);
+    // Also if the two differ by rounding.
+    for (int cycles = 1; cycles <= 30; ++cycles) {
+        SeriesRecord rounded(p.cycle() / 49);
+        rounded.finish(record(p, default_state(p), cycles * p.cycle(), 1000, {&rounded}).outcome);
+        CHECK(rounded.series.tau.size() == 49 * static_cast<std::size_t>(cycles) + 1);
+    }
 }
 
 TEST_CASE("stroboscopic states are those of the motion at one phase of each cycle") {
