@@ -15,6 +15,9 @@ constexpr int graces_per_slot = 4;
 // Work that waits after a time slice, per slot, whatever its memory.
 constexpr int interrupted_per_slot = 8;
 
+// Time for which a look at the memory holds: little is allocated in it, and a look takes 15 us.
+constexpr auto memory_look = std::chrono::milliseconds(5);
+
 // Time after which background work no longer waits for foreground work.
 constexpr auto patience = std::chrono::milliseconds(200);
 
@@ -23,8 +26,9 @@ constexpr auto patience = std::chrono::milliseconds(200);
 // take up to fifteen times their size, one of the largest up to 340 MB. Bytes.
 constexpr std::size_t immediate_body = 1 << 20, bodies_at_once = 4 << 20;
 
-// Texts of large answers that are made at once, or one alone: the bytes that they are made from.
-constexpr std::size_t texts_at_once = 48 << 20;
+// Texts of answers up to the first size that are made at once, and of larger ones beside them: the
+// bytes that they are made from.
+constexpr std::size_t lesser_texts_at_once = 16 << 20, texts_at_once = 48 << 20;
 
 // Larger bodies that wait, and their bytes; each occupies a worker.
 constexpr std::size_t most_waiting_bodies = 32, most_waiting_bytes = 256 << 20;
@@ -39,7 +43,8 @@ AdmissionControl::AdmissionControl(const AdmissionLimits& limits)
       free_(limits.running),
       large_bodies_{bodies_at_once},
       lesser_bodies_{bodies_at_once},
-      texts_{texts_at_once} {}
+      large_texts_{texts_at_once},
+      lesser_texts_{lesser_texts_at_once} {}
 
 /// True if background work may overtake foreground work: it then has a tenth of the time.
 bool AdmissionControl::may_overtake() const {
@@ -64,7 +69,7 @@ void AdmissionControl::assign() {
     }
     foreground_waits_ = !foreground_.empty();
     background_waits_ = !background_.empty();
-    for (BySize* const g : {&large_bodies_, &lesser_bodies_, &texts_})
+    for (BySize* const g : {&large_bodies_, &lesser_bodies_, &large_texts_, &lesser_texts_})
         while (!g->waiting.empty() &&
                (g->in_work == 0 || g->in_work + g->waiting.front()->bytes <= g->at_once))
             g->in_work += grant_next(g->waiting).bytes;
@@ -78,10 +83,9 @@ bool AdmissionControl::end_wait(Queue& queue, Waiter& waiter) {
     return false;
 }
 
-void AdmissionControl::displace_last(Queue& queue, bool (*may)(const Waiter*)) {
-    Waiter& last = *queue.pop_last(may);
-    last.displaced = true;
-    last.changed.notify_one();
+void AdmissionControl::displace(Waiter& waiter) {
+    waiter.displaced = true;
+    waiter.changed.notify_one();
 }
 
 /// Waits in a queue until the waiter, which is in it, is granted what it waits for, is displaced,
@@ -113,7 +117,9 @@ AdmissionControl::Slot AdmissionControl::try_acquire() {
         --free_;
         return Slot(this);
     }
-    if (is_full() || graces_ >= graces_per_slot * limits_.running) return nullptr;
+    // Without looking for others it can allocate much before its grace period ends.
+    if (is_full() || graces_ >= graces_per_slot * limits_.running || is_short_of_memory())
+        return nullptr;
     ++graces_;
     return {this, {.is_grace = true}};
 }
@@ -124,7 +130,7 @@ AdmissionControl::Slot AdmissionControl::acquire(
     if (free_ == 0 && is_full()) {
         const auto is_new = [](const Waiter* waiter) { return !waiter->is_interrupted; };
         const auto is_own = [&client](const std::string& other) { return other == client; };
-        if (foreground_.precedes_last(client, is_new)) displace_last(foreground_, is_new);
+        if (foreground_.precedes_last(client, is_new)) displace(*foreground_.pop_last(is_new));
         else if (new_waiting() >= limits_.waiting || foreground_.has(is_own)) return nullptr;
     }
     Waiter waiter;
@@ -151,9 +157,26 @@ bool AdmissionControl::others_are_due(const std::string& client) const {
     if (!foreground_waits_ && !background_waits_) return false;
     const std::lock_guard lock(mutex_);
     const auto is_other = [&client](const std::string& other) { return other != client; };
-    return (foreground_.has(is_other) || may_overtake()) &&
-           (interrupted_ < interrupted_per_slot * limits_.running ||
-            resident_bytes() < limits_.memory);
+    return (foreground_.has(is_other) || may_overtake()) && may_interrupt();
+}
+
+bool AdmissionControl::others_are_stuck(const std::string& client) const {
+    if (!foreground_waits_) return false;
+    const std::lock_guard lock(mutex_);
+    const auto is_other = [&client](const std::string& other) { return other != client; };
+    return foreground_.has(is_other) && !may_interrupt();
+}
+
+bool AdmissionControl::may_interrupt() const {
+    return interrupted_ < interrupted_per_slot * limits_.running || !is_short_of_memory();
+}
+
+bool AdmissionControl::is_short_of_memory() const {
+    if (const auto now = Clock::now(); now - memory_checked_ > memory_look) {
+        memory_checked_ = now;
+        is_short_of_memory_ = resident_bytes() >= limits_.memory;
+    }
+    return is_short_of_memory_;
 }
 
 AdmissionControl::Slot AdmissionControl::acquire_background(
@@ -222,7 +245,7 @@ bool AdmissionControl::make_space(Queue& queue, const std::string& client, std::
     if (fits(queue.size(), waiting)) return true;
     if (!queue.precedes_last(client) || !fits(queue.size() - 1, waiting - queue.back()->bytes))
         return false;
-    displace_last(queue);
+    displace(*queue.pop_last());
     return true;
 }
 
@@ -253,8 +276,13 @@ AdmissionControl::SizePermit AdmissionControl::acquire_body(
 AdmissionControl::SizePermit AdmissionControl::acquire_text(
     const std::string& client, std::size_t bytes, const std::function<bool()>& gives_up) {
     std::unique_lock lock(mutex_);
-    if (texts_.in_work > 0 && resident_bytes() >= limits_.memory) return nullptr;
-    return acquire_by_size(lock, texts_, client, bytes, gives_up);
+    BySize& texts = bytes > lesser_texts_at_once ? large_texts_ : lesser_texts_;
+    if (texts.in_work > 0 && is_short_of_memory()) {
+        const auto most = texts.waiting.pop_for(client);
+        if (!most) return nullptr;
+        displace(**most);
+    }
+    return acquire_by_size(lock, texts, client, bytes, gives_up);
 }
 
 void AdmissionControl::stop_sweeps() {
@@ -281,7 +309,7 @@ bool Permit::renew() {
     if (!slot_) return false;
     const bool is_grace = AdmissionControl::is_grace(slot_);
     const Clock::time_point now = Clock::now();
-    if (now - since_ < (is_grace ? grace_time : time_slice)) return true;
+    if (now - since_ < (is_grace ? grace_time : slice_)) return true;
     since_ = now;
     if (!is_grace && !admission_.others_are_due(client_)) return true;
     slot_ = admission_.resume(client_, gives_up_, std::move(slot_));

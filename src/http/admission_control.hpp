@@ -75,6 +75,9 @@ public:
     Slot resume(const std::string& client, const std::function<bool()>& gives_up, Slot begun);
     /// True if foreground work with a slot should resume(): other clients' work is due.
     bool others_are_due(const std::string& client) const;
+    /// True if other clients' work waits and is not due, since the process uses all of its memory:
+    /// foreground work should end.
+    bool others_are_stuck(const std::string& client) const;
     /// For background work: waits for a slot, after the background work whose turn is earlier, and
     /// after all foreground work unless it has waited for 200 ms; then at most one per slot and 200
     /// ms overtakes. Null once `stop` is requested or sweeps are stopped.
@@ -105,7 +108,8 @@ public:
         const std::string& client, std::size_t bytes, const std::function<bool()>& gives_up);
     /// The right to make the text of an answer from more than immediate_text bytes and to compress
     /// it: likewise one of the largest at once. Null if gives_up() returned true, or if another one
-    /// is being made while the process uses all of its memory. Not to be waited for with a slot.
+    /// is being made while the process uses all of its memory, unless the client with most answers
+    /// that wait loses one. Not to be waited for with a slot.
     SizePermit acquire_text(
         const std::string& client, std::size_t bytes, const std::function<bool()>& gives_up);
 
@@ -132,14 +136,15 @@ private:
     using Queue = FairQueue<Waiter*>;
     using Lock = std::unique_lock<std::mutex>;
 
+    bool is_short_of_memory() const;
+    bool may_interrupt() const;
     int new_waiting() const;
     bool is_full() const;
     bool may_overtake() const;
     bool may_sweep(const std::string& client) const;
     void assign();
     bool end_wait(Queue& queue, Waiter& waiter);
-    static bool any(const Waiter*) { return true; }
-    static void displace_last(Queue& queue, bool (*may)(const Waiter*) = any);
+    static void displace(Waiter& waiter);
     bool wait(Lock& lock, Queue& queue, Waiter& waiter, const std::function<bool()>& gives_up);
     /// Work that is admitted by its size: several that have at most `at_once` bytes together, or
     /// one.
@@ -157,10 +162,12 @@ private:
     mutable std::mutex mutex_;
     int free_, graces_ = 0;  // nobody waits while free_ > 0
     int interrupted_ = 0;    // work that waits after a time slice
+    mutable Clock::time_point memory_checked_ = {};
+    mutable bool is_short_of_memory_ = false;  // then
     Clock::time_point next_overtaking_ = {};
     std::list<std::string> sweeps_;  // their clients
     Queue foreground_, background_;
-    BySize large_bodies_, lesser_bodies_, texts_;
+    BySize large_bodies_, lesser_bodies_, large_texts_, lesser_texts_;
     // Written under the mutex; running work reads them without it.
     std::atomic<bool> foreground_waits_ = false, background_waits_ = false;
     std::atomic<bool> sweeps_stopped_ = false, all_stopped_ = false;
@@ -198,12 +205,16 @@ public:
     /// Time spent waiting, without the initial wait.
     Clock::duration waited() const { return waited_; }
 
+    /// Makes its time slices ten times as long: others wait for what this work alone may do.
+    void lengthen() { slice_ = 10 * time_slice; }
+
 private:
     AdmissionControl& admission_;
     const std::string client_;
     const std::function<bool()> gives_up_;
     AdmissionControl::Slot slot_;
     Clock::time_point since_ = Clock::now();  // start of the grace period or the time slice
+    Clock::duration slice_ = time_slice;
     Clock::duration waited_{};
 };
 

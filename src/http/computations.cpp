@@ -53,7 +53,8 @@ constexpr std::size_t parts_of_a_point = 10, least_parts = 100'000;
 constexpr std::size_t max_hash = 256;
 
 // Time after which a request, with all its waiting, ends as at its deadline if others need its
-// thread: the longest that they are delayed. A fraction of it is left to finish the answer.
+// thread or, where memory lacks for turns, its slot: the longest that they are delayed. A fraction
+// of it is left to finish the answer.
 constexpr std::chrono::duration<double> age_in_need(5);
 
 /// Ends the request of a client that has left; only the log shows its status.
@@ -112,6 +113,7 @@ public:
     /// Ends a phase.
     void lap(const char* name) { watch_.lap(name, permit_.waited()); }
     bool renew() { return permit_.renew(); }  ///< see Permit
+    /// To be called once the body is read, or, since its record is kept, once it is identified.
     void release_body() { body_permit_.reset(); }
     /// Waits for the permit to make the text of an answer from these bytes.
     void wait_for_text(std::size_t bytes) {
@@ -124,7 +126,10 @@ public:
                 service_.admission.acquire_text(request_.sender.client(), bytes, gives_up);
             return text_permit_ != nullptr;
         };
-        if (permit_.wait_without_slot(wait)) return;
+        if (permit_.wait_without_slot(wait)) {
+            permit_.lengthen();
+            return;
+        }
         if (!text_permit_ && !gives_up())
             throw Problem::unavailable(
                 "memory", "other large answers are being made; try again in a second");
@@ -169,12 +174,16 @@ private:
         if (now - checked_ > client_check_interval) {
             checked_ = now;
             is_abandoned_ = request_.left() || service_.admission.all_stopped();
-            if (!needed_ && now - began_ > age_in_need && request_.others_need_threads())
-                needed_ = now;
+            if (!needed_ && now - began_ > age_in_need && others_need_it()) needed_ = now;
         }
         const std::chrono::duration<double> time(fraction * service_.options.deadline);
         return is_abandoned_ || now - permit_.waited() > began_ + time ||
                (needed_ && now >= *needed_ + (fraction - 1) * age_in_need);
+    }
+
+    bool others_need_it() const {
+        return request_.others_need_threads() ||
+               service_.admission.others_are_stuck(request_.sender.client());
     }
 
     const Request& request_;
@@ -333,6 +342,8 @@ Response answer(Request& r, const Service& service, Stopwatch& watch) {
     api::AnswerRequest request =
         computing.read([&r](const api::ReadLimits& limits) { return asked(r, limits); });
     std::string().swap(r.body);
+    if (!std::holds_alternative<api::IdentifyRequest>(request.computation))
+        computing.release_body();
     std::optional<api::Format>& format = request.form.format;
     if (!format) format = accepted_format(r.head.header("accept"));
     const std::string provenance = api::describe(request.provenance, nullptr).dump();

@@ -41,8 +41,8 @@ public:
     /// To be called when a request is refused because streams hold what it needs: for a while
     /// those that are read slowly are broken off sooner.
     void note_scarcity_of_streams() { streams_scarce_ = Clock::now(); }
-    /// True while a request waits for a thread, other than one whose client has its share.
-    bool requests_wait() { return workers_.jobs_wait(); }
+    /// True while another client's request waits for a thread, of which this one has its share.
+    bool others_need_threads(const std::string& client) { return workers_.others_need(client); }
     /// From any thread, once: accepts no new connections, answers requests that arrive on open ones
     /// within 300 ms, waits for the answers in progress, and lets run() return.
     void stop();

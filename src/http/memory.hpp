@@ -79,13 +79,14 @@ private:
     std::map<std::string, std::size_t> clients_;  // bytes of each
 };
 
-/// Limits the memory that malloc keeps. Blocks of 4 MiB and more are mapped one by one: glibc's own
-/// threshold grows up to 32 MiB with what is freed. Below it each arena keeps enough for one answer
+/// Limits the memory that malloc keeps. Blocks of 1 MiB and more are mapped one by one: glibc's own
+/// threshold grows up to 32 MiB with what is freed, and a run that waits would keep the pages that
+/// it reserved and has not written. Below it each arena keeps enough for one answer
 /// of tens of thousands of numbers, because each page requested anew costs a microsecond. There are
 /// no more arenas than computing threads.
 inline void configure_malloc([[maybe_unused]] int computing) {
 #ifdef __GLIBC__
-    mallopt(M_MMAP_THRESHOLD, 4 << 20);
+    mallopt(M_MMAP_THRESHOLD, 1 << 20);
     mallopt(M_TRIM_THRESHOLD, 8 << 20);
     mallopt(M_ARENA_MAX, computing);
 #endif

@@ -13,7 +13,7 @@ namespace vines::http {
 namespace {
 
 // httplib's default of 5 would refuse some of 400 simultaneous clients.
-constexpr int backlog = 512;
+constexpr int backlog = 4096;
 
 // Largest answer sent even when the memory budget is used up, bytes: the number of connections
 // bounds these.
@@ -89,7 +89,9 @@ Task Server::answer(Connection& connection, Request received) {
     Request& request = delivery->request;
     request.id = request_id(request.head);
     request.left = [&outbox = delivery->outbox] { return outbox.client_has_left(); };
-    request.others_need_threads = [this] { return event_loop_.requests_wait(); };
+    request.others_need_threads = [this, &request] {
+        return event_loop_.others_need_threads(request.sender.client());
+    };
     {
         const std::lock_guard lock(mutex_);
         deliveries_.insert(delivery);

@@ -72,6 +72,19 @@ public:
         return jobs_.size() > free_ && jobs_.has(may_begin());
     }
 
+    /// True if a client has its equal share of the threads or more while a job of another one,
+    /// which has less, waits for a thread.
+    bool others_need(const std::string& client) {
+        const std::lock_guard lock(mutex_);
+        if (jobs_.size() <= free_) return false;
+        const std::size_t share = std::max<std::size_t>(max_threads_ / (running_.size() + 1), 1);
+        const auto has_less = [this, share](const std::string& one) {
+            const auto running = running_.find(one);
+            return running == running_.end() || running->second < share;
+        };
+        return !has_less(client) && jobs_.has(has_less);
+    }
+
 private:
     void start_one() {
         threads_.emplace_back([this] { run(); });

@@ -1,7 +1,7 @@
 // One client with many connections leaves their share to the others. The clients here are those
 // that a trusted proxy names.
 import assert from "node:assert/strict";
-import {mkdtemp, writeFile} from "node:fs/promises";
+import {mkdtemp, readFile, writeFile} from "node:fs/promises";
 import {tmpdir} from "node:os";
 import {join} from "node:path";
 import {test} from "node:test";
@@ -162,6 +162,38 @@ test("few requests follow one sweep, so that threads remain for others; it passe
   sweep.cycles += 1;
   const again = () => follow("192.0.2.1");
   await until(async () => (await again()) === 200);
+});
+
+test("a long run with a large body does not hold up other runs with large bodies", async (t) => {
+  const one = await startService([...trust, "--compute-threads", "2", "--deadline", "600"]);
+  const {socket, text} = await connect(one.url);
+  t.after(async () => {
+    socket.destroy();
+    await one.stop();
+  });
+  socket.write(post("/v1/simulate", long + " ".repeat(300000), from("192.0.2.1")));
+  await until(async () => (await metric(one.url, "vines_compute_running")) === 1);
+  await textOf(await send(one.url, "/v1/simulate", run + " ".repeat(300000), other));
+  assert.equal(text().length, 0);
+});
+
+test("many runs with large series wait for their turn in little memory", async (t) => {
+  const one = await startService([...trust, "--memory-limit", "100000000"]);
+  const system = {m1: 2, f0: 8, damping_ratio: 0.01, m2: 0.04, b: 0.02, R: 0.5, f: 8, F: 0.0005};
+  const series = {tau_end: 62800, samples_per_cycle: 100, max_points: 1e6, include: ["series"]};
+  const request = JSON.stringify({...system, ...series});
+  const sockets = await connectAll(one.url, 40, () =>
+    post("/v1/simulate", request, `${from("192.0.2.1")}Accept-Encoding: gzip\r\n`).repeat(4),
+  );
+  t.after(async () => {
+    for (const {socket} of sockets) socket.destroy();
+    await one.stop();
+  });
+  const answered = () => sockets.filter(({text}) => text()).length;
+  await until(() => answered() > 20);
+  const status = await readFile(`/proc/${one.pid}/status`, "utf8");
+  const peak = Number(/VmHWM:\s*(\d+)/.exec(status)[1]) / 1000;
+  assert.ok(peak < 500, `${peak} MB`);
 });
 
 test("an upload that dribbles is cut off while another finds no memory", async (t) => {

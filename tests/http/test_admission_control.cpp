@@ -2,6 +2,7 @@
 // ctest's time limit; no test depends on the machine's speed.
 #include <doctest/doctest.h>
 
+#include <array>
 #include <atomic>
 #include <mutex>
 #include <string>
@@ -9,6 +10,7 @@
 #include <vector>
 
 #include "http/admission_control.hpp"
+#include "http/memory.hpp"
 
 using namespace vines::http;
 
@@ -522,6 +524,7 @@ TEST_CASE("much work is not interrupted while the process uses all of its memory
         const int most = memory == 0 ? 9 : 30;
         wait_until([&] { return begun == most; });
         CHECK(begun == most);
+        CHECK(admission.others_are_stuck("long") == (memory == 0));
         ended = true;
         for (std::thread& thread : threads) thread.join();
     }
@@ -566,4 +569,38 @@ TEST_CASE("texts of large answers are made one at a time, without a slot while t
     const auto only = scarce.acquire_text(client, 40 << 20, never);
     CHECK(only);
     CHECK(!scarce.acquire_text("other", 40 << 20, never));
+    CHECK(scarce.acquire_text("other", 8 << 20, never));  // beside the largest
+}
+
+TEST_CASE("without memory a large answer takes the place of one of the client with most") {
+    AdmissionControl admission({.running = 1, .memory = resident_bytes() + (32 << 20)});
+    auto first = admission.acquire_text(client, 40 << 20, {});
+    std::atomic<int> made = 0, refused = 0;
+    std::vector<std::thread> threads;
+    std::array<std::atomic<bool>, 4> waits = {};
+    const auto make = [&](const std::string& name) {
+        std::atomic<bool>& waiting = waits[threads.size()];
+        threads.emplace_back([&, name] {
+            const auto polled = [&waiting] {
+                waiting = true;
+                return false;
+            };
+            ++(admission.acquire_text(name, 40 << 20, polled) ? made : refused);
+        });
+        wait_until([&] { return waiting.load(); });
+    };
+    for (int i = 0; i < 3; ++i) make(client);
+    const std::vector<char> used(64 << 20, 1);
+    make("other");
+    wait_until([&] { return refused == 1; });
+    first.reset();
+    for (std::thread& thread : threads) thread.join();
+    CHECK(made == 3);
+}
+
+TEST_CASE("without memory no work starts in a grace period") {
+    AdmissionControl admission({.running = 1, .memory = 0});
+    const Slot slot = admission.try_acquire();
+    CHECK(!admission.try_acquire());
+    CHECK(!admission.others_are_stuck(client));
 }

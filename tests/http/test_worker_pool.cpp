@@ -32,3 +32,25 @@ TEST_CASE("a full queue refuses the last job of the client with the most, whose 
     CHECK(*refused == blocked);
     end.count_down();
 }
+
+TEST_CASE("others need the threads of a client that has its share while they have less") {
+    std::latch end(1);
+    std::atomic<int> begun = 0;
+    WorkerPool<int> pool(4, [&](int) {
+        ++begun;
+        end.wait();
+    });
+    auto add = [&, count = 0](const std::string& client) mutable {
+        CHECK(!pool.add(client, 0));
+        ++count;
+        while (begun < std::min(count, 4)) std::this_thread::yield();
+    };
+    for (const char* client : {"greedy", "greedy", "second", "third"}) add(client);
+    CHECK(!pool.others_need("greedy"));
+    add("second");  // it has one, its share of four threads
+    CHECK(!pool.others_need("greedy"));
+    add("new");
+    CHECK(pool.others_need("greedy"));
+    CHECK(!pool.others_need("new"));
+    end.count_down();
+}
