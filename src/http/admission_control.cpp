@@ -21,10 +21,10 @@ constexpr auto memory_look = std::chrono::milliseconds(5);
 // Time after which background work no longer waits for foreground work.
 constexpr auto patience = std::chrono::milliseconds(200);
 
-// Bodies up to this size need no permit. Larger ones run together up to `bodies_at_once` bytes; of
-// those that are larger still one at a time, beside them. While they are read and computed they
-// take up to fifteen times their size, one of the largest up to 340 MB. Bytes.
-constexpr std::size_t immediate_body = 1 << 20, bodies_at_once = 4 << 20;
+// Bodies above immediate_body are read together up to this size; of larger ones one at a time,
+// beside them. While they are read and computed they take up to fifteen times their size, one of
+// the largest up to 340 MB. Bytes.
+constexpr std::size_t bodies_at_once = 4 << 20;
 
 // Texts of answers up to the first size that are made at once, and of larger ones beside them: the
 // bytes that they are made from.
@@ -43,6 +43,8 @@ AdmissionControl::AdmissionControl(const AdmissionLimits& limits)
       free_(limits.running),
       large_bodies_{bodies_at_once},
       lesser_bodies_{bodies_at_once},
+      large_records_{bodies_at_once},
+      lesser_records_{bodies_at_once},
       large_texts_{texts_at_once},
       lesser_texts_{lesser_texts_at_once} {}
 
@@ -61,15 +63,18 @@ void AdmissionControl::assign() {
         next.changed.notify_one();
         return next;
     };
+    for (; free_ > 0 && !urgent_.empty(); --free_) grant_next(urgent_);
     for (; free_ > 0 && !(foreground_.empty() && background_.empty()); --free_) {
         const bool overtakes = !foreground_.empty() && may_overtake();
         if (overtakes) next_overtaking_ = Clock::now() + patience / limits_.running;
         Waiter& next = grant_next(foreground_.empty() || overtakes ? background_ : foreground_);
         next.overtakes = overtakes;
     }
-    foreground_waits_ = !foreground_.empty();
+    foreground_waits_ = !foreground_.empty() || !urgent_.empty();
     background_waits_ = !background_.empty();
-    for (BySize* const g : {&large_bodies_, &lesser_bodies_, &large_texts_, &lesser_texts_})
+    for (BySize* const g :
+         {&large_bodies_, &lesser_bodies_, &large_records_, &lesser_records_, &large_texts_,
+          &lesser_texts_})
         while (!g->waiting.empty() &&
                (g->in_work == 0 || g->in_work + g->waiting.front()->bytes <= g->at_once))
             g->in_work += grant_next(g->waiting).bytes;
@@ -117,8 +122,8 @@ AdmissionControl::Slot AdmissionControl::try_acquire() {
         --free_;
         return Slot(this);
     }
-    // Without looking for others it can allocate much before its grace period ends.
-    if (is_full() || graces_ >= graces_per_slot * limits_.running || is_short_of_memory())
+    // Many can allocate much before their grace periods end.
+    if (is_full() || graces_ >= graces_per_slot * limits_.running || uses(limits_.memory / 2))
         return nullptr;
     ++graces_;
     return {this, {.is_grace = true}};
@@ -153,11 +158,19 @@ AdmissionControl::Slot AdmissionControl::resume(
     return Slot(granted ? this : nullptr);
 }
 
+AdmissionControl::Slot AdmissionControl::acquire_urgently(
+    const std::string& client, const std::function<bool()>& gives_up) {
+    std::unique_lock lock(mutex_);
+    Waiter waiter;
+    urgent_.push(client, &waiter);
+    return Slot(wait(lock, urgent_, waiter, gives_up) ? this : nullptr);
+}
+
 bool AdmissionControl::others_are_due(const std::string& client) const {
     if (!foreground_waits_ && !background_waits_) return false;
     const std::lock_guard lock(mutex_);
     const auto is_other = [&client](const std::string& other) { return other != client; };
-    return (foreground_.has(is_other) || may_overtake()) && may_interrupt();
+    return !urgent_.empty() || ((foreground_.has(is_other) || may_overtake()) && may_interrupt());
 }
 
 bool AdmissionControl::others_are_stuck(const std::string& client) const {
@@ -168,15 +181,15 @@ bool AdmissionControl::others_are_stuck(const std::string& client) const {
 }
 
 bool AdmissionControl::may_interrupt() const {
-    return interrupted_ < interrupted_per_slot * limits_.running || !is_short_of_memory();
+    return interrupted_ < interrupted_per_slot * limits_.running || !uses(limits_.memory);
 }
 
-bool AdmissionControl::is_short_of_memory() const {
+bool AdmissionControl::uses(std::size_t bytes) const {
     if (const auto now = Clock::now(); now - memory_checked_ > memory_look) {
         memory_checked_ = now;
-        is_short_of_memory_ = resident_bytes() >= limits_.memory;
+        resident_ = resident_bytes();
     }
-    return is_short_of_memory_;
+    return resident_ >= bytes;
 }
 
 AdmissionControl::Slot AdmissionControl::acquire_background(
@@ -265,10 +278,12 @@ AdmissionControl::SizePermit AdmissionControl::acquire_by_size(
 }
 
 AdmissionControl::SizePermit AdmissionControl::acquire_body(
-    const std::string& client, std::size_t bytes, const std::function<bool()>& gives_up) {
+    const std::string& client, std::size_t bytes, bool is_record,
+    const std::function<bool()>& gives_up) {
     if (bytes <= immediate_body) return {this, [](void*) {}};
     std::unique_lock lock(mutex_);
-    BySize& bodies = bytes > bodies_at_once ? large_bodies_ : lesser_bodies_;
+    BySize& large = is_record ? large_records_ : large_bodies_;
+    BySize& bodies = bytes > bodies_at_once ? large : is_record ? lesser_records_ : lesser_bodies_;
     if (!make_space(bodies.waiting, client, bytes)) return nullptr;
     return acquire_by_size(lock, bodies, client, bytes, gives_up);
 }
@@ -277,7 +292,7 @@ AdmissionControl::SizePermit AdmissionControl::acquire_text(
     const std::string& client, std::size_t bytes, const std::function<bool()>& gives_up) {
     std::unique_lock lock(mutex_);
     BySize& texts = bytes > lesser_texts_at_once ? large_texts_ : lesser_texts_;
-    if (texts.in_work > 0 && is_short_of_memory()) {
+    if (texts.in_work > 0 && uses(limits_.memory)) {
         const auto most = texts.waiting.pop_for(client);
         if (!most) return nullptr;
         displace(**most);
@@ -293,16 +308,22 @@ void AdmissionControl::stop_sweeps() {
 
 AdmissionLoad AdmissionControl::load() const {
     const std::lock_guard lock(mutex_);
-    return {limits_.running - free_, foreground_.size(), static_cast<int>(sweeps_.size())};
+    return {
+        limits_.running - free_, foreground_.size() + urgent_.size(),
+        static_cast<int>(sweeps_.size())};
 }
 
 Permit::Permit(
-    AdmissionControl& admission, std::string client, std::function<bool()> gives_up, bool may_begin)
+    AdmissionControl& admission, std::string client, std::function<bool()> gives_up, bool may_begin,
+    bool is_urgent)
     : admission_(admission),
       client_(std::move(client)),
-      gives_up_(std::move(gives_up)) {
+      gives_up_(std::move(gives_up)),
+      slice_(is_urgent ? urgent_slice : time_slice) {
     if (may_begin) slot_ = admission_.try_acquire();
-    if (!slot_) slot_ = admission_.acquire(client_, gives_up_);
+    if (!slot_)
+        slot_ = is_urgent ? admission_.acquire_urgently(client_, gives_up_)
+                          : admission_.acquire(client_, gives_up_);
 }
 
 bool Permit::renew() {
@@ -321,7 +342,8 @@ bool Permit::renew() {
 bool Permit::wait_without_slot(const std::function<bool()>& wait) {
     const Clock::time_point began = Clock::now();
     slot_.reset();
-    if (wait()) slot_ = admission_.resume(client_, gives_up_, nullptr);
+    if (wait()) slot_ = admission_.acquire_urgently(client_, gives_up_);
+    slice_ = urgent_slice;
     since_ = Clock::now();
     waited_ += since_ - began;
     return slot_ != nullptr;

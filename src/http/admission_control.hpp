@@ -73,6 +73,9 @@ public:
     /// slot; always finds space in the queue. Work that had a slot, or has given it back before
     /// (null), waits before the client's other work. Null as above.
     Slot resume(const std::string& client, const std::function<bool()>& gives_up, Slot begun);
+    /// For foreground work that holds a permit by size, for which others wait: before all other
+    /// work.
+    Slot acquire_urgently(const std::string& client, const std::function<bool()>& gives_up);
     /// True if foreground work with a slot should resume(): other clients' work is due.
     bool others_are_due(const std::string& client) const;
     /// True if other clients' work waits and is not due, since the process uses all of its memory:
@@ -104,8 +107,10 @@ public:
     /// others wait. Null if too many wait whose turn is earlier, or gives_up() returned true; it is
     /// polled every 50 ms. Smaller bodies have it at once.
     using SizePermit = std::shared_ptr<void>;
+    /// Records, which keep it until they are identified, do not hold up other bodies.
     SizePermit acquire_body(
-        const std::string& client, std::size_t bytes, const std::function<bool()>& gives_up);
+        const std::string& client, std::size_t bytes, bool is_record,
+        const std::function<bool()>& gives_up);
     /// The right to make the text of an answer from more than immediate_text bytes and to compress
     /// it: likewise one of the largest at once. Null if gives_up() returned true, or if another one
     /// is being made while the process uses all of its memory, unless the client with most answers
@@ -136,7 +141,7 @@ private:
     using Queue = FairQueue<Waiter*>;
     using Lock = std::unique_lock<std::mutex>;
 
-    bool is_short_of_memory() const;
+    bool uses(std::size_t bytes) const;
     bool may_interrupt() const;
     int new_waiting() const;
     bool is_full() const;
@@ -163,15 +168,19 @@ private:
     int free_, graces_ = 0;  // nobody waits while free_ > 0
     int interrupted_ = 0;    // work that waits after a time slice
     mutable Clock::time_point memory_checked_ = {};
-    mutable bool is_short_of_memory_ = false;  // then
+    mutable std::size_t resident_ = 0;  // then, bytes
     Clock::time_point next_overtaking_ = {};
     std::list<std::string> sweeps_;  // their clients
-    Queue foreground_, background_;
-    BySize large_bodies_, lesser_bodies_, large_texts_, lesser_texts_;
+    Queue urgent_, foreground_, background_;
+    BySize large_bodies_, lesser_bodies_, large_records_, lesser_records_, large_texts_,
+        lesser_texts_;
     // Written under the mutex; running work reads them without it.
     std::atomic<bool> foreground_waits_ = false, background_waits_ = false;
     std::atomic<bool> sweeps_stopped_ = false, all_stopped_ = false;
 };
+
+// Bodies up to this size need no permit, bytes.
+inline constexpr std::size_t immediate_body = 1 << 20;
 
 // Bytes from which the text of an answer, which is two to three times as long, is made without a
 // permit.
@@ -179,6 +188,8 @@ inline constexpr std::size_t immediate_text = 4 << 20;
 
 // Time for which work keeps a slot that other work of its class waits for.
 inline constexpr auto time_slice = std::chrono::milliseconds(20);
+// The same while others wait for its permit by size.
+inline constexpr auto urgent_slice = std::chrono::milliseconds(200);
 
 /// A foreground request's permission to compute: a slot or a grace period at once, otherwise after
 /// a wait. For one thread at a time; the admission control outlives it.
@@ -188,9 +199,10 @@ public:
 
     /// Waits for a slot if may_begin is false, or if neither a slot nor a grace period is free.
     /// gives_up() is polled while waiting.
+    /// is_urgent: it holds a permit by size, for which others wait; see end_urgency().
     Permit(
         AdmissionControl& admission, std::string client, std::function<bool()> gives_up,
-        bool may_begin);
+        bool may_begin, bool is_urgent = false);
     /// False if the queue was full or the wait was given up.
     explicit operator bool() const { return slot_ != nullptr; }
 
@@ -198,15 +210,15 @@ public:
     /// other clients' work is due. False if it gave up.
     bool renew();
 
-    /// Gives the slot back while wait() waits for something else. False if that or the wait for a
+    /// Gives the slot back while wait() waits for a permit by size. False if that or the wait for a
     /// slot gave up.
     bool wait_without_slot(const std::function<bool()>& wait);
 
     /// Time spent waiting, without the initial wait.
     Clock::duration waited() const { return waited_; }
 
-    /// Makes its time slices ten times as long: others wait for what this work alone may do.
-    void lengthen() { slice_ = 10 * time_slice; }
+    /// From now on its time slices have the usual length.
+    void end_urgency() { slice_ = time_slice; }
 
 private:
     AdmissionControl& admission_;
@@ -214,7 +226,7 @@ private:
     const std::function<bool()> gives_up_;
     AdmissionControl::Slot slot_;
     Clock::time_point since_ = Clock::now();  // start of the grace period or the time slice
-    Clock::duration slice_ = time_slice;
+    Clock::duration slice_;
     Clock::duration waited_{};
 };
 

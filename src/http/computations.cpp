@@ -53,8 +53,8 @@ constexpr std::size_t parts_of_a_point = 10, least_parts = 100'000;
 constexpr std::size_t max_hash = 256;
 
 // Time after which a request, with all its waiting, ends as at its deadline if others need its
-// thread or, where memory lacks for turns, its slot: the longest that they are delayed. A fraction
-// of it is left to finish the answer.
+// thread (twice the time if its client has no other) or, where memory lacks for turns, its slot:
+// the longest that they are delayed. A fraction of it is left to finish the answer.
 constexpr std::chrono::duration<double> age_in_need(5);
 
 /// Ends the request of a client that has left; only the log shows its status.
@@ -72,7 +72,7 @@ public:
           body_permit_(wait_for_body_permit()),
           permit_(
               service.admission, request.sender.client(), request.left,
-              request.body.size() <= max_body_in_grace) {
+              request.body.size() <= max_body_in_grace, body_bytes() > immediate_body) {
         if (!permit_) throw_without_permit();
         watch.lap("queue");
     }
@@ -84,12 +84,14 @@ public:
         // The fields of an identification are copied several times and can be as large as a record.
         const std::size_t points = identifies() ? 0 : service_.options.sweep_points;
         try {
-            return read(
+            auto request = read(
                 {.gives_up = stop().requested,
                  .most_numbers = most_numbers,
                  .most_other_values = most_outside_record,
                  .most_containers = std::max(least_parts, parts_of_a_point * points),
                  .most_impacts = most_impacts});
+            permit_.end_urgency();
+            return request;
         } catch (const api::Cancelled&) {
             if (!permit_ || request_.left() || service_.admission.all_stopped())
                 throw_without_permit();
@@ -126,10 +128,7 @@ public:
                 service_.admission.acquire_text(request_.sender.client(), bytes, gives_up);
             return text_permit_ != nullptr;
         };
-        if (permit_.wait_without_slot(wait)) {
-            permit_.lengthen();
-            return;
-        }
+        if (permit_.wait_without_slot(wait)) return;
         if (!text_permit_ && !gives_up())
             throw Problem::unavailable(
                 "memory", "other large answers are being made; try again in a second");
@@ -148,13 +147,16 @@ private:
     using Clock = Stopwatch::Clock;
 
     bool identifies() const { return request_.head.path() == "/v1/identify"; }
+    std::size_t body_bytes() const {
+        return request_.body.size() * (identifies() ? 1 : weight_of_fields);
+    }
 
     AdmissionControl::SizePermit wait_for_body_permit() const {
         AdmissionControl& admission = service_.admission;
         // One turn of another client, which parses and has a deadline, and more.
         const std::chrono::duration<double> longest(2 * service_.options.deadline);
         auto permit = admission.acquire_body(
-            request_.sender.client(), request_.body.size() * (identifies() ? 1 : weight_of_fields),
+            request_.sender.client(), body_bytes(), identifies(),
             [&, deadline = Clock::now() + longest] {
                 return request_.left() || admission.all_stopped() || Clock::now() > deadline;
             });
@@ -166,23 +168,25 @@ private:
     }
 
     /// True after this multiple of the deadline, not counting the time in which the permit waits;
-    /// after 5 s in all, once others need the thread; without a permit; once the client has left;
-    /// or if the server stops. One thread at a time.
+    /// after 5 s in all, once others need the thread, or 10 s if its client has no other; without a
+    /// permit; once the client has left; or if the server stops. One thread at a time.
     bool is_over(double fraction) {
         if (!permit_.renew()) return true;
         const auto now = Clock::now();
         if (now - checked_ > client_check_interval) {
             checked_ = now;
             is_abandoned_ = request_.left() || service_.admission.all_stopped();
-            if (!needed_ && now - began_ > age_in_need && others_need_it()) needed_ = now;
+            if (!needed_ && now - began_ > age_in_need &&
+                others_need_it(now - began_ > 2 * age_in_need))
+                needed_ = now;
         }
         const std::chrono::duration<double> time(fraction * service_.options.deadline);
         return is_abandoned_ || now - permit_.waited() > began_ + time ||
                (needed_ && now >= *needed_ + (fraction - 1) * age_in_need);
     }
 
-    bool others_need_it() const {
-        return request_.others_need_threads() ||
+    bool others_need_it(bool even_last) const {
+        return request_.others_need_threads(even_last) ||
                service_.admission.others_are_stuck(request_.sender.client());
     }
 

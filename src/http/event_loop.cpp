@@ -257,7 +257,7 @@ void EventLoop::read(Connection& connection) {
 }
 
 void EventLoop::hand_over(Owned connection) {
-    ++with_workers_;
+    most_at_work_ = std::max<std::size_t>(most_at_work_, ++with_workers_);
     const std::string client = connection->client();
     std::optional<Owned> refused = workers_.add(client, std::move(connection));
     if (!refused) return;
@@ -318,7 +318,8 @@ void EventLoop::expire() {
         if (c && !c->is_delivering() &&
             now > (c->is_closing() ? c->deadline() : std::min(c->deadline(scarce), idle_until_)))
             time_out(*c);
-    is_memory_to_return_ |= memory_.take_most() >= much_held || with_workers_ >= many_at_work;
+    is_memory_to_return_ |=
+        memory_.take_most() >= much_held || std::exchange(most_at_work_, 0) >= many_at_work;
     if (is_memory_to_return_ && memory_.bytes() < much_held && with_workers_ == 0) {
         is_memory_to_return_ = false;
         trim_memory();

@@ -41,8 +41,10 @@ public:
     /// To be called when a request is refused because streams hold what it needs: for a while
     /// those that are read slowly are broken off sooner.
     void note_scarcity_of_streams() { streams_scarce_ = Clock::now(); }
-    /// True while another client's request waits for a thread, of which this one has its share.
-    bool others_need_threads(const std::string& client) { return workers_.others_need(client); }
+    /// See WorkerPool.
+    bool others_need_threads(const std::string& client, bool even_last) {
+        return workers_.others_need(client, even_last);
+    }
     /// From any thread, once: accepts no new connections, answers requests that arrive on open ones
     /// within 300 ms, waits for the answers in progress, and lets run() return.
     void stop();
@@ -90,6 +92,7 @@ private:
     std::atomic<std::size_t> count_ = 0;       // number of connections_
     std::atomic<std::size_t> delivering_ = 0;  // those of them that take an answer
     bool is_memory_to_return_ = false;
+    std::size_t most_at_work_ = 0;               // with_workers_, since the last look
     std::atomic<std::size_t> with_workers_ = 0;  // or returned and not yet collected
     std::atomic<Clock::time_point> streams_scarce_{};
     Clock::time_point connections_scarce_{};

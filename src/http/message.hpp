@@ -94,8 +94,9 @@ struct Request {
     std::string id = {};  ///< see request_id()
     /// Returns true once the client has left.
     std::function<bool()> left = [] { return false; };
-    /// Returns true while another client's request waits for a thread, of which this one has more.
-    std::function<bool()> others_need_threads = [] { return false; };
+    /// Returns true while another client's request waits for a thread, of which this one has more;
+    /// with true, also if this is its client's only one.
+    std::function<bool(bool)> others_need_threads = [](bool) { return false; };
     const Route* route = nullptr;                      ///< can be null if refused
     std::optional<Response> refused = {};              ///< its connection is then read no further
     std::chrono::steady_clock::time_point since = {};  ///< time at which the request was complete

@@ -89,8 +89,8 @@ Task Server::answer(Connection& connection, Request received) {
     Request& request = delivery->request;
     request.id = request_id(request.head);
     request.left = [&outbox = delivery->outbox] { return outbox.client_has_left(); };
-    request.others_need_threads = [this, &request] {
-        return event_loop_.others_need_threads(request.sender.client());
+    request.others_need_threads = [this, &request](bool even_last) {
+        return event_loop_.others_need_threads(request.sender.client(), even_last);
     };
     {
         const std::lock_guard lock(mutex_);

@@ -72,17 +72,20 @@ public:
         return jobs_.size() > free_ && jobs_.has(may_begin());
     }
 
-    /// True if a client has its equal share of the threads or more while a job of another one,
-    /// which has less, waits for a thread.
-    bool others_need(const std::string& client) {
+    /// True if a job waits for a thread whose client has none, or so few that one of this client's
+    /// would make them more equal; `even_last`: also for a client with a single thread.
+    bool others_need(const std::string& client, bool even_last) {
         const std::lock_guard lock(mutex_);
-        if (jobs_.size() <= free_) return false;
-        const std::size_t share = std::max<std::size_t>(max_threads_ / (running_.size() + 1), 1);
-        const auto has_less = [this, share](const std::string& one) {
+        const auto threads_of = [this](const std::string& one) -> std::size_t {
             const auto running = running_.find(one);
-            return running == running_.end() || running->second < share;
+            return running == running_.end() ? 0 : running->second;
         };
-        return !has_less(client) && jobs_.has(has_less);
+        const std::size_t own = threads_of(client);
+        if (jobs_.size() <= free_ || own < (even_last ? 1 : 2)) return false;
+        return jobs_.has([&](const std::string& one) {
+            const std::size_t theirs = threads_of(one);
+            return one != client && (theirs == 0 || theirs + 1 < own);
+        });
     }
 
 private:

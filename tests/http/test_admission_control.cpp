@@ -533,14 +533,16 @@ TEST_CASE("much work is not interrupted while the process uses all of its memory
 TEST_CASE("small bodies are read beside one of the largest, which take turns") {
     AdmissionControl admission({});
     const auto gives_up = [] { return true; };
-    auto large = admission.acquire_body(client, 60 << 20, gives_up);
+    auto large = admission.acquire_body(client, 60 << 20, false, gives_up);
     CHECK(large);
-    const auto small = admission.acquire_body("other", 3 << 20, gives_up);
+    const auto small = admission.acquire_body("other", 3 << 20, false, gives_up);
     CHECK(small);
-    CHECK(!admission.acquire_body("other", 60 << 20, gives_up));
-    CHECK(!admission.acquire_body("third", 3 << 20, gives_up));  // together they are large
+    CHECK(!admission.acquire_body("other", 60 << 20, false, gives_up));
+    CHECK(!admission.acquire_body("third", 3 << 20, false, gives_up));  // together they are large
+    CHECK(admission.acquire_body("third", 60 << 20, true, gives_up));
+    CHECK(admission.acquire_body("third", 3 << 20, true, gives_up));
     large.reset();
-    CHECK(admission.acquire_body("other", 60 << 20, gives_up));
+    CHECK(admission.acquire_body("other", 60 << 20, false, gives_up));
 }
 
 TEST_CASE("texts of large answers are made one at a time, without a slot while they wait") {
@@ -596,6 +598,23 @@ TEST_CASE("without memory a large answer takes the place of one of the client wi
     first.reset();
     for (std::thread& thread : threads) thread.join();
     CHECK(made == 3);
+}
+
+TEST_CASE("work with a permit by size gets the next slot, also of its client's long run") {
+    AdmissionControl admission({.running = 1});
+    Permit run(admission, client, {}, false);
+    std::atomic<bool> ended = false;
+    std::thread other([&] { admission.acquire("other"); });
+    wait_until([&] { return admission.load().waiting == 1; });
+    std::thread urgent([&] {
+        const Permit reads(admission, client, {}, false, true);
+        CHECK(admission.load().waiting == 2);  // the run, and the other one
+        ended = true;
+    });
+    wait_until([&] { return admission.load().waiting == 2; });
+    while (!ended) CHECK(run.renew());
+    urgent.join();
+    other.join();
 }
 
 TEST_CASE("without memory no work starts in a grace period") {

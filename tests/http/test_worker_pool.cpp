@@ -33,7 +33,7 @@ TEST_CASE("a full queue refuses the last job of the client with the most, whose 
     end.count_down();
 }
 
-TEST_CASE("others need the threads of a client that has its share while they have less") {
+TEST_CASE("others need the threads of a client that has more of them") {
     std::latch end(1);
     std::atomic<int> begun = 0;
     WorkerPool<int> pool(4, [&](int) {
@@ -46,11 +46,13 @@ TEST_CASE("others need the threads of a client that has its share while they hav
         while (begun < std::min(count, 4)) std::this_thread::yield();
     };
     for (const char* client : {"greedy", "greedy", "second", "third"}) add(client);
-    CHECK(!pool.others_need("greedy"));
-    add("second");  // it has one, its share of four threads
-    CHECK(!pool.others_need("greedy"));
+    CHECK(!pool.others_need("greedy", false));
+    add("second");
+    CHECK(!pool.others_need("greedy", false));
     add("new");
-    CHECK(pool.others_need("greedy"));
-    CHECK(!pool.others_need("new"));
+    CHECK(pool.others_need("greedy", false));
+    CHECK(!pool.others_need("third", false));
+    CHECK(pool.others_need("third", true));
+    CHECK(!pool.others_need("new", true));
     end.count_down();
 }
