@@ -63,11 +63,16 @@ void AdmissionControl::assign() {
         next.changed.notify_one();
         return next;
     };
-    for (; free_ > 0 && !urgent_.empty(); --free_) grant_next(urgent_);
-    for (; free_ > 0 && !(foreground_.empty() && background_.empty()); --free_) {
-        const bool overtakes = !foreground_.empty() && may_overtake();
+    for (; free_ > 0; --free_) {
+        const bool requests_wait = !urgent_.empty() || !foreground_.empty();
+        if (!requests_wait && background_.empty()) break;
+        const bool overtakes = requests_wait && may_overtake();
         if (overtakes) next_overtaking_ = Clock::now() + patience / limits_.running;
-        Waiter& next = grant_next(foreground_.empty() || overtakes ? background_ : foreground_);
+        was_urgent_ = !overtakes && !urgent_.empty() && (foreground_.empty() || !was_urgent_);
+        Waiter& next = grant_next(
+            overtakes || !requests_wait ? background_
+            : was_urgent_               ? urgent_
+                                        : foreground_);
         next.overtakes = overtakes;
     }
     foreground_waits_ = !foreground_.empty() || !urgent_.empty();

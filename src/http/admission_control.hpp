@@ -73,8 +73,8 @@ public:
     /// slot; always finds space in the queue. Work that had a slot, or has given it back before
     /// (null), waits before the client's other work. Null as above.
     Slot resume(const std::string& client, const std::function<bool()>& gives_up, Slot begun);
-    /// For foreground work that holds a permit by size, for which others wait: before all other
-    /// work.
+    /// For foreground work that holds a permit by size, for which others can wait: it gets every
+    /// second slot, and every one that no other foreground work waits for.
     Slot acquire_urgently(const std::string& client, const std::function<bool()>& gives_up);
     /// True if foreground work with a slot should resume(): other clients' work is due.
     bool others_are_due(const std::string& client) const;
@@ -165,8 +165,9 @@ private:
 
     const AdmissionLimits limits_;
     mutable std::mutex mutex_;
-    int free_, graces_ = 0;  // nobody waits while free_ > 0
-    int interrupted_ = 0;    // work that waits after a time slice
+    int free_, graces_ = 0;    // nobody waits while free_ > 0
+    bool was_urgent_ = false;  // the last work with a slot, in the foreground
+    int interrupted_ = 0;      // work that waits after a time slice
     mutable Clock::time_point memory_checked_ = {};
     mutable std::size_t resident_ = 0;  // then, bytes
     Clock::time_point next_overtaking_ = {};

@@ -617,6 +617,28 @@ TEST_CASE("work with a permit by size gets the next slot, also of its client's l
     other.join();
 }
 
+TEST_CASE("work with permits by size leaves every second slot to other work") {
+    AdmissionControl admission({.running = 1});
+    Slot slot = admission.acquire(client);
+    std::mutex mutex;
+    std::string order;
+    std::vector<std::thread> threads;
+    const auto queue = [&](char name, bool is_urgent) {
+        const std::size_t before = admission.load().waiting;
+        threads.emplace_back([&, name, is_urgent] {
+            const Permit own(admission, std::string(1, name), {}, false, is_urgent);
+            const std::lock_guard lock(mutex);
+            order += name;
+        });
+        wait_until([&] { return admission.load().waiting == before + 1; });
+    };
+    for (const char name : {'u', 'v', 'w'}) queue(name, true);
+    for (const char name : {'a', 'b'}) queue(name, false);
+    slot.reset();
+    for (std::thread& thread : threads) thread.join();
+    CHECK(order == "uavbw");
+}
+
 TEST_CASE("without memory no work starts in a grace period") {
     AdmissionControl admission({.running = 1, .memory = 0});
     const Slot slot = admission.try_acquire();
