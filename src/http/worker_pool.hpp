@@ -76,10 +76,6 @@ public:
     /// would make them more equal; `even_last`: also for a client with a single thread.
     bool others_need(const std::string& client, bool even_last) {
         const std::lock_guard lock(mutex_);
-        const auto threads_of = [this](const std::string& one) -> std::size_t {
-            const auto running = running_.find(one);
-            return running == running_.end() ? 0 : running->second;
-        };
         const std::size_t own = threads_of(client);
         if (jobs_.size() <= free_ || own < (even_last ? 1 : 2)) return false;
         return jobs_.has([&](const std::string& one) {
@@ -94,12 +90,17 @@ private:
         ++free_;
     }
 
+    std::size_t threads_of(const std::string& client) const {
+        const auto running = running_.find(client);
+        return running == running_.end() ? 0 : running->second;
+    }
+
     /// Whether a client has fewer threads than are left.
     auto may_begin() const {
         const std::size_t left = max_threads_ - (threads_.size() - free_);
         return [this, left](const std::string& client) {
-            const auto running = running_.find(client);
-            return running == running_.end() || running->second < left;
+            const std::size_t own = threads_of(client);
+            return own == 0 || own < left;
         };
     }
 
