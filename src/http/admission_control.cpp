@@ -43,8 +43,8 @@ AdmissionControl::AdmissionControl(const AdmissionLimits& limits)
       free_(limits.running),
       large_bodies_{bodies_at_once},
       lesser_bodies_{bodies_at_once},
-      large_records_{bodies_at_once},
-      lesser_records_{bodies_at_once},
+      large_records_{bodies_at_once, true},
+      lesser_records_{bodies_at_once, true},
       large_texts_{texts_at_once},
       lesser_texts_{lesser_texts_at_once} {}
 
@@ -77,12 +77,29 @@ void AdmissionControl::assign() {
     }
     foreground_waits_ = !foreground_.empty() || !urgent_.empty();
     background_waits_ = !background_.empty();
-    for (BySize* const g :
-         {&large_bodies_, &lesser_bodies_, &large_records_, &lesser_records_, &large_texts_,
-          &lesser_texts_})
-        while (!g->waiting.empty() &&
-               (g->in_work == 0 || g->in_work + g->waiting.front()->bytes <= g->at_once))
-            g->in_work += grant_next(g->waiting).bytes;
+    while (BySize* const group = next_by_size()) group->in_work += grant_next(group->waiting).bytes;
+}
+
+/// Of the groups whose next work may begin, the one whose work has waited longest; null if none
+/// may. While the process uses all of its memory, one work of all groups may, and beside it a
+/// record, which takes long.
+AdmissionControl::BySize* AdmissionControl::next_by_size() {
+    const std::array groups{&large_bodies_,   &lesser_bodies_, &large_records_,
+                            &lesser_records_, &large_texts_,   &lesser_texts_};
+    const auto may_begin = [&](const BySize* group) {
+        if (group->waiting.empty() ||
+            (group->in_work > 0 && group->in_work + group->waiting.front()->bytes > group->at_once))
+            return false;
+        return !uses(limits_.memory) || std::ranges::none_of(groups, [&](const BySize* other) {
+            return other->in_work > 0 && (group->is_record || !other->is_record);
+        });
+    };
+    BySize* next = nullptr;
+    for (BySize* const group : groups)
+        if (may_begin(group) &&
+            (!next || group->waiting.front()->since < next->waiting.front()->since))
+            next = group;
+    return next;
 }
 
 /// Ends a wait; returns whether it was granted.
@@ -297,7 +314,7 @@ AdmissionControl::SizePermit AdmissionControl::acquire_text(
     const std::string& client, std::size_t bytes, const std::function<bool()>& gives_up) {
     std::unique_lock lock(mutex_);
     BySize& texts = bytes > lesser_texts_at_once ? large_texts_ : lesser_texts_;
-    if (texts.in_work > 0 && uses(limits_.memory)) {
+    if ((texts.in_work > 0 || !texts.waiting.empty()) && uses(limits_.memory)) {
         const auto most = texts.waiting.pop_for(client);
         if (!most) return nullptr;
         displace(**most);

@@ -32,7 +32,7 @@ struct AdmissionLimits {
     int sweeps = 4;    ///< sweeps at once; they share the slots that requests leave free
     /// Memory of the process from which on little work is interrupted, since it holds memory:
     /// bytes.
-    std::size_t memory = 512 << 20;
+    std::size_t memory = 384 << 20;
 };
 
 struct AdmissionLoad {
@@ -155,9 +155,11 @@ private:
     /// one.
     struct BySize {
         std::size_t at_once;
+        bool is_record = false;
         Queue waiting = {};
         std::size_t in_work = 0;  ///< bytes
     };
+    BySize* next_by_size();
     SizePermit acquire_by_size(
         Lock& lock, BySize& group, const std::string& client, std::size_t bytes,
         const std::function<bool()>& gives_up);

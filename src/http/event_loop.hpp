@@ -18,7 +18,7 @@ struct ConnectionLimits {
     std::size_t per_client = 1024;   ///< connections of one client that is no proxy
     /// Threads, of which a stream that is read slowly occupies one; as many requests wait for one.
     int workers = 128;
-    std::size_t held_bytes = 512 << 20;  ///< bytes of requests and answers, see MemoryBudget
+    std::size_t held_bytes = 384 << 20;  ///< bytes of requests and answers, see MemoryBudget
 };
 
 class EventLoop {

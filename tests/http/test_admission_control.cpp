@@ -567,11 +567,27 @@ TEST_CASE("texts of large answers are made one at a time, without a slot while t
     CHECK(admission.load().running == 1);
     CHECK(!run.wait_without_slot([] { return false; }));
     CHECK(admission.load().running == 0);
-    AdmissionControl scarce({.running = 1, .memory = 0});
-    const auto only = scarce.acquire_text(client, 40 << 20, never);
-    CHECK(only);
-    CHECK(!scarce.acquire_text("other", 40 << 20, never));
-    CHECK(scarce.acquire_text("other", 8 << 20, never));  // beside the largest
+    CHECK(admission.acquire_text("third", 8 << 20, never));  // beside the largest
+}
+
+TEST_CASE(
+    "without memory one large body or answer is in work at a time, and one record beside it") {
+    AdmissionControl admission({.running = 1, .memory = 0});
+    const auto gives_up = [] { return true; };
+    auto text = admission.acquire_text(client, 40 << 20, gives_up);
+    CHECK(text);
+    CHECK(!admission.acquire_text("other", 40 << 20, {}));
+    CHECK(!admission.acquire_text("other", 8 << 20, gives_up));
+    CHECK(!admission.acquire_body("other", 3 << 20, false, gives_up));
+    text.reset();
+    auto body = admission.acquire_body("other", 60 << 20, false, gives_up);
+    CHECK(body);
+    CHECK(!admission.acquire_body("third", 3 << 20, true, gives_up));
+    body.reset();
+    const auto record = admission.acquire_body("third", 3 << 20, true, gives_up);
+    CHECK(record);
+    CHECK(!admission.acquire_body("other", 60 << 20, true, gives_up));
+    CHECK(admission.acquire_text(client, 40 << 20, gives_up));
 }
 
 TEST_CASE("without memory a large answer takes the place of one of the client with most") {

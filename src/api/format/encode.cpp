@@ -190,6 +190,7 @@ void put_csv_entry(const AnswerList& list, std::size_t row, std::string& text) {
 std::string csv_text(const Json& answer, const std::function<bool()>& gives_up) {
     const Table table = only_table(answer);
     std::string text;
+    text.reserve(room_for_lists(answer));
     for (const TableColumn& column : table.columns) {
         if (!text.empty()) text += ',';
         put_csv_names(column, text);
