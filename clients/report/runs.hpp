@@ -49,7 +49,7 @@ template <class Make>
 auto in_parallel(std::size_t count, const Make& make) {
     using Made = decltype(make(count));
     std::vector<std::optional<Made>> made(count);
-    parallel(count, cores(), [&](std::size_t k) { made[k].emplace(make(k)); });
+    parallel(count, cores(), nullptr, [&](std::size_t k) { made[k].emplace(make(k)); });
     std::vector<Made> results;
     for (auto& result : made) results.push_back(std::move(*result));
     return results;

@@ -26,6 +26,9 @@ constexpr auto patience = std::chrono::milliseconds(200);
 // the largest up to 340 MB. Bytes.
 constexpr std::size_t bodies_at_once = 4 << 20;
 
+// The same of records, which take up to five times their size, but long.
+constexpr std::size_t lesser_records_at_once = 16 << 20, records_at_once = 64 << 20;
+
 // Texts of answers up to the first size that are made at once, and of larger ones beside them: the
 // bytes that they are made from.
 constexpr std::size_t lesser_texts_at_once = 16 << 20, texts_at_once = 48 << 20;
@@ -43,8 +46,8 @@ AdmissionControl::AdmissionControl(const AdmissionLimits& limits)
       free_(limits.running),
       large_bodies_{bodies_at_once},
       lesser_bodies_{bodies_at_once},
-      large_records_{bodies_at_once, true},
-      lesser_records_{bodies_at_once, true},
+      large_records_{records_at_once, true},
+      lesser_records_{lesser_records_at_once, true},
       large_texts_{texts_at_once},
       lesser_texts_{lesser_texts_at_once} {}
 
@@ -81,8 +84,7 @@ void AdmissionControl::assign() {
 }
 
 /// Of the groups whose next work may begin, the one whose work has waited longest; null if none
-/// may. While the process uses all of its memory, one work of all groups may, and beside it a
-/// record, which takes long.
+/// may. While the process uses all of its memory, one body or text may, and records beside it.
 AdmissionControl::BySize* AdmissionControl::next_by_size() {
     const std::array groups{&large_bodies_,   &lesser_bodies_, &large_records_,
                             &lesser_records_, &large_texts_,   &lesser_texts_};
@@ -90,9 +92,10 @@ AdmissionControl::BySize* AdmissionControl::next_by_size() {
         if (group->waiting.empty() ||
             (group->in_work > 0 && group->in_work + group->waiting.front()->bytes > group->at_once))
             return false;
-        return !uses(limits_.memory) || std::ranges::none_of(groups, [&](const BySize* other) {
-            return other->in_work > 0 && (group->is_record || !other->is_record);
-        });
+        return group->is_record || !uses(limits_.memory) ||
+               std::ranges::none_of(groups, [](const BySize* other) {
+                   return other->in_work > 0 && !other->is_record;
+               });
     };
     BySize* next = nullptr;
     for (BySize* const group : groups)
@@ -158,7 +161,8 @@ AdmissionControl::Slot AdmissionControl::acquire(
         const auto is_new = [](const Waiter* waiter) { return !waiter->is_interrupted; };
         const auto is_own = [&client](const std::string& other) { return other == client; };
         if (foreground_.precedes_last(client, is_new)) displace(*foreground_.pop_last(is_new));
-        else if (new_waiting() >= limits_.waiting || foreground_.has(is_own)) return nullptr;
+        else if (new_waiting() >= limits_.waiting || foreground_.clients(is_own) > 0)
+            return nullptr;
     }
     Waiter waiter;
     foreground_.push(client, &waiter);
@@ -192,14 +196,15 @@ bool AdmissionControl::others_are_due(const std::string& client) const {
     if (!foreground_waits_ && !background_waits_) return false;
     const std::lock_guard lock(mutex_);
     const auto is_other = [&client](const std::string& other) { return other != client; };
-    return !urgent_.empty() || ((foreground_.has(is_other) || may_overtake()) && may_interrupt());
+    return !urgent_.empty() ||
+           ((foreground_.clients(is_other) > 0 || may_overtake()) && may_interrupt());
 }
 
 bool AdmissionControl::others_are_stuck(const std::string& client) const {
     if (!foreground_waits_) return false;
     const std::lock_guard lock(mutex_);
     const auto is_other = [&client](const std::string& other) { return other != client; };
-    return foreground_.has(is_other) && !may_interrupt();
+    return foreground_.clients(is_other) > 0 && !may_interrupt();
 }
 
 bool AdmissionControl::may_interrupt() const {
@@ -288,7 +293,7 @@ AdmissionControl::SizePermit AdmissionControl::acquire_by_size(
     Lock& lock, BySize& group, const std::string& client, std::size_t bytes,
     const std::function<bool()>& gives_up) {
     Waiter waiter{.bytes = bytes};
-    group.waiting.push(client, &waiter);
+    group.waiting.push(client, &waiter, bytes);
     if (!wait(lock, group.waiting, waiter, gives_up)) return nullptr;
     lock.unlock();
     return {this, [this, &group, bytes](void*) {
@@ -308,6 +313,14 @@ AdmissionControl::SizePermit AdmissionControl::acquire_body(
     BySize& bodies = bytes > bodies_at_once ? large : is_record ? lesser_records_ : lesser_bodies_;
     if (!make_space(bodies.waiting, client, bytes)) return nullptr;
     return acquire_by_size(lock, bodies, client, bytes, gives_up);
+}
+
+bool AdmissionControl::others_need_record(const std::string& client, std::size_t bytes) const {
+    const std::lock_guard lock(mutex_);
+    const BySize& records = bytes > bodies_at_once ? large_records_ : lesser_records_;
+    const std::size_t others =
+        records.waiting.clients([&client](const std::string& other) { return other != client; });
+    return others > 0 && bytes > std::max(records.at_once / (others + 1), immediate_body);
 }
 
 AdmissionControl::SizePermit AdmissionControl::acquire_text(

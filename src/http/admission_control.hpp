@@ -104,13 +104,17 @@ public:
 
     /// The right to read a large body and to compute with it. At most one of the largest, and
     /// several that are small together, have it at once, since these take many times their size;
-    /// others wait. Null if too many wait whose turn is earlier, or gives_up() returned true; it is
-    /// polled every 50 ms. Smaller bodies have it at once.
+    /// others wait, the smallest first among equal turns. Null if too many wait whose turn is
+    /// earlier, or gives_up() returned true; it is polled every 50 ms. Smaller bodies have it at
+    /// once.
     using SizePermit = std::shared_ptr<void>;
     /// Records, which keep it until they are identified, do not hold up other bodies.
     SizePermit acquire_body(
         const std::string& client, std::size_t bytes, bool is_record,
         const std::function<bool()>& gives_up);
+    /// True if records of other clients wait for permits, of which one with these bytes has more
+    /// than its equal share.
+    bool others_need_record(const std::string& client, std::size_t bytes) const;
     /// The right to make the text of an answer from more than immediate_text bytes and to compress
     /// it: likewise one of the largest at once. Null if gives_up() returned true, or if another one
     /// is being made while the process uses all of its memory, unless the client with most answers
@@ -192,7 +196,7 @@ inline constexpr std::size_t immediate_text = 4 << 20;
 // Time for which work keeps a slot that other work of its class waits for.
 inline constexpr auto time_slice = std::chrono::milliseconds(20);
 // The same while others wait for its permit by size.
-inline constexpr auto urgent_slice = std::chrono::milliseconds(200);
+inline constexpr auto urgent_slice = std::chrono::milliseconds(80);
 
 /// A foreground request's permission to compute: a slot or a grace period at once, otherwise after
 /// a wait. For one thread at a time; the admission control outlives it.

@@ -31,6 +31,9 @@ constexpr std::size_t max_body_in_grace = 16 << 10;
 // /v1/identify count this many times.
 constexpr std::size_t weight_of_fields = 16;
 
+// A list of impacts in JSON takes 45 times its size, a record in a table five times.
+constexpr std::size_t weight_of_lists = 10;
+
 // One number per eight characters of the largest default body: a measured record has no fewer. They
 // take 64 MB while they are read. To identify a record takes up to 120 bytes for each sample.
 constexpr std::size_t most_numbers = 8'000'000;
@@ -53,12 +56,19 @@ constexpr std::size_t parts_of_a_point = 10, least_parts = 100'000;
 constexpr std::size_t max_hash = 256;
 
 // Time after which a request, with all its waiting, ends as at its deadline if others need its
-// thread (twice the time if its client has no other) or, where memory lacks for turns, its slot:
-// the longest that they are delayed. A fraction of it is left to finish the answer.
+// thread (twice the time if its client has no other) or, where memory lacks for turns, its slot;
+// and time of computing after which it does if they need the permit of its record: the longest that
+// they are delayed. A fraction of it is left to finish the answer.
 constexpr std::chrono::duration<double> age_in_need(5);
 
 /// Ends the request of a client that has left; only the log shows its status.
 [[noreturn]] void throw_client_left() { throw Problem(499, "the client has left"); }
+
+/// True if a record is a table of text, not JSON.
+bool is_table(const Request& r) {
+    const std::string type = media_type(r.head.header("content-type"));
+    return type == "text/csv" || type == "text/plain";
+}
 
 /// A request that computes: its permits and its deadline.
 class Computing {
@@ -72,7 +82,7 @@ public:
           body_permit_(wait_for_body_permit()),
           permit_(
               service.admission, request.sender.client(), request.left,
-              request.body.size() <= max_body_in_grace, body_bytes() > immediate_body) {
+              request.body.size() <= max_body_in_grace, body_bytes_ > immediate_body) {
         if (!permit_) throw_without_permit();
         watch.lap("queue");
     }
@@ -146,17 +156,19 @@ public:
 private:
     using Clock = Stopwatch::Clock;
 
-    bool identifies() const { return request_.head.path() == "/v1/identify"; }
-    std::size_t body_bytes() const {
-        return request_.body.size() * (identifies() ? 1 : weight_of_fields);
+    /// The size of a body for its permit.
+    std::size_t weighted(std::size_t bytes) const {
+        if (!identifies()) return bytes * weight_of_fields;
+        return bytes > immediate_body && !is_table(request_) ? bytes * weight_of_lists : bytes;
     }
+    bool identifies() const { return request_.head.path() == "/v1/identify"; }
 
     AdmissionControl::SizePermit wait_for_body_permit() const {
         AdmissionControl& admission = service_.admission;
         // One turn of another client, which parses and has a deadline, and more.
         const std::chrono::duration<double> longest(2 * service_.options.deadline);
         auto permit = admission.acquire_body(
-            request_.sender.client(), body_bytes(), identifies(),
+            request_.sender.client(), body_bytes_, identifies(),
             [&, deadline = Clock::now() + longest] {
                 return request_.left() || admission.all_stopped() || Clock::now() > deadline;
             });
@@ -167,17 +179,16 @@ private:
             "memory", "other large bodies are being read; try again in a second");
     }
 
-    /// True after this multiple of the deadline, not counting the time in which the permit waits;
-    /// after 5 s in all, once others need the thread, or 10 s if its client has no other; without a
-    /// permit; once the client has left; or if the server stops. One thread at a time.
+    /// True after this multiple of the deadline, without the time in which the permit waits; after
+    /// 5 or 10 s if others need what it has (age_in_need); without a permit; once the client has
+    /// left; or if the server stops. One thread at a time.
     bool is_over(double fraction) {
         if (!permit_.renew()) return true;
         const auto now = Clock::now();
         if (now - checked_ > client_check_interval) {
             checked_ = now;
             is_abandoned_ = request_.left() || service_.admission.all_stopped();
-            if (!needed_ && now - began_ > age_in_need &&
-                others_need_it(now - began_ > 2 * age_in_need))
+            if (!needed_ && now - began_ > age_in_need && others_need_it(now - began_))
                 needed_ = now;
         }
         const std::chrono::duration<double> time(fraction * service_.options.deadline);
@@ -185,14 +196,18 @@ private:
                (needed_ && now >= *needed_ + (fraction - 1) * age_in_need);
     }
 
-    bool others_need_it(bool even_last) const {
-        return request_.others_need_threads(even_last) ||
-               service_.admission.others_are_stuck(request_.sender.client());
+    bool others_need_it(Clock::duration age) const {
+        const std::string client = request_.sender.client();
+        return request_.others_need_threads(age > 2 * age_in_need) ||
+               service_.admission.others_are_stuck(client) ||
+               (body_permit_ && identifies() && age - permit_.waited() > age_in_need &&
+                service_.admission.others_need_record(client, body_bytes_));
     }
 
     const Request& request_;
     const Service& service_;
     Stopwatch& watch_;
+    const std::size_t body_bytes_ = weighted(request_.body.size());
     AdmissionControl::SizePermit body_permit_, text_permit_;
     Permit permit_;
     const Clock::time_point began_ = Clock::now();
@@ -213,8 +228,7 @@ Json body_of(
 api::AnswerRequest asked(const Request& r, const api::ReadLimits& reading) {
     const std::string route(r.head.path());
     const bool identifies = route == "/v1/identify";
-    const std::string type = media_type(r.head.header("content-type"));
-    const bool is_columns = identifies && (type == "text/csv" || type == "text/plain");
+    const bool is_columns = identifies && is_table(r);
     const api::FieldTable& table = identifies                ? api::identify_fields()
                                    : route == "/v1/manifold" ? api::manifold_fields()
                                                              : api::simulate_fields();

@@ -1,11 +1,13 @@
 // A queue in which clients take turns (start-time fair queueing with equal costs): the first
-// entries of all clients, then their second ones, and so on; in order of arrival among equals.
+// entries of all clients, then their second ones, and so on; among equals those of least cost, in
+// order of arrival.
 #pragma once
 
 #include <algorithm>
 #include <list>
 #include <map>
 #include <optional>
+#include <set>
 #include <string>
 
 namespace vines::http {
@@ -18,11 +20,12 @@ public:
     const T& front() const { return entries_.front().value; }
     const T& back() const { return entries_.back().value; }
 
-    void push(const std::string& client, T value) {
+    void push(const std::string& client, T value, std::size_t cost = 0) {
         const long turn = last_turns_[client] = next_turn(client);
         const auto not_later = std::find_if(
-            entries_.rbegin(), entries_.rend(), [turn](const Entry& e) { return e.turn <= turn; });
-        entries_.insert(not_later.base(), {client, turn, std::move(value)});
+            entries_.rbegin(), entries_.rend(),
+            [=](const Entry& e) { return e.turn < turn || (e.turn == turn && e.cost <= cost); });
+        entries_.insert(not_later.base(), {client, turn, cost, std::move(value)});
     }
     /// The same, before the client's first entry with is_later(value): these move on by one turn.
     template <class IsLater>
@@ -89,17 +92,20 @@ public:
     void for_each(const Visit& visit) const {
         for (const Entry& entry : entries_) visit(entry.value);
     }
-    /// True if an entry's client may(client).
+    /// Number of clients with an entry that may(client).
     template <class May>
-    bool has(const May& may) const {
-        return std::any_of(
-            entries_.begin(), entries_.end(), [&may](const Entry& e) { return may(e.client); });
+    std::size_t clients(const May& may) const {
+        std::set<std::string_view> found;
+        for (const Entry& e : entries_)
+            if (may(e.client)) found.insert(e.client);
+        return found.size();
     }
 
 private:
     struct Entry {
         std::string client;
         long turn = 0;
+        std::size_t cost = 0;
         T value;
     };
     static bool any(const T&) { return true; }

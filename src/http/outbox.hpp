@@ -43,8 +43,8 @@ public:
     void cancel();
 
     /// True if the client reads too slowly: for 30 s less than 8 KiB/s, or while a resource is
-    /// scarce for 2 s less than 64 KiB/s. A pause counts only while bytes wait for the client. To
-    /// be called regularly.
+    /// scarce for 2 s less than 64 KiB/s or, of an answer that is complete, than a sixtieth of it
+    /// in each second. A pause counts only while bytes wait for the client. To be called regularly.
     bool client_is_slow(Clock::time_point now, bool scarce);
 
     /// True if the rest of the answer cannot be sent; by_closing: also if the client has closed its

@@ -66,8 +66,8 @@ private:
     }
 
     static constexpr std::size_t capacity_ = 1 << 20;  // bytes
-    static constexpr std::size_t at_once_ = 1
-                                            << 16;  // bytes copied for one of many readers, or more
+    static constexpr std::size_t at_once_ =
+        1 << 16;  // bytes, or more, copied for one of many readers
 
     const bool keeps_;
     std::mutex mutex_;

@@ -69,7 +69,7 @@ public:
     /// True if a job waits for a thread, other than one whose client has its share.
     bool jobs_wait() {
         const std::lock_guard lock(mutex_);
-        return jobs_.size() > free_ && jobs_.has(may_begin());
+        return jobs_.size() > free_ && jobs_.clients(may_begin()) > 0;
     }
 
     /// True if a job waits for a thread whose client has none, or so few that one of this client's
@@ -78,10 +78,11 @@ public:
         const std::lock_guard lock(mutex_);
         const std::size_t own = threads_of(client);
         if (jobs_.size() <= free_ || own < (even_last ? 1 : 2)) return false;
-        return jobs_.has([&](const std::string& one) {
+        const auto is_behind = [&](const std::string& one) {
             const std::size_t theirs = threads_of(one);
             return one != client && (theirs == 0 || theirs + 1 < own);
-        });
+        };
+        return jobs_.clients(is_behind) > 0;
     }
 
 private:

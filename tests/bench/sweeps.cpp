@@ -36,7 +36,7 @@ Parameters parameters_at(std::size_t i) {
 
 /// Simulations for all values of b, with their exponents if requested.
 void run_motions(int threads, double cycles, bool exponents) {
-    parallel(b_count, threads, [&](std::size_t i) {
+    parallel(b_count, threads, nullptr, [&](std::size_t i) {
         const Parameters p = parameters_at(i);
         const double end = cycles * p.cycle();
         std::optional<Lyapunov> lyapunov;
@@ -51,7 +51,7 @@ void run_sweep_points(
     int threads, std::size_t count, const PointOptions& options,
     const std::function<Parameters(std::size_t)>& parameters_of) {
     RunControl control;
-    parallel(count, threads, [&](std::size_t i) {
+    parallel(count, threads, nullptr, [&](std::size_t i) {
         const Parameters p = parameters_of(i);
         const State start = default_state(p);
         run_point({p, start, options.max_impacts}, start, options, control);

@@ -570,8 +570,7 @@ TEST_CASE("texts of large answers are made one at a time, without a slot while t
     CHECK(admission.acquire_text("third", 8 << 20, never));  // beside the largest
 }
 
-TEST_CASE(
-    "without memory one large body or answer is in work at a time, and one record beside it") {
+TEST_CASE("without memory one large body or answer is in work at a time, and records beside it") {
     AdmissionControl admission({.running = 1, .memory = 0});
     const auto gives_up = [] { return true; };
     auto text = admission.acquire_text(client, 40 << 20, gives_up);
@@ -580,14 +579,42 @@ TEST_CASE(
     CHECK(!admission.acquire_text("other", 8 << 20, gives_up));
     CHECK(!admission.acquire_body("other", 3 << 20, false, gives_up));
     text.reset();
-    auto body = admission.acquire_body("other", 60 << 20, false, gives_up);
+    const auto body = admission.acquire_body("other", 60 << 20, false, gives_up);
     CHECK(body);
-    CHECK(!admission.acquire_body("third", 3 << 20, true, gives_up));
-    body.reset();
-    const auto record = admission.acquire_body("third", 3 << 20, true, gives_up);
-    CHECK(record);
-    CHECK(!admission.acquire_body("other", 60 << 20, true, gives_up));
-    CHECK(admission.acquire_text(client, 40 << 20, gives_up));
+    CHECK(admission.acquire_body("third", 3 << 20, true, gives_up));
+    CHECK(!admission.acquire_text(client, 40 << 20, gives_up));
+}
+
+TEST_CASE("records share what one of the largest takes; of those that wait the smallest is next") {
+    AdmissionControl admission({});
+    auto first = admission.acquire_body("first", 40 << 20, true, {});
+    auto second = admission.acquire_body("second", 20 << 20, true, {});
+    CHECK(second);
+    CHECK(!admission.others_need_record("first", 40 << 20));
+    std::string order;
+    std::vector<std::thread> threads;
+    std::array<std::atomic<bool>, 2> waits = {};
+    const auto wait_for = [&](const std::string& name, std::size_t bytes) {
+        std::atomic<bool>& waiting = waits[threads.size()];
+        threads.emplace_back([&, name, bytes] {
+            const auto polled = [&waiting] {
+                waiting = true;
+                return false;
+            };
+            const auto permit = admission.acquire_body(name, bytes, true, polled);
+            order += name;
+        });
+        wait_until([&] { return waiting.load(); });
+    };
+    wait_for("large", 60 << 20);
+    wait_for("small", 45 << 20);
+    CHECK(admission.others_need_record("first", 40 << 20));
+    CHECK(!admission.others_need_record("first", 20 << 20));  // less than a third
+    CHECK(!admission.others_need_record("first", 3 << 20));
+    first.reset();
+    second.reset();
+    for (std::thread& thread : threads) thread.join();
+    CHECK(order == "smalllarge");
 }
 
 TEST_CASE("without memory a large answer takes the place of one of the client with most") {

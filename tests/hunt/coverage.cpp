@@ -131,7 +131,7 @@ std::array<double, 3> outside(const std::vector<Estimates>& windows, std::size_t
 void print_coverage(int windows, int cycles, int threads) {
     const std::vector<Examined> list = systems();
     std::vector<std::vector<Estimates>> found(list.size());
-    parallel(list.size(), threads, [&](std::size_t i) {
+    parallel(list.size(), threads, nullptr, [&](std::size_t i) {
         found[i] = windows_of(list[i].parameters, windows, cycles);
     });
     std::array<std::array<double, 3>, quantity_count> mean{};

@@ -100,7 +100,7 @@ void print(const char* name, Exponents e) {
 
 bool hunt_exponents(int systems, std::uint64_t seed, int threads) {
     std::vector<std::optional<Window>> windows(static_cast<std::size_t>(systems));
-    parallel(windows.size(), threads, [&](std::size_t i) {
+    parallel(windows.size(), threads, nullptr, [&](std::size_t i) {
         windows[i] = random_window(seed, static_cast<int>(i));
     });
     int of_rank[5] = {}, wrong_qr = 0, wrong_eigenvalues = 0, wrong_rank = 0, wrong_residual = 0;

@@ -170,15 +170,17 @@ bool hunt_contacts(int flights, std::uint64_t seed, int first, int threads) {
     Tally all;
     std::mutex adding;
     int done = 0;
-    parallel(static_cast<std::size_t>((flights + batch - 1) / batch), threads, [&](std::size_t i) {
-        const int from = static_cast<int>(i) * batch, to = std::min(flights, from + batch);
-        Tally tally;
-        for (int n = from; n < to; ++n) tally += hunt_flight(seed, first + n);
-        const std::lock_guard hold(adding);
-        all += tally;
-        done += to - from;
-        if (done % 100000 == 0) std::fprintf(stderr, "%d of %d flights\n", done, flights);
-    });
+    parallel(
+        static_cast<std::size_t>((flights + batch - 1) / batch), threads, nullptr,
+        [&](std::size_t i) {
+            const int from = static_cast<int>(i) * batch, to = std::min(flights, from + batch);
+            Tally tally;
+            for (int n = from; n < to; ++n) tally += hunt_flight(seed, first + n);
+            const std::lock_guard hold(adding);
+            all += tally;
+            done += to - from;
+            if (done % 100000 == 0) std::fprintf(stderr, "%d of %d flights\n", done, flights);
+        });
     std::printf(
         "%d flights, %ld searches, %ld contacts (%ld with the wall left, %ld of these within a "
         "cell), %ld grazing contacts: %ld contacts missed or wrong; x - y off by %.2f "

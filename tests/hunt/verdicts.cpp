@@ -106,7 +106,7 @@ Findings hunt_one(std::uint64_t seed, int number) {
 bool hunt_verdicts(int systems, std::uint64_t seed, int first, int threads) {
     std::vector<Findings> found(static_cast<std::size_t>(systems));
     std::atomic<int> done = 0;
-    parallel(found.size(), threads, [&](std::size_t i) {
+    parallel(found.size(), threads, nullptr, [&](std::size_t i) {
         const int number = first + static_cast<int>(i);
         found[i] = hunt_one(seed, number);
         if (!found[i].report.empty()) {

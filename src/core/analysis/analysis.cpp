@@ -359,7 +359,10 @@ Analysis analyse(const AnalysisRequest& w, const Interrupt& interrupt) {
     Analysis a;
     a.outcome = simulate(
         w.parameters, w.start,
-        {.tau_end = w.tau_end, .max_impacts = w.max_impacts, .stop = interrupt.run},
+        {.tau_end = w.tau_end,
+         .max_impacts = w.max_impacts,
+         .stop = interrupt.run,
+         .events_per_look = w.windows.size() > 16 ? 1 : 64},  // an event takes 1 us per window
         observers.wanted());
     const double tau = a.outcome.tau;
     a.reached = {std::min(w.window.from, tau), std::min(w.window.to, tau)};

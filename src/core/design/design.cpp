@@ -358,7 +358,7 @@ struct DesignSearch {
     void set_samples(Design& d, const SampleSink& sample_sink) const {
         const DesignSearch alone{plan, 1, control, sink};
         std::mutex mutex;
-        parallel(plan.samples.size(), threads, [&](std::size_t k) {
+        parallel(plan.samples.size(), threads, &control, [&](std::size_t k) {
             ToleranceSample s = alone.sample(d.best, plan.samples[k]);
             const std::lock_guard lock(mutex);
             if (sample_sink) sample_sink(s);
@@ -426,7 +426,7 @@ std::optional<Design> find_design(
     try {
         d.tuned_mass_damper = best_tuned_mass_damper(
             plan.host.si.m1, best->m2, [&](const LinearAbsorber& t) { return response(t).value; },
-            threads);
+            threads, control);
         d.with_tuned_mass_damper = response(d.tuned_mass_damper);
         d.with_den_hartog = response(d.den_hartog);
         search.set_response(d, linear);

@@ -9,7 +9,6 @@
 
 #include "core/measures/golden_section.hpp"
 #include "core/motion/elementary.hpp"
-#include "core/sweep/parallel.hpp"
 
 namespace vines {
 
@@ -180,7 +179,7 @@ LinearAbsorber den_hartog(double m1, double m2) {
 
 LinearAbsorber best_tuned_mass_damper(
     double m1, double m2, const std::function<double(const LinearAbsorber&)>& objective,
-    int threads) {
+    int threads, RunControl& control) {
     LinearAbsorber best = den_hartog(m1, m2);
     double least = objective(best), frequency_factor = frequency_range,
            damping_factor = damping_range;
@@ -193,7 +192,9 @@ LinearAbsorber best_tuned_mass_damper(
                     {m2, best.frequency_ratio * elementary::pow(frequency_factor, place(i)),
                      best.damping_ratio * elementary::pow(damping_factor, place(k))});
         std::vector<double> values(tries.size());
-        parallel(tries.size(), threads, [&](std::size_t i) { values[i] = objective(tries[i]); });
+        parallel(tries.size(), threads, &control, [&](std::size_t i) {
+            values[i] = objective(tries[i]);
+        });
         const auto at = std::ranges::min_element(values);
         if (*at < least) least = *at, best = tries[static_cast<std::size_t>(at - values.begin())];
         frequency_factor = elementary::pow(frequency_factor, narrowing);

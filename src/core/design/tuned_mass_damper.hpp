@@ -8,6 +8,7 @@
 
 #include "core/measures/extremes.hpp"
 #include "core/motion/load.hpp"
+#include "core/sweep/parallel.hpp"
 
 namespace vines {
 
@@ -49,7 +50,7 @@ BandMaximum band_maximum(const std::function<double(double)>& function, const In
 /// The tuned mass damper of mass m2 with the smallest objective, on `threads` threads.
 LinearAbsorber best_tuned_mass_damper(
     double m1, double m2, const std::function<double(const LinearAbsorber&)>& objective,
-    int threads);
+    int threads, RunControl& control);
 /// Den Hartog's: frequency ratio 1/(1 + mu), damping ratio sqrt(3 mu/(8 (1 + mu))), for an undamped
 /// host and all frequencies.
 LinearAbsorber den_hartog(double m1, double m2);

@@ -23,9 +23,6 @@ constexpr double sliding_chatter_rest = 1e-6, lowest_bounce = 100;
 // Largest relative change of the acceleration for which that is a geometric series.
 constexpr double chatter_drift = 1e-4;
 
-// Events between two calls of the stop function; a flight without a contact in its reach is one.
-constexpr long events_per_look = 64;
-
 int sign_of(double value) { return (value > 0) - (value < 0); }
 
 /// Time as a sum of two doubles: adding a million small steps loses no accuracy.
@@ -85,8 +82,10 @@ public:
 private:
     bool is_over() {
         if (!end_ && std::max(impacts_, others_) >= limits_.max_impacts) end_ = End::max_impacts;
-        if (!end_ && limits_.stop && events_++ % events_per_look == 0 && limits_.stop())
-            end_ = End::stopped;
+        if (!end_ && limits_.stop && --until_look_ <= 0) {
+            until_look_ = limits_.events_per_look;
+            if (limits_.stop()) end_ = End::stopped;
+        }
         return end_.has_value();
     }
 
@@ -427,7 +426,7 @@ private:
     double bounce_limit_ = 0;
     std::vector<GrazingPoint> grazing_;  // of the current flight
     long impacts_ = 0, others_ = 0;      // others: sticking phases and grazing contacts
-    long events_ = 0;                    // flights and the events that end them
+    long until_look_ = 0;                // flights, and events that end them, to the next look
     std::optional<End> end_;
 };
 

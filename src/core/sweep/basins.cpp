@@ -224,13 +224,12 @@ std::optional<PointSystem> Basins::system_of(const Place& place) const {
 void Basins::explore(int threads, const PointOptions& options, RunControl& control) {
     const std::size_t each = std::min(explored_starts, plan_.count);
     std::vector<PointResult> found(each * values());
-    parallel(found.size(), threads, [&](std::size_t i) {
+    parallel(found.size(), threads, &control, [&](std::size_t i) {
         const auto system = system_of({i % each, {i / each}});
         if (system) found[i] = run_point(*system, system->start, options, control);
         else poll(control);
     });
-    parallel(values(), threads, [&](std::size_t value) {
-        const ComputePermit permit(control);
+    parallel(values(), threads, &control, [&](std::size_t value) {
         const auto stop = [&control] { return control.stop_or_yield(); };
         const auto first = found.begin() + static_cast<std::ptrdiff_t>(value * each);
         systems_[value].known = std::make_shared<const KnownMotions>(
@@ -286,7 +285,7 @@ void Basins::run_pairs(int threads, const PointOptions& options, RunControl& con
                 if (inside && std::abs(s.x - s.y) <= systems_[value].parameters.b)
                     all.push_back({i * values() + value, distance, s});
             }
-    parallel(all.size(), threads, [&](std::size_t i) {
+    parallel(all.size(), threads, &control, [&](std::size_t i) {
         const Neighbour& n = all[i];
         const PointResult there = run_point(systems_[n.line % values()], n.start, options, control);
         const std::lock_guard lock(mutex_);

@@ -3,19 +3,26 @@
 #include <algorithm>
 #include <exception>
 #include <mutex>
+#include <optional>
 #include <system_error>
 #include <thread>
 #include <vector>
 
 namespace vines {
 
-void parallel(std::size_t count, int threads, const std::function<void(std::size_t)>& task) {
+void parallel(
+    std::size_t count, int threads, RunControl* control,
+    const std::function<void(std::size_t)>& task) {
     std::atomic<std::size_t> next = 0;
     std::exception_ptr failure;
     std::mutex failing;
     const auto work = [&] {
+        std::optional<ComputePermit> permit;
         try {
-            for (std::size_t i; (i = next++) < count;) task(i);
+            for (std::size_t i; (i = next++) < count;) {
+                if (control && !permit) permit.emplace(*control);
+                task(i);
+            }
         } catch (...) {
             next = count;
             const std::lock_guard lock(failing);
@@ -31,11 +38,6 @@ void parallel(std::size_t count, int threads, const std::function<void(std::size
     work();
     for (std::thread& t : others) t.join();
     if (failure) std::rethrow_exception(failure);
-}
-
-void poll(RunControl& control) {
-    const ComputePermit permit(control);
-    if (control.stop_or_yield()) throw Stopped();
 }
 
 }  // namespace vines

@@ -8,17 +8,11 @@
 
 namespace vines {
 
-/// Calls task(0), ..., task(count - 1), each once, from `threads` threads (at least one; fewer if
-/// the system refuses more), and returns when all are done. If a task throws, no further task
-/// starts, and the exception is rethrown once the other threads have returned.
-void parallel(std::size_t count, int threads, const std::function<void(std::size_t)>& task);
-
 /// Interface between a long computation and its host; the default never waits or stops.
 class RunControl {
 public:
     virtual ~RunControl() = default;
-    /// Blocks until a permit is granted. A thread calls begin() before its first run; before each
-    /// further run it can return the permit by end() and call begin() again.
+    /// Blocks until a permit is granted, which a thread needs for its runs.
     virtual void begin() {}
     /// Returns the permit of the matching begin().
     virtual void end() {}
@@ -31,19 +25,36 @@ public:
 
 struct Stopped {};  ///< thrown by the computation once stop_or_yield() returned true
 
-/// Throws Stopped after a stop request, which it reads with a permit of its own.
-void poll(RunControl& control);
-
-/// A permit to compute, held while in scope.
+/// A permit to compute, held while in scope. A thread with one gets no further one.
 class ComputePermit {
 public:
-    explicit ComputePermit(RunControl& control) : control_(control) { control_.begin(); }
-    ~ComputePermit() { control_.end(); }
+    explicit ComputePermit(RunControl& control) : control_(control) {
+        if (depth_ == 0) control_.begin();
+        ++depth_;
+    }
+    ~ComputePermit() {
+        if (--depth_ == 0) control_.end();
+    }
     ComputePermit(const ComputePermit&) = delete;
     ComputePermit& operator=(const ComputePermit&) = delete;
 
 private:
     RunControl& control_;
+    static inline thread_local int depth_ = 0;
 };
+
+/// Throws Stopped after a stop request.
+inline void poll(RunControl& control) {
+    const ComputePermit permit(control);
+    if (control.stop_or_yield()) throw Stopped();
+}
+
+/// Calls task(0), ..., task(count - 1), each once, from `threads` threads (at least one; fewer if
+/// the system refuses more), and returns when all are done. If a task throws, no further task
+/// starts, and the exception is rethrown once the other threads have returned. control: each thread
+/// keeps a permit from its first task to its last.
+void parallel(
+    std::size_t count, int threads, RunControl* control,
+    const std::function<void(std::size_t)>& task);
 
 }  // namespace vines

@@ -19,6 +19,9 @@ constexpr std::size_t second_starts = 16;
 /// Positions per axis of the coarsest grid, or up to twice as many: enough to recognise a picture.
 constexpr std::size_t coarsest = 8;
 
+// Points of the rows that are computed at once, or more: each time, permits are waited for.
+constexpr std::size_t points_at_once = 64;
+
 std::size_t level_on_axis(std::size_t at, std::size_t steps) {
     const auto levels =
         static_cast<std::size_t>(std::bit_width(std::max(steps / coarsest, 1UL)) - 1);
@@ -76,7 +79,7 @@ struct Sweep {
     void run() {
         if (plan.by_rows()) return run_rows();
         const std::vector<std::size_t> lines = plan.in_order ? plan.lines : coarse_to_fine();
-        parallel(lines.size(), threads, [&](std::size_t i) { run_single(lines[i]); });
+        parallel(lines.size(), threads, &control, [&](std::size_t i) { run_single(lines[i]); });
     }
 
     /// Requested lines, ordered so that the whole picture appears early. Points with the same flow
@@ -133,14 +136,16 @@ struct Sweep {
     void run_rows() {
         std::vector<Row> rows = wanted_rows();
         // Rows stay in memory while they are computed: only enough to keep the threads busy.
-        const std::size_t at_once = static_cast<std::size_t>(std::max(threads, 1));
+        const std::size_t at_once = std::max<std::size_t>(
+            {static_cast<std::size_t>(std::max(threads, 1)), points_at_once / plan.grid.row()});
         for (std::size_t from = 0; from < rows.size(); from += at_once) {
             const std::span<Row> block =
                 std::span(rows).subspan(from, std::min(at_once, rows.size() - from));
             run_fresh(block);
             if (plan.default_set) follow_neighbours(block);
             else if (plan.carry != Carry::none)
-                parallel(block.size(), threads, [&](std::size_t i) { carry_along(block[i]); });
+                parallel(
+                    block.size(), threads, &control, [&](std::size_t i) { carry_along(block[i]); });
             for (Row& row : block) {
                 if (plan.grid.reduced) hand_out(row);
                 row = {};
@@ -170,7 +175,7 @@ struct Sweep {
     void run_fresh(std::span<Row> rows) {
         const std::size_t n = plan.grid.row();
         for (Row& row : rows) row.points.resize(n);
-        parallel(rows.size() * n, threads, [&](std::size_t task) {
+        parallel(rows.size() * n, threads, &control, [&](std::size_t task) {
             Row& row = rows[task / n];
             const std::size_t k = task % n;
             Place place = row.place;
@@ -187,7 +192,7 @@ struct Sweep {
     /// Passes up and down are independent of each other and run at the same time.
     void follow_neighbours(std::span<Row> rows) {
         std::vector<std::vector<std::optional<Motion>>> found(2 * rows.size());
-        parallel(found.size(), threads, [&](std::size_t task) {
+        parallel(found.size(), threads, &control, [&](std::size_t task) {
             found[task] = follow(rows[task / 2].points, task % 2 == 0);
         });
         for (std::size_t i = 0; i < rows.size(); ++i) {

@@ -104,8 +104,10 @@ TEST_CASE("extremes are those of dense samples and of all impacts") {
 
 TEST_CASE("without absorber and with the best tuned mass damper the largest x is 99 and 17.7 mm") {
     const DesignPlan plan = machine();
+    RunControl control;
     const LinearAbsorber best = best_tuned_mass_damper(
-        2, 0.04, [&](const LinearAbsorber& t) { return largest(plan.host, t, plan.f, 200); }, 2);
+        2, 0.04, [&](const LinearAbsorber& t) { return largest(plan.host, t, plan.f, 200); }, 2,
+        control);
     CHECK(largest(plan.host, {}, plan.f) == doctest::Approx(0.0990).epsilon(1e-3));
     const double least = largest(plan.host, best, plan.f);
     CHECK(least == doctest::Approx(0.0177).epsilon(3e-3));

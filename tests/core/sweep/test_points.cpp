@@ -16,9 +16,11 @@ namespace {
 
 /// Stops after a number of polls.
 struct CountingControl : RunControl {
+    void begin() override { ++begun; }
+    void end() override { ++ended; }
     bool stop_or_yield() override { return ++polls > stop_after; }
 
-    long polls = 0, stop_after = 1'000'000'000;
+    long begun = 0, ended = 0, polls = 0, stop_after = 1'000'000'000;
 };
 
 struct NoSink : SweepSink {
@@ -41,17 +43,19 @@ TEST_CASE("points without a valid system poll the stop request as well") {
     NoSink sink;
     run_sweep(plan, 1, control, sink);
     CHECK(looked_at < 200);
+    CHECK(control.begun == 1);  // one permit for all
+    CHECK(control.ended == 1);
 }
 
 TEST_CASE("parallel() runs each task once on any number of threads and rethrows an exception") {
     for (int threads : {1, 2, 7}) {
         std::vector<std::atomic<int>> runs(100);
-        parallel(100, threads, [&](std::size_t i) { ++runs[i]; });
+        parallel(100, threads, nullptr, [&](std::size_t i) { ++runs[i]; });
         for (const auto& n : runs) CHECK(n == 1);
         std::atomic<int> started = 0;
         CHECK_THROWS_AS(
             parallel(
-                1000000, threads,
+                1000000, threads, nullptr,
                 [&](std::size_t i) {
                     ++started;
                     if (i == 5) throw std::runtime_error("no");
@@ -59,5 +63,5 @@ TEST_CASE("parallel() runs each task once on any number of threads and rethrows 
             std::runtime_error);
         CHECK(started < 1000000);
     }
-    parallel(0, 4, [](std::size_t) { FAIL("there is no task"); });
+    parallel(0, 4, nullptr, [](std::size_t) { FAIL("there is no task"); });
 }
