@@ -220,9 +220,9 @@ bool AdmissionControl::uses(std::size_t bytes) const {
 }
 
 AdmissionControl::Slot AdmissionControl::acquire_background(
-    const std::string& client, const std::stop_token& stop) {
+    const std::string& client, const std::stop_token& stop, Clock::duration waited) {
     std::unique_lock lock(mutex_);
-    Waiter waiter;
+    Waiter waiter{.since = Clock::now() - waited};
     background_.push(client, &waiter);
     assign();
     // The wait registers with the token before it checks the condition, so that no stop is missed.
@@ -230,18 +230,25 @@ AdmissionControl::Slot AdmissionControl::acquire_background(
     waiter.changed.wait(lock, stop, [this, &waiter] { return waiter.granted || sweeps_stopped_; });
     if (!end_wait(background_, waiter)) return nullptr;
     if (!sweeps_stopped_)
-        return {this, {.keeps_until = waiter.overtakes ? Clock::now() + time_slice : waiter.since}};
+        return {
+            this,
+            {.keeps_until = waiter.overtakes ? Clock::now() + time_slice : Clock::time_point{}}};
     ++free_;
     assign();
     return nullptr;
 }
 
-void AdmissionControl::release(bool is_grace) {
+AdmissionControl::Clock::duration AdmissionControl::Release::credit() const {
+    return std::max(keeps_until - Clock::now(), Clock::duration(0)) * (patience / time_slice);
+}
+
+void AdmissionControl::release(bool is_grace, Clock::duration credit) {
     const std::lock_guard lock(mutex_);
     if (is_grace) {
         --graces_;
     } else {
         ++free_;
+        next_overtaking_ -= credit / limits_.running;
         assign();
     }
 }

@@ -47,11 +47,12 @@ public:
     using Clock = std::chrono::steady_clock;
 
 private:
-    void release(bool is_grace);
+    void release(bool is_grace, Clock::duration credit);
     struct Release {
         bool is_grace = false;
         Clock::time_point keeps_until = {};  // of background work that foreground work waits for
-        void operator()(AdmissionControl* admission) const { admission->release(is_grace); }
+        Clock::duration credit() const;
+        void operator()(AdmissionControl* its) const { its->release(is_grace, credit()); }
     };
 
 public:
@@ -83,14 +84,19 @@ public:
     bool others_are_stuck(const std::string& client) const;
     /// For background work: waits for a slot, after the background work whose turn is earlier, and
     /// after all foreground work unless it has waited for 200 ms; then at most one per slot and 200
-    /// ms overtakes. Null once `stop` is requested or sweeps are stopped.
-    Slot acquire_background(const std::string& client, const std::stop_token& stop = {});
+    /// ms overtakes. Null once `stop` is requested or sweeps are stopped. waited: counts as waited.
+    Slot acquire_background(
+        const std::string& client, const std::stop_token& stop = {}, Clock::duration waited = {});
+    /// The wait that the unused time of a slot is worth; `before` if it did not overtake.
+    static Clock::duration credit(const Slot& slot, Clock::duration before) {
+        if (!slot || slot.get_deleter().keeps_until == Clock::time_point{}) return before;
+        return slot.get_deleter().credit();
+    }
     /// True if background work should release its slot and wait again, since foreground work waits.
     bool must_yield(const Slot& background) const {
         return foreground_waits_ && Clock::now() >= background.get_deleter().keeps_until;
     }
     bool foreground_waits() const { return foreground_waits_; }
-    /// True while background work waits.
     bool background_waits() const { return background_waits_; }
 
     /// The right to run one sweep. Null if the limit is reached, or all but one are this client's,
@@ -104,9 +110,8 @@ public:
 
     /// The right to read a large body and to compute with it. At most one of the largest, and
     /// several that are small together, have it at once, since these take many times their size;
-    /// others wait, the smallest first among equal turns. Null if too many wait whose turn is
-    /// earlier, or gives_up() returned true; it is polled every 50 ms. Smaller bodies have it at
-    /// once.
+    /// others wait, the smallest first of equal turns. Null if too many wait whose turn is earlier,
+    /// or gives_up(), polled every 50 ms, returned true. Smaller bodies have it at once.
     using SizePermit = std::shared_ptr<void>;
     /// Records, which keep it until they are identified, do not hold up other bodies.
     SizePermit acquire_body(

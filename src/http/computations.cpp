@@ -56,9 +56,8 @@ constexpr std::size_t parts_of_a_point = 10, least_parts = 100'000;
 constexpr std::size_t max_hash = 256;
 
 // Time after which a request, with all its waiting, ends as at its deadline if others need its
-// thread (twice the time if its client has no other) or, where memory lacks for turns, its slot;
-// and time of computing after which it does if they need the permit of its record: the longest that
-// they are delayed. A fraction of it is left to finish the answer.
+// thread (twice the time if its client has no other) or, where memory lacks for turns, its slot; or
+// of computing, if they need the permit of its record. A fraction is left to finish the answer.
 constexpr std::chrono::duration<double> age_in_need(5);
 
 /// Ends the request of a client that has left; only the log shows its status.

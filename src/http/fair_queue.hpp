@@ -1,6 +1,5 @@
 // A queue in which clients take turns (start-time fair queueing with equal costs): the first
-// entries of all clients, then their second ones, and so on; among equals those of least cost, in
-// order of arrival.
+// entries of all clients, then their second ones, and so on; among equals by cost, then arrival.
 #pragma once
 
 #include <algorithm>
@@ -37,20 +36,18 @@ public:
                 std::swap(e.value, value);
     }
     /// True if an entry of this client would come before the last one that may(value).
-    template <class May>
-    bool precedes_last(const std::string& client, const May& may) const {
+    template <class May = bool (*)(const T&)>
+    bool precedes_last(const std::string& client, const May& may = any) const {
         const auto last = std::find_if(entries_.rbegin(), entries_.rend(), by_value(may));
         return last != entries_.rend() && next_turn(client) < last->turn;
     }
-    bool precedes_last(const std::string& client) const { return precedes_last(client, any); }
     const std::string& last_client() const { return entries_.back().client; }
     /// The last entry that may(value), of which there is one.
-    template <class May>
-    T pop_last(const May& may) {
+    template <class May = bool (*)(const T&)>
+    T pop_last(const May& may = any) {
         return take(
             std::prev(std::find_if(entries_.rbegin(), entries_.rend(), by_value(may)).base()));
     }
-    T pop_last() { return pop_last(any); }
     /// The last entry of the client with the most, if this client, with one more, has fewer.
     std::optional<T> pop_for(const std::string& client) {
         std::map<std::string, std::size_t> counts;

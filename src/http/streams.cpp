@@ -66,8 +66,7 @@ private:
     }
 
     static constexpr std::size_t capacity_ = 1 << 20;  // bytes
-    static constexpr std::size_t at_once_ =
-        1 << 16;  // bytes, or more, copied for one of many readers
+    static constexpr std::size_t at_once_ = 1 << 16;   // bytes, or more, copied for one reader
 
     const bool keeps_;
     std::mutex mutex_;
@@ -118,10 +117,13 @@ public:
 
     // Called by the threads that compute.
     void begin() override {
-        held().slot = admission_.acquire_background(owner(), stop_.get_token());
+        held().slot = admission_.acquire_background(owner(), stop_.get_token(), credit_);
         held().since = Clock::now();
     }
-    void end() override { held().slot.reset(); }
+    void end() override {
+        credit_ = AdmissionControl::credit(held().slot, credit_);
+        held().slot.reset();
+    }
     bool stop_or_yield() override {
         const Clock::time_point now = Clock::now();
         const bool is_long = admission_.background_waits() && now - held().since > time_slice;
@@ -132,7 +134,7 @@ public:
                 lines_.wait_while_full(client_check_interval);
             begin();
         }
-        return stops(now) || !held().slot;
+        return stops(now);
     }
 
 private:
@@ -251,6 +253,7 @@ private:
     std::atomic<bool> is_cut_off_ = false;
     std::atomic<bool> is_disowned_ = false;  // its client left, and the others have too many
     LineQueue lines_;
+    std::atomic<Clock::duration> credit_ = Clock::duration(0);  // of the last slot
     std::stop_source stop_;
     std::once_flag is_started_;
     Clock::time_point started_;

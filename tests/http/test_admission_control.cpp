@@ -485,6 +485,28 @@ TEST_CASE("a client whose turn is earlier displaces the last request of a full q
     CHECK(served == 3);
 }
 
+TEST_CASE("background work that counts as having waited overtakes foreground work") {
+    AdmissionControl admission({.running = 1});
+    Slot slot = admission.acquire(client);
+    std::string order;
+    std::thread foreground([&] {
+        const Slot own = admission.acquire("other");
+        order += 'f';
+    });
+    wait_until([&] { return admission.foreground_waits(); });
+    std::thread background([&] {
+        const Slot own = admission.acquire_background(client, {}, std::chrono::seconds(1));
+        order += 'b';
+        CHECK(AdmissionControl::credit(own, {}) <= std::chrono::milliseconds(200));
+    });
+    wait_until([&] { return admission.background_waits(); });
+    slot.reset();
+    foreground.join();
+    background.join();
+    CHECK(order == "bf");
+    CHECK(AdmissionControl::credit({}, time_slice) == time_slice);
+}
+
 TEST_CASE("one client cannot have all sweeps") {
     AdmissionControl admission({.running = 1, .waiting = 1, .sweeps = 3});
     std::vector<AdmissionControl::SweepSlot> slots;

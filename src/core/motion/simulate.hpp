@@ -100,9 +100,8 @@ struct Limits {
     double tau_end = 1709;      ///< contacts at tau_end itself belong to the run
     long max_impacts = 100000;  ///< the same limit applies to phases of rest plus grazing contacts
     StopRequest stop = {};
-    double tau_start = 0;  ///< initial time; it sets the phase of the forcing
-    /// Events from one call of stop to the next; a flight without a contact in its reach is one.
-    long events_per_look = 64;
+    double tau_start = 0;       ///< initial time; it sets the phase of the forcing
+    long events_per_look = 64;  ///< from one call of stop to the next, flights included
 };
 
 enum class End { tau_end, max_impacts, stopped };

@@ -25,6 +25,11 @@ public:
 
 struct Stopped {};  ///< thrown by the computation once stop_or_yield() returned true
 
+/// Throws Stopped after a stop request.
+inline void poll(RunControl& control) {
+    if (control.stop_or_yield()) throw Stopped();
+}
+
 /// A permit to compute, held while in scope. A thread with one gets no further one.
 class ComputePermit {
 public:
@@ -42,12 +47,6 @@ private:
     RunControl& control_;
     static inline thread_local int depth_ = 0;
 };
-
-/// Throws Stopped after a stop request.
-inline void poll(RunControl& control) {
-    const ComputePermit permit(control);
-    if (control.stop_or_yield()) throw Stopped();
-}
 
 /// Calls task(0), ..., task(count - 1), each once, from `threads` threads (at least one; fewer if
 /// the system refuses more), and returns when all are done. If a task throws, no further task

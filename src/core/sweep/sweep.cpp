@@ -19,9 +19,6 @@ constexpr std::size_t second_starts = 16;
 /// Positions per axis of the coarsest grid, or up to twice as many: enough to recognise a picture.
 constexpr std::size_t coarsest = 8;
 
-// Points of the rows that are computed at once, or more: each time, permits are waited for.
-constexpr std::size_t points_at_once = 64;
-
 std::size_t level_on_axis(std::size_t at, std::size_t steps) {
     const auto levels =
         static_cast<std::size_t>(std::bit_width(std::max(steps / coarsest, 1UL)) - 1);
@@ -136,8 +133,7 @@ struct Sweep {
     void run_rows() {
         std::vector<Row> rows = wanted_rows();
         // Rows stay in memory while they are computed: only enough to keep the threads busy.
-        const std::size_t at_once = std::max<std::size_t>(
-            {static_cast<std::size_t>(std::max(threads, 1)), points_at_once / plan.grid.row()});
+        const std::size_t at_once = static_cast<std::size_t>(std::max(threads, 1));
         for (std::size_t from = 0; from < rows.size(); from += at_once) {
             const std::span<Row> block =
                 std::span(rows).subspan(from, std::min(at_once, rows.size() - from));
