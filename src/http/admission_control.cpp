@@ -25,7 +25,6 @@ constexpr auto patience = std::chrono::milliseconds(200);
 // beside them. While they are read and computed they take up to fifteen times their size, one of
 // the largest up to 340 MB. Bytes.
 constexpr std::size_t bodies_at_once = 4 << 20;
-
 // The same of records, which take up to five times their size, but long.
 constexpr std::size_t lesser_records_at_once = 16 << 20, records_at_once = 64 << 20;
 
@@ -83,8 +82,8 @@ void AdmissionControl::assign() {
     while (BySize* const group = next_by_size()) group->in_work += grant_next(group->waiting).bytes;
 }
 
-/// Of the groups whose next work may begin, the one whose work has waited longest; null if none
-/// may. While the process uses all of its memory, one body or text may, and records beside it.
+/// The group whose work has waited longest, among those whose next work may begin; null if there is
+/// none. While the process uses all of its memory, one body or text may, and records beside it.
 AdmissionControl::BySize* AdmissionControl::next_by_size() {
     const std::array groups{&large_bodies_,   &lesser_bodies_, &large_records_,
                             &lesser_records_, &large_texts_,   &lesser_texts_};

@@ -26,9 +26,6 @@ constexpr std::size_t max_parts = 16;
 // Every answer begins with these bytes.
 constexpr std::string_view status_line_begin = "HTTP/1.1 ";
 
-// Seconds within which a large answer must be read while a resource is scarce.
-constexpr double scarce_reading_time = 60;
-
 }  // namespace
 
 // A client slower than this would hold memory, a thread or a sweep's place for nothing.
@@ -66,8 +63,7 @@ void Outbox::add(std::string bytes) {
     }
     if (bytes.empty()) return;
     unsent_ += bytes.size();
-    while_scarce_.rate =
-        std::max(while_scarce_.rate, static_cast<double>(unsent_) / scarce_reading_time);
+    while_scarce_.rate = std::max(while_scarce_.rate, static_cast<double>(unsent_) / 60);  // 60 s
     if (!parts_.empty() && parts_.back().size() + bytes.size() <= usual_part)
         parts_.back() += bytes;
     else parts_.push_back(std::move(bytes));

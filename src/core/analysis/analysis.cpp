@@ -357,12 +357,9 @@ Analysis analyse(const AnalysisRequest& w, const Interrupt& interrupt) {
     assert(w.window.from < w.tau_end && w.most_points > 0 && w.most_listed > 0);
     AnalysisObservers observers(w);
     Analysis a;
+    const long look = w.windows.size() > 16 ? 1 : 64;  // an event takes 1 us per window
     a.outcome = simulate(
-        w.parameters, w.start,
-        {.tau_end = w.tau_end,
-         .max_impacts = w.max_impacts,
-         .stop = interrupt.run,
-         .events_per_look = w.windows.size() > 16 ? 1 : 64},  // an event takes 1 us per window
+        w.parameters, w.start, {w.tau_end, w.max_impacts, interrupt.run, 0, look},
         observers.wanted());
     const double tau = a.outcome.tau;
     a.reached = {std::min(w.window.from, tau), std::min(w.window.to, tau)};
