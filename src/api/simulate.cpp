@@ -74,6 +74,20 @@ bool fit_answer(SimulateRequest& r, std::size_t bytes, Warnings& warnings) {
     return true;
 }
 
+/// About the bytes that the lists of a run take, with four impacts per cycle or less.
+std::size_t expected_bytes(const SimulateRequest& r) {
+    const AnalysisRequest& w = r.wanted;
+    const AnswerSize size = size_of(r);
+    const double cycles = w.tau_end / w.parameters.cycle() + 1;
+    const auto at_most = [](double expected, std::size_t most) {
+        return std::min(expected, static_cast<double>(most));
+    };
+    double bytes = size.point * at_most(w.samples_per_cycle * cycles, w.most_points);
+    if (w.parts.impacts)
+        bytes += size.impact * at_most(at_most(4 * cycles, w.most_listed), w.most_kept);
+    return static_cast<std::size_t>(bytes);
+}
+
 Json describe_parameters(const SimulateRequest& r) {
     const AnalysisRequest& w = r.wanted;
     Json run = describe(properties::start, w.start);
@@ -223,10 +237,12 @@ void add_manifold_warnings(
 }  // namespace
 
 Answer simulate_in_parts(
-    SimulateRequest r, const Stop& stop, std::size_t most_bytes, std::size_t most_kept) {
+    SimulateRequest r, const Stop& stop, std::size_t most_bytes, std::size_t most_kept,
+    const std::function<void(std::size_t)>& begins) {
     Warnings warnings = r.system.notes;
     const bool has_fewer_points = fit_answer(r, most_bytes, warnings);
     r.wanted.most_kept = most_kept;
+    if (begins) begins(expected_bytes(r));
     Analysis analysis = analyse(r.wanted, {.run = stop.requested, .late = stop.analysis_late});
     Json answer = object(
         {{"version", version()},

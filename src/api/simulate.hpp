@@ -67,9 +67,10 @@ inline constexpr std::size_t most_listed_bytes = 24 << 20;
 
 /// An answer of at most about `most_bytes` of JSON, for which max_points, down to 256, and the
 /// count of listed impacts are lowered. More than `most_kept` listed impacts become streamed lists.
+/// begins(bytes) is called before the run, with about the memory that its lists take.
 Answer simulate_in_parts(
     SimulateRequest request, const Stop& stop, std::size_t most_bytes = any_size,
-    std::size_t most_kept = everything);
+    std::size_t most_kept = everything, const std::function<void(std::size_t)>& begins = {});
 
 /// write_sealed(). Streamed lists are generated meanwhile by runs at `control`, as many per run as
 /// fit into `list_bytes`. Throws Cancelled if `control` stops a run.

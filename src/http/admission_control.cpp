@@ -28,9 +28,11 @@ constexpr std::size_t bodies_at_once = 4 << 20;
 // The same of records, which take up to five times their size, but long.
 constexpr std::size_t lesser_records_at_once = 16 << 20, records_at_once = 64 << 20;
 
-// Texts of answers up to the first size that are made at once, and of larger ones beside them: the
-// bytes that they are made from.
-constexpr std::size_t lesser_texts_at_once = 16 << 20, texts_at_once = 48 << 20;
+// Time of computing after which work with more than an equal share ends for others that wait.
+constexpr auto time_in_need = std::chrono::milliseconds(2500);
+
+// Lists at once, which an interrupted run keeps; they take as much memory as their text. Bytes.
+constexpr std::size_t lists_at_once = 256 << 20;
 
 // Larger bodies that wait, and their bytes; each occupies a worker.
 constexpr std::size_t most_waiting_bodies = 32, most_waiting_bytes = 256 << 20;
@@ -47,14 +49,20 @@ AdmissionControl::AdmissionControl(const AdmissionLimits& limits)
       lesser_bodies_{bodies_at_once},
       large_records_{records_at_once, true},
       lesser_records_{lesser_records_at_once, true},
-      large_texts_{texts_at_once},
-      lesser_texts_{lesser_texts_at_once} {}
+      lists_{lists_at_once, true},
+      immediate_{} {}
+
+/// The time since which the work of a queue waits, the first or other; max() if it is empty.
+AdmissionControl::Clock::time_point AdmissionControl::oldest(const Queue& queue) {
+    Clock::time_point since = Clock::time_point::max();
+    queue.for_each([&since](const Waiter* waiter) { since = std::min(since, waiter->since); });
+    return since;
+}
 
 /// True if background work may overtake foreground work: it then has a tenth of the time.
 bool AdmissionControl::may_overtake() const {
     const auto now = Clock::now();
-    return !background_.empty() && now - background_.front()->since >= patience &&
-           now >= next_overtaking_;
+    return now >= next_overtaking_ && oldest(background_) <= now - patience;
 }
 
 /// Grants what is free to the next in the queues, and wakes only these threads.
@@ -85,21 +93,20 @@ void AdmissionControl::assign() {
 /// The group whose work has waited longest, among those whose next work may begin; null if there is
 /// none. While the process uses all of its memory, one body or text may, and records beside it.
 AdmissionControl::BySize* AdmissionControl::next_by_size() {
-    const std::array groups{&large_bodies_,   &lesser_bodies_, &large_records_,
-                            &lesser_records_, &large_texts_,   &lesser_texts_};
+    const std::array groups{
+        &large_bodies_, &lesser_bodies_, &large_records_, &lesser_records_, &lists_};
     const auto may_begin = [&](const BySize* group) {
         if (group->waiting.empty() ||
             (group->in_work > 0 && group->in_work + group->waiting.front()->bytes > group->at_once))
             return false;
-        return group->is_record || !uses(limits_.memory) ||
+        return group->is_exempt || !uses(limits_.memory) ||
                std::ranges::none_of(groups, [](const BySize* other) {
-                   return other->in_work > 0 && !other->is_record;
+                   return other->in_work > 0 && !other->is_exempt;
                });
     };
     BySize* next = nullptr;
     for (BySize* const group : groups)
-        if (may_begin(group) &&
-            (!next || group->waiting.front()->since < next->waiting.front()->since))
+        if (may_begin(group) && (!next || oldest(group->waiting) < oldest(next->waiting)))
             next = group;
     return next;
 }
@@ -191,6 +198,13 @@ AdmissionControl::Slot AdmissionControl::acquire_urgently(
     return Slot(wait(lock, urgent_, waiter, gives_up) ? this : nullptr);
 }
 
+bool AdmissionControl::must_yield(const Slot& background) const {
+    const auto now = Clock::now();
+    const Release& slot = background.get_deleter();
+    return (foreground_waits_ && now >= slot.keeps_until) ||
+           (background_waits_ && now - slot.since > time_slice);
+}
+
 bool AdmissionControl::others_are_due(const std::string& client) const {
     if (!foreground_waits_ && !background_waits_) return false;
     const std::lock_guard lock(mutex_);
@@ -213,7 +227,7 @@ bool AdmissionControl::may_interrupt() const {
 bool AdmissionControl::uses(std::size_t bytes) const {
     if (const auto now = Clock::now(); now - memory_checked_ > memory_look) {
         memory_checked_ = now;
-        resident_ = resident_bytes();
+        resident_ = process_memory().resident;
     }
     return resident_ >= bytes;
 }
@@ -301,11 +315,13 @@ AdmissionControl::SizePermit AdmissionControl::acquire_by_size(
     Waiter waiter{.bytes = bytes};
     group.waiting.push(client, &waiter, bytes);
     if (!wait(lock, group.waiting, waiter, gives_up)) return nullptr;
+    group.clients[client] += bytes;
     lock.unlock();
-    return {this, [this, &group, bytes](void*) {
+    return {&group, [this, &group, client, bytes](BySize*) {
                 trim_memory();
                 const std::lock_guard ending(mutex_);
                 group.in_work -= bytes;
+                if ((group.clients[client] -= bytes) == 0) group.clients.erase(client);
                 assign();
             }};
 }
@@ -313,7 +329,7 @@ AdmissionControl::SizePermit AdmissionControl::acquire_by_size(
 AdmissionControl::SizePermit AdmissionControl::acquire_body(
     const std::string& client, std::size_t bytes, bool is_record,
     const std::function<bool()>& gives_up) {
-    if (bytes <= immediate_body) return {this, [](void*) {}};
+    if (bytes <= immediate_body) return {&immediate_, [](BySize*) {}};
     std::unique_lock lock(mutex_);
     BySize& large = is_record ? large_records_ : large_bodies_;
     BySize& bodies = bytes > bodies_at_once ? large : is_record ? lesser_records_ : lesser_bodies_;
@@ -321,24 +337,27 @@ AdmissionControl::SizePermit AdmissionControl::acquire_body(
     return acquire_by_size(lock, bodies, client, bytes, gives_up);
 }
 
-bool AdmissionControl::others_need_record(const std::string& client, std::size_t bytes) const {
-    const std::lock_guard lock(mutex_);
-    const BySize& records = bytes > bodies_at_once ? large_records_ : lesser_records_;
-    const std::size_t others =
-        records.waiting.clients([&client](const std::string& other) { return other != client; });
-    return others > 0 && bytes > std::max(records.at_once / (others + 1), immediate_body);
-}
-
-AdmissionControl::SizePermit AdmissionControl::acquire_text(
+AdmissionControl::SizePermit AdmissionControl::acquire_lists(
     const std::string& client, std::size_t bytes, const std::function<bool()>& gives_up) {
     std::unique_lock lock(mutex_);
-    BySize& texts = bytes > lesser_texts_at_once ? large_texts_ : lesser_texts_;
-    if ((texts.in_work > 0 || !texts.waiting.empty()) && uses(limits_.memory)) {
-        const auto most = texts.waiting.pop_for(client);
-        if (!most) return nullptr;
-        displace(**most);
-    }
-    return acquire_by_size(lock, texts, client, bytes, gives_up);
+    return acquire_by_size(lock, lists_, client, bytes, gives_up);
+}
+
+bool AdmissionControl::others_need(
+    const SizePermit& permit, const std::string& client, Clock::duration computed) const {
+    if (!permit) return false;
+    const BySize& group = *permit;
+    const std::lock_guard lock(mutex_);
+    const auto is_idle = [&](const std::string& other) { return !group.clients.contains(other); };
+    const auto is_other = [&](const std::string& other) { return other != client; };
+    const auto most = std::ranges::max_element(
+        group.clients, {}, [](const auto& of_client) { return of_client.second; });
+    if (group.waiting.clients(is_other) == 0 || most == group.clients.end() ||
+        most->first != client)
+        return false;
+    const std::size_t clients = group.clients.size() + group.waiting.clients(is_idle);
+    const bool is_more = most->second > std::max(group.at_once / clients, immediate_body);
+    return computed > (is_more ? time_in_need : 2 * time_in_need);
 }
 
 void AdmissionControl::stop_sweeps() {

@@ -47,10 +47,12 @@ public:
     using Clock = std::chrono::steady_clock;
 
 private:
+    struct BySize;
     void release(bool is_grace, Clock::duration credit);
     struct Release {
         bool is_grace = false;
         Clock::time_point keeps_until = {};  // of background work that foreground work waits for
+        Clock::time_point since = Clock::now();
         Clock::duration credit() const;
         void operator()(AdmissionControl* its) const { its->release(is_grace, credit()); }
     };
@@ -92,10 +94,9 @@ public:
         if (!slot || slot.get_deleter().keeps_until == Clock::time_point{}) return before;
         return slot.get_deleter().credit();
     }
-    /// True if background work should release its slot and wait again, since foreground work waits.
-    bool must_yield(const Slot& background) const {
-        return foreground_waits_ && Clock::now() >= background.get_deleter().keeps_until;
-    }
+    /// True if background work should release its slot and wait again: foreground work waits, or
+    /// other background work after a time slice.
+    bool must_yield(const Slot& background) const;
     bool foreground_waits() const { return foreground_waits_; }
     bool background_waits() const { return background_waits_; }
 
@@ -112,20 +113,21 @@ public:
     /// several that are small together, have it at once, since these take many times their size;
     /// others wait, the smallest first of equal turns. Null if too many wait whose turn is earlier,
     /// or gives_up(), polled every 50 ms, returned true. Smaller bodies have it at once.
-    using SizePermit = std::shared_ptr<void>;
+    using SizePermit = std::shared_ptr<BySize>;
     /// Records, which keep it until they are identified, do not hold up other bodies.
     SizePermit acquire_body(
         const std::string& client, std::size_t bytes, bool is_record,
         const std::function<bool()>& gives_up);
-    /// True if records of other clients wait for permits, of which one with these bytes has more
-    /// than its equal share.
-    bool others_need_record(const std::string& client, std::size_t bytes) const;
-    /// The right to make the text of an answer from more than immediate_text bytes and to compress
-    /// it: likewise one of the largest at once. Null if gives_up() returned true, or if another one
-    /// is being made while the process uses all of its memory, unless the client with most answers
-    /// that wait loses one. Not to be waited for with a slot.
-    SizePermit acquire_text(
+    /// The right to hold lists of more than immediate_lists bytes while they are computed and their
+    /// text is made; as many as fit together. Null if gives_up() returned true. Not to be waited
+    /// for with a slot.
+    SizePermit acquire_lists(
         const std::string& client, std::size_t bytes, const std::function<bool()>& gives_up);
+    /// True if other clients wait for permits like this one (may be null), of which this client has
+    /// most, and it has computed long enough: twice as long as usual with no more than an equal
+    /// share.
+    bool others_need(
+        const SizePermit& permit, const std::string& client, Clock::duration computed) const;
 
     /// Running sweeps end at their next check and no new one starts. Requests still compute.
     void stop_sweeps();
@@ -154,6 +156,7 @@ private:
     bool may_interrupt() const;
     int new_waiting() const;
     bool is_full() const;
+    static Clock::time_point oldest(const Queue& queue);
     bool may_overtake() const;
     bool may_sweep(const std::string& client) const;
     void assign();
@@ -164,9 +167,10 @@ private:
     /// one.
     struct BySize {
         std::size_t at_once;
-        bool is_record = false;
+        bool is_exempt = false;  ///< also at once where the process uses all of its memory
         Queue waiting = {};
-        std::size_t in_work = 0;  ///< bytes
+        std::map<std::string, std::size_t> clients = {};  ///< bytes of each in work
+        std::size_t in_work = 0;                          ///< bytes of all
     };
     BySize* next_by_size();
     SizePermit acquire_by_size(
@@ -184,8 +188,7 @@ private:
     Clock::time_point next_overtaking_ = {};
     std::list<std::string> sweeps_;  // their clients
     Queue urgent_, foreground_, background_;
-    BySize large_bodies_, lesser_bodies_, large_records_, lesser_records_, large_texts_,
-        lesser_texts_;
+    BySize large_bodies_, lesser_bodies_, large_records_, lesser_records_, lists_, immediate_;
     // Written under the mutex; running work reads them without it.
     std::atomic<bool> foreground_waits_ = false, background_waits_ = false;
     std::atomic<bool> sweeps_stopped_ = false, all_stopped_ = false;
@@ -194,9 +197,8 @@ private:
 // Bodies up to this size need no permit, bytes.
 inline constexpr std::size_t immediate_body = 1 << 20;
 
-// Bytes from which the text of an answer, which is two to three times as long, is made without a
-// permit.
-inline constexpr std::size_t immediate_text = 4 << 20;
+// Lists up to this size need no permit, bytes of their text.
+inline constexpr std::size_t immediate_lists = 16 << 20;
 
 // Time for which work keeps a slot that other work of its class waits for.
 inline constexpr auto time_slice = std::chrono::milliseconds(20);

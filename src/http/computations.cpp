@@ -8,7 +8,6 @@
 #include "api/version.hpp"
 #include "http/encoding.hpp"
 #include "http/memory.hpp"
-#include "http/streams.hpp"
 
 namespace vines::http {
 
@@ -34,6 +33,9 @@ constexpr std::size_t weight_of_fields = 16;
 // A list of impacts in JSON takes 45 times its size, a record in a table five times.
 constexpr std::size_t weight_of_lists = 10;
 
+// The text of a list takes about this many times its numbers.
+constexpr std::size_t text_size = 3;
+
 // One number per eight characters of the largest default body: a measured record has no fewer. They
 // take 64 MB while they are read. To identify a record takes up to 120 bytes for each sample.
 constexpr std::size_t most_numbers = 8'000'000;
@@ -56,8 +58,8 @@ constexpr std::size_t parts_of_a_point = 10, least_parts = 100'000;
 constexpr std::size_t max_hash = 256;
 
 // Time after which a request, with all its waiting, ends as at its deadline if others need its
-// thread (twice the time if its client has no other) or, where memory lacks for turns, its slot; or
-// of computing, if they need the permit of its record. A fraction is left to finish the answer.
+// thread (twice the time if its client has no other) or, where memory lacks for turns, its slot. A
+// fraction is left to finish the answer.
 constexpr std::chrono::duration<double> age_in_need(5);
 
 /// Ends the request of a client that has left; only the log shows its status.
@@ -126,22 +128,19 @@ public:
     bool renew() { return permit_.renew(); }  ///< see Permit
     /// To be called once the body is read, or, since its record is kept, once it is identified.
     void release_body() { body_permit_.reset(); }
-    /// Waits for the permit to make the text of an answer from these bytes.
-    void wait_for_text(std::size_t bytes) {
-        if (bytes <= immediate_text) return;
+    /// Waits for the permit to hold lists with a text of these bytes, unless it has one.
+    void wait_for_lists(std::size_t bytes) {
+        if (bytes <= immediate_lists || lists_permit_) return;
         const auto gives_up = [this] {
             return request_.left() || service_.admission.all_stopped();
         };
-        const auto wait = [&] {
-            text_permit_ =
-                service_.admission.acquire_text(request_.sender.client(), bytes, gives_up);
-            return text_permit_ != nullptr;
-        };
-        if (permit_.wait_without_slot(wait)) return;
-        if (!text_permit_ && !gives_up())
-            throw Problem::unavailable(
-                "memory", "other large answers are being made; try again in a second");
-        throw_without_permit();
+        const bool has_slot = permit_.wait_without_slot([&] {
+            lists_permit_ =
+                service_.admission.acquire_lists(request_.sender.client(), bytes, gives_up);
+            return lists_permit_ != nullptr;
+        });
+        if (!has_slot) throw_without_permit();
+        permit_.end_urgency();
     }
 
     /// Ends a request that has no permit: its client has left, or work whose turn is earlier came.
@@ -187,8 +186,7 @@ private:
         if (now - checked_ > client_check_interval) {
             checked_ = now;
             is_abandoned_ = request_.left() || service_.admission.all_stopped();
-            if (!needed_ && now - began_ > age_in_need && others_need_it(now - began_))
-                needed_ = now;
+            if (!needed_ && others_need_it(now - began_)) needed_ = now;
         }
         const std::chrono::duration<double> time(fraction * service_.options.deadline);
         return is_abandoned_ || now - permit_.waited() > began_ + time ||
@@ -197,17 +195,17 @@ private:
 
     bool others_need_it(Clock::duration age) const {
         const std::string client = request_.sender.client();
-        return request_.others_need_threads(age > 2 * age_in_need) ||
-               service_.admission.others_are_stuck(client) ||
-               (body_permit_ && identifies() && age - permit_.waited() > age_in_need &&
-                service_.admission.others_need_record(client, body_bytes_));
+        return (age > age_in_need && (request_.others_need_threads(age > 2 * age_in_need) ||
+                                      service_.admission.others_are_stuck(client))) ||
+               service_.admission.others_need(body_permit_, client, age - permit_.waited()) ||
+               service_.admission.others_need(lists_permit_, client, age - permit_.waited());
     }
 
     const Request& request_;
     const Service& service_;
     Stopwatch& watch_;
     const std::size_t body_bytes_ = weighted(request_.body.size());
-    AdmissionControl::SizePermit body_permit_, text_permit_;
+    AdmissionControl::SizePermit body_permit_, lists_permit_;
     Permit permit_;
     const Clock::time_point began_ = Clock::now();
     Clock::time_point checked_ = began_;
@@ -370,16 +368,18 @@ Response answer(Request& r, const Service& service, Stopwatch& watch) {
     computing.lap("parse");
     const api::Stop stop = computing.stop();
     api::Answer answer = api::compute_answer(
-        std::move(request), {.stop = stop,
-                             .most_bytes = options.answer_limit,
-                             .most_kept = options.most_kept_impacts,
-                             .most_fitted = most_fitted});
+        std::move(request),
+        {.stop = stop,
+         .most_bytes = options.answer_limit,
+         .most_kept = options.most_kept_impacts,
+         .most_fitted = most_fitted,
+         .begins = [&](std::size_t bytes) { computing.wait_for_lists(bytes); }});
     const bool renewed = computing.renew();
     computing.lap("solve");
     if (!renewed) computing.throw_without_permit();
-    service.metrics.count_impacts(answer.impacts);
+    service.metrics.count_runs(0, static_cast<std::size_t>(answer.impacts));
     if (answer.run) return stream_answer(std::move(answer), r, service.admission);
-    computing.wait_for_text(api::packed_bytes(answer.json));
+    computing.wait_for_lists(text_size * api::packed_bytes(answer.json));
     std::string bytes = encoded(
         std::move(answer), *format, options.answer_limit, provenance.size() + max_hash, r.left);
     computing.release_body();

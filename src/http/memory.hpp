@@ -32,12 +32,14 @@ public:
     bool is_full() const { return held_ >= limit_; }
     /// True if `more` bytes should not be accepted of a client: also if it would then hold more
     /// than is left. One client so has half of the budget, a second one a quarter, and so on; but
-    /// more than a quarter alone, as long as it is not full.
-    bool is_full_for(const std::string& client, std::size_t more) const {
+    /// more than a quarter alone, as long as it is not full. for_long: held while it is computed,
+    /// for which half of the budget is not available.
+    bool is_full_for(const std::string& client, std::size_t more, bool for_long = false) const {
         const std::lock_guard lock(mutex_);
         const auto own = clients_.find(client);
         const std::size_t held = own == clients_.end() ? 0 : own->second;
-        const bool full = is_full() || held + std::min(more, limit_ / 4) >= limit_ - held_;
+        const bool full = is_full() || held + std::min(more, limit_ / 4) >= limit_ - held_ ||
+                          (for_long && held_ + more > limit_ / 2);
         if (full) last_full_ = Clock::now();
         return full;
     }
@@ -92,12 +94,16 @@ inline void configure_malloc([[maybe_unused]] int computing) {
 #endif
 }
 
-/// Memory of this process; 0 where the system does not tell. Bytes.
-inline std::size_t resident_bytes() {
+/// Memory of this process, bytes; 0 where the system does not tell.
+struct ProcessMemory {
+    std::size_t mapped = 0, resident = 0;
+};
+inline ProcessMemory process_memory() {
     std::ifstream status("/proc/self/statm");
-    std::size_t all = 0, resident = 0;
-    status >> all >> resident;
-    return resident * static_cast<std::size_t>(::sysconf(_SC_PAGESIZE));
+    std::size_t mapped = 0, resident = 0;
+    status >> mapped >> resident;
+    const auto page = static_cast<std::size_t>(::sysconf(_SC_PAGESIZE));
+    return {mapped * page, resident * page};
 }
 
 /// Returns free memory to the system, after large requests and answers.

@@ -5,13 +5,12 @@
 #include <prometheus/registry.h>
 #include <prometheus/text_serializer.h>
 #include <sys/resource.h>
-#include <unistd.h>
 
+#include <chrono>
 #include <filesystem>
-#include <fstream>
-#include <sstream>
 
 #include "api/version.hpp"
+#include "http/memory.hpp"
 
 namespace vines::http {
 
@@ -34,26 +33,16 @@ std::string method_label(const std::string& method) {
 // In the order of SweepEnd.
 constexpr std::array sweep_ends{"complete", "client_left", "deadline", "stopping", "failed"};
 
-/// Boot time of the system, seconds since 1970; 0 if unknown.
-double boot_time() {
-    std::ifstream in("/proc/stat");
-    for (std::string word; in >> word;) {
-        double seconds = 0;
-        if (word == "btime" && in >> seconds) return seconds;
-    }
-    return 0;
+const std::chrono::system_clock::time_point start_of_process = std::chrono::system_clock::now();
+
+double in_seconds(const timeval& time) {
+    return static_cast<double>(time.tv_sec) + 1e-6 * static_cast<double>(time.tv_usec);
 }
 
-/// The numbers of /proc/self/stat (proc(5)) by their positions, which count from 1; 0 if unknown.
-std::vector<double> process_status() {
-    std::ifstream in("/proc/self/stat");
-    const std::string text(std::istreambuf_iterator<char>(in), {});
-    // The second field, a name in parentheses, can contain any character; the third is a letter.
-    std::istringstream numbers(text.substr(std::min(text.size(), text.rfind(')') + 3)));
-    std::vector<double> fields(4);
-    std::copy(std::istream_iterator<double>(numbers), {}, std::back_inserter(fields));
-    fields.resize(25);
-    return fields;
+/// Entries of a folder of /proc/self; 0 where the system does not tell.
+auto entries_in(const char* folder) {
+    std::error_code ignored;
+    return std::distance(std::filesystem::directory_iterator(folder, ignored), {});
 }
 
 }  // namespace
@@ -119,16 +108,12 @@ void Metrics::count_answer(const std::string& method, const Outcome& outcome) {
         if (name == "queue") all.queued.Observe(ms / 1000);
 }
 
-void Metrics::count_impacts(long impacts) {
-    implementation_->impacts.Increment(static_cast<double>(impacts));
-}
-
 void Metrics::count_sweep(SweepEnd end) {
     implementation_->sweeps.Add({{"end", sweep_ends[static_cast<std::size_t>(end)]}}).Increment();
 }
 
-void Metrics::count_runs(std::size_t runs, std::size_t impacts) {
-    implementation_->runs.Increment(static_cast<double>(runs));
+void Metrics::count_runs(std::size_t runs_of_sweep, std::size_t impacts) {
+    implementation_->runs.Increment(static_cast<double>(runs_of_sweep));
     implementation_->impacts.Increment(static_cast<double>(impacts));
 }
 
@@ -158,23 +143,21 @@ std::string Metrics::text() const {
     add("vines_log_lines_dropped_total", "Log lines dropped because stderr was full.",
         log_lines_dropped(), MetricType::Counter);
     // The resource use of this process, by the names of Prometheus' client libraries.
-    const std::vector<double> status = process_status();
-    const auto ticks = static_cast<double>(::sysconf(_SC_CLK_TCK));
-    const auto page_size = static_cast<double>(::sysconf(_SC_PAGESIZE));
-    add("process_cpu_seconds_total", "User and system time.", (status[14] + status[15]) / ticks,
-        MetricType::Counter);
-    add("process_start_time_seconds", "Start of the process, since 1970.",
-        boot_time() + status[22] / ticks);
-    add("process_resident_memory_bytes", "Memory in use.", status[24] * page_size);
-    add("process_virtual_memory_bytes", "Memory that is mapped.", status[23]);
-    std::error_code ignored;
-    const std::filesystem::directory_iterator files("/proc/self/fd", ignored);
-    // Without the descriptor of this directory.
-    add("process_open_fds", "Open file descriptors.", std::distance(files, {}) - 1);
+    rusage used{};
+    ::getrusage(RUSAGE_SELF, &used);
+    add("process_cpu_seconds_total", "User and system time.",
+        in_seconds(used.ru_utime) + in_seconds(used.ru_stime), MetricType::Counter);
+    const std::chrono::duration<double> start = start_of_process.time_since_epoch();
+    add("process_start_time_seconds", "Start of the process, since 1970.", start.count());
+    const ProcessMemory memory = process_memory();
+    add("process_resident_memory_bytes", "Memory in use.", memory.resident);
+    add("process_virtual_memory_bytes", "Memory that is mapped.", memory.mapped);
+    // Without the descriptor of this folder.
+    add("process_open_fds", "Open file descriptors.", entries_in("/proc/self/fd") - 1);
     rlimit limit{};
     ::getrlimit(RLIMIT_NOFILE, &limit);
     add("process_max_fds", "File descriptors that may be open.", limit.rlim_cur);
-    add("process_threads", "Threads.", status[20]);
+    add("process_threads", "Threads.", entries_in("/proc/self/task"));
     add("vines_build_info", "The build that serves, by its labels; always 1.", 1);
     all.back().metric[0].label = {
         {"version", api::version()}, {"commit", api::commit()}, {"compiler", api::compiler()}};

@@ -23,10 +23,9 @@ public:
     ~Metrics();
 
     void count_answer(const std::string& method, const Outcome& outcome);
-    void count_impacts(long impacts);
     void count_sweep(SweepEnd end);  ///< of one request
-    /// Adds the runs of one sweep and their measured impacts.
-    void count_runs(std::size_t runs, std::size_t impacts);
+    /// Adds the runs of one sweep, and the impacts of a simulation or of its measured parts.
+    void count_runs(std::size_t runs_of_sweep, std::size_t impacts);
 
     /// Sets the function that text() calls for the state of the connections.
     void watch_connections(std::function<ConnectionLoad()> connections);

@@ -6,7 +6,6 @@
 #include "api/schema/tables.hpp"
 #include "api/version.hpp"
 #include "http/encoding.hpp"
-#include "http/streams.hpp"
 
 namespace vines::http {
 

@@ -3,6 +3,7 @@
 
 #include <set>
 
+#include "api/format/sweep_table.hpp"
 #include "api/simulate.hpp"
 #include "http/metrics.hpp"
 #include "http/page.hpp"
@@ -49,6 +50,19 @@ Computation answer;
 Computation sweep;         ///< /v1/sweep, /v1/basins
 Computation continuation;  ///< /v1/continue
 Computation design;        ///< /v1/design
+
+/// Sends lines while they are computed, as background work, or, if is_shared, those of a running
+/// computation of an equal request. It counts as a sweep and ends after the sweep deadline: lines
+/// with an error, a table with a reset connection. Problem 503 if the maximum number of sweeps is
+/// running. The service must outlive the response, which can be copied: the sweep's slot is
+/// released with the last copy, whether it was sent or not.
+Response stream_lines(
+    std::shared_ptr<api::LineStream> stream, const Request& asked, const Service& service,
+    bool is_shared = false);
+/// A sweep as NDJSON lines, or as a table; problem 413 for a table beyond the answer limit. A small
+/// sweep of lines is computed once for all equal requests that come while it runs.
+Response stream_sweep(
+    api::SweepRequest request, api::Format format, const Request& asked, const Service& service);
 
 /// All routes; `admission` and `metrics` must outlive them. Throws std::runtime_error if the folder
 /// of the web page cannot be read.

@@ -144,7 +144,8 @@ Response Server::answer_to(Request& request) const {
 Response Server::completed(const Request& request, Response response) const {
     const std::size_t size = std::max(response.body.size(), response.uncompressed_size);
     if (size + response.held > small_answer &&
-        event_loop_.memory().is_full_for(request.sender.client(), size + response.held))
+        event_loop_.memory().is_full_for(
+            request.sender.client(), size + response.held, response.silent))
         response = memory_refusal();
     std::ranges::move(
         cors_headers(request.head, options_.access), std::back_inserter(response.headers));

@@ -1,8 +1,7 @@
-#include "http/streams.hpp"
-
 #include <future>
 
 #include "api/json_text.hpp"
+#include "http/routes.hpp"
 
 namespace vines::http {
 
@@ -117,36 +116,28 @@ public:
 
     // Called by the threads that compute.
     void begin() override {
-        held().slot = admission_.acquire_background(owner(), stop_.get_token(), credit_);
-        held().since = Clock::now();
+        slot() = admission_.acquire_background(owner(), stop_.get_token(), credit_);
     }
     void end() override {
-        credit_ = AdmissionControl::credit(held().slot, credit_);
-        held().slot.reset();
+        credit_ = AdmissionControl::credit(slot(), credit_);
+        slot().reset();
     }
     bool stop_or_yield() override {
-        const Clock::time_point now = Clock::now();
-        const bool is_long = admission_.background_waits() && now - held().since > time_slice;
-        const bool is_full = lines_.is_full();
-        if (held().slot && (admission_.must_yield(held().slot) || is_long || is_full)) {
+        if (slot() && (admission_.must_yield(slot()) || lines_.is_full())) {
             end();
             while (lines_.is_full() && !stops(Clock::now()))
                 lines_.wait_while_full(client_check_interval);
             begin();
         }
-        return stops(now);
+        return stops(Clock::now());
     }
 
 private:
     /// The slot of the calling thread. thread_local, because a thread of the sweep holds no slot
     /// before its first point and after its last, and so never two.
-    struct Held {
-        AdmissionControl::Slot slot;
-        Clock::time_point since;
-    };
-    static Held& held() {
-        thread_local Held held;
-        return held;
+    static AdmissionControl::Slot& slot() {
+        thread_local AdmissionControl::Slot slot;
+        return slot;
     }
     bool is_late(Clock::time_point now) const { return now - started_ > deadline_; }
     bool stops(Clock::time_point now) const {
@@ -328,7 +319,7 @@ Response stream_sweep(
     Response response = stream_lines(stream, asked, service, is_shared);
     if (stream->table() && response.stream) {
         response.content_type = api::name_of(format).media_type;
-        response.held = 2 * stream->table()->bytes();
+        response.held = stream->table()->bytes();
         response.silent = format != api::Format::csv;
     }
     return response;

@@ -88,6 +88,31 @@ TEST_CASE("background work gets slots in the order of arrival") {
     }
 }
 
+TEST_CASE("background work leaves its slot to other background work after a time slice") {
+    AdmissionControl admission({.running = 1});
+    Slot slot = admission.acquire_background(client);
+    std::thread other([&] { CHECK(admission.acquire_background("other")); });
+    wait_until([&] { return admission.background_waits(); });
+    wait_until([&] { return admission.must_yield(slot); });
+    slot.reset();
+    other.join();
+    slot = admission.acquire_background(client);
+    CHECK(!admission.must_yield(slot));
+}
+
+TEST_CASE("background work that came lately does not hide older work behind it") {
+    AdmissionControl admission({.running = 1});
+    Slot slot = admission.acquire(client);
+    using std::chrono::hours;
+    std::thread young([&] { CHECK(admission.acquire_background("other", {}, hours(-1))); });
+    wait_until([&] { return admission.background_waits(); });
+    std::thread old([&] { CHECK(admission.acquire_background("other", {}, hours(1))); });
+    wait_until([&] { return admission.others_are_due(client); });
+    slot.reset();
+    young.join();
+    old.join();
+}
+
 TEST_CASE("stopped background work does not block later background work") {
     AdmissionControl admission({.running = 1});
     std::stop_source first_stop;
@@ -567,44 +592,49 @@ TEST_CASE("small bodies are read beside one of the largest, which take turns") {
     CHECK(admission.acquire_body("other", 60 << 20, false, gives_up));
 }
 
-TEST_CASE("texts of large answers are made one at a time, without a slot while they wait") {
-    AdmissionControl admission({.running = 1});
-    const auto never = [] { return false; };
-    auto first = admission.acquire_text(client, 40 << 20, never);
+TEST_CASE("large lists are computed together as far as they fit, without a slot while they wait") {
+    AdmissionControl admission({.running = 1, .memory = 0});
+    auto first = admission.acquire_lists(client, 200 << 20, {});
+    CHECK(admission.acquire_lists("other", 40 << 20, {}));
     Permit run(admission, "other", {}, false);
     AdmissionControl::SizePermit second;
     std::atomic<bool> waits = false;
     std::thread waiting([&] {
         CHECK(run.wait_without_slot([&] {
             waits = true;
-            second = admission.acquire_text("other", 40 << 20, never);
+            second = admission.acquire_lists("other", 100 << 20, {});
             return second != nullptr;
         }));
     });
     wait_until([&] { return waits && admission.load().running == 0; });
     CHECK(admission.acquire("third"));
+    wait_until([&] { return admission.others_need(first, client, std::chrono::seconds(3)); });
+    CHECK(!admission.others_need(first, client, time_slice));
+    CHECK(!admission.others_need(first, "other", std::chrono::seconds(6)));
     first.reset();
     waiting.join();
     CHECK(second);
     CHECK(admission.load().running == 1);
     CHECK(!run.wait_without_slot([] { return false; }));
     CHECK(admission.load().running == 0);
-    CHECK(admission.acquire_text("third", 8 << 20, never));  // beside the largest
 }
 
-TEST_CASE("without memory one large body or answer is in work at a time, and records beside it") {
+TEST_CASE("without memory one large body is in work at a time, and records beside it") {
     AdmissionControl admission({.running = 1, .memory = 0});
     const auto gives_up = [] { return true; };
-    auto text = admission.acquire_text(client, 40 << 20, gives_up);
-    CHECK(text);
-    CHECK(!admission.acquire_text("other", 40 << 20, {}));
-    CHECK(!admission.acquire_text("other", 8 << 20, gives_up));
-    CHECK(!admission.acquire_body("other", 3 << 20, false, gives_up));
-    text.reset();
     const auto body = admission.acquire_body("other", 60 << 20, false, gives_up);
     CHECK(body);
+    CHECK(!admission.acquire_body("other", 3 << 20, false, gives_up));
     CHECK(admission.acquire_body("third", 3 << 20, true, gives_up));
-    CHECK(!admission.acquire_text(client, 40 << 20, gives_up));
+}
+
+TEST_CASE("what is held while it is computed leaves half of the memory to answers") {
+    MemoryBudget budget(100);
+    MemoryBudget::Counted other;
+    budget.count(other, "other", 10);
+    CHECK(!budget.is_full_for(client, 41));
+    CHECK(!budget.is_full_for(client, 40, true));
+    CHECK(budget.is_full_for(client, 41, true));
 }
 
 TEST_CASE("records share what one of the largest takes; of those that wait the smallest is next") {
@@ -612,7 +642,8 @@ TEST_CASE("records share what one of the largest takes; of those that wait the s
     auto first = admission.acquire_body("first", 40 << 20, true, {});
     auto second = admission.acquire_body("second", 20 << 20, true, {});
     CHECK(second);
-    CHECK(!admission.others_need_record("first", 40 << 20));
+    constexpr std::chrono::seconds long_enough(3), twice(6);
+    CHECK(!admission.others_need(first, "first", twice));
     std::string order;
     std::vector<std::thread> threads;
     std::array<std::atomic<bool>, 2> waits = {};
@@ -630,39 +661,18 @@ TEST_CASE("records share what one of the largest takes; of those that wait the s
     };
     wait_for("large", 60 << 20);
     wait_for("small", 45 << 20);
-    CHECK(admission.others_need_record("first", 40 << 20));
-    CHECK(!admission.others_need_record("first", 20 << 20));  // less than a third
-    CHECK(!admission.others_need_record("first", 3 << 20));
+    CHECK(!admission.others_need(first, "first", time_slice));
+    CHECK(admission.others_need(first, "first", long_enough));
+    const auto of_other_size = admission.acquire_body("first", 3 << 20, true, {});
+    CHECK(!admission.others_need(of_other_size, "first", twice));
+    CHECK(!admission.others_need({}, "first", twice));
+    CHECK(!admission.others_need(second, "second", twice));
     first.reset();
+    CHECK(admission.others_need(second, "second", twice));
+    CHECK(!admission.others_need(second, "second", long_enough));  // no more than a third
     second.reset();
     for (std::thread& thread : threads) thread.join();
     CHECK(order == "smalllarge");
-}
-
-TEST_CASE("without memory a large answer takes the place of one of the client with most") {
-    AdmissionControl admission({.running = 1, .memory = resident_bytes() + (32 << 20)});
-    auto first = admission.acquire_text(client, 40 << 20, {});
-    std::atomic<int> made = 0, refused = 0;
-    std::vector<std::thread> threads;
-    std::array<std::atomic<bool>, 4> waits = {};
-    const auto make = [&](const std::string& name) {
-        std::atomic<bool>& waiting = waits[threads.size()];
-        threads.emplace_back([&, name] {
-            const auto polled = [&waiting] {
-                waiting = true;
-                return false;
-            };
-            ++(admission.acquire_text(name, 40 << 20, polled) ? made : refused);
-        });
-        wait_until([&] { return waiting.load(); });
-    };
-    for (int i = 0; i < 3; ++i) make(client);
-    const std::vector<char> used(64 << 20, 1);
-    make("other");
-    wait_until([&] { return refused == 1; });
-    first.reset();
-    for (std::thread& thread : threads) thread.join();
-    CHECK(made == 3);
 }
 
 TEST_CASE("work with a permit by size gets the next slot, also of its client's long run") {

@@ -156,7 +156,7 @@ Answer computed(SimulateRequest request, const AnswerForm& form, const ComputeOp
     const bool is_text = form.format.value_or(Format::json) == Format::json;
     return simulate_in_parts(
         std::move(request), options.stop, options.most_bytes,
-        is_text ? options.most_kept : everything);
+        is_text ? options.most_kept : everything, options.begins);
 }
 
 Answer computed(const ManifoldRequest& request, const AnswerForm&, const ComputeOptions& options) {
