@@ -28,9 +28,6 @@ constexpr std::size_t bodies_at_once = 4 << 20;
 // The same of records, which take up to five times their size, but long.
 constexpr std::size_t lesser_records_at_once = 16 << 20, records_at_once = 64 << 20;
 
-// Time of computing after which work with more than an equal share ends for others that wait.
-constexpr auto time_in_need = std::chrono::milliseconds(2500);
-
 // Lists at once, which an interrupted run keeps; they take as much memory as their text. Bytes.
 constexpr std::size_t lists_at_once = 256 << 20;
 
@@ -49,8 +46,7 @@ AdmissionControl::AdmissionControl(const AdmissionLimits& limits)
       lesser_bodies_{bodies_at_once},
       large_records_{records_at_once, true},
       lesser_records_{lesser_records_at_once, true},
-      lists_{lists_at_once, true},
-      immediate_{} {}
+      lists_{lists_at_once, true, std::chrono::seconds(2)} {}
 
 /// The time since which the work of a queue waits, the first or other; max() if it is empty.
 AdmissionControl::Clock::time_point AdmissionControl::oldest(const Queue& queue) {
@@ -292,8 +288,6 @@ bool AdmissionControl::pass_on(const SweepSlot& slot, const std::vector<std::str
     return true;
 }
 
-bool AdmissionControl::sweeps_left() const { return load().sweeps < limits_.sweeps; }
-
 /// False if a body finds no space in its queue, even instead of the last one.
 bool AdmissionControl::make_space(Queue& queue, const std::string& client, std::size_t bytes) {
     std::size_t waiting = 0;
@@ -344,20 +338,18 @@ AdmissionControl::SizePermit AdmissionControl::acquire_lists(
 }
 
 bool AdmissionControl::others_need(
-    const SizePermit& permit, const std::string& client, Clock::duration computed) const {
+    const SizePermit& permit, const std::string& client, Clock::duration age,
+    Clock::duration computed) const {
     if (!permit) return false;
     const BySize& group = *permit;
     const std::lock_guard lock(mutex_);
+    const auto own = group.clients.find(client);
     const auto is_idle = [&](const std::string& other) { return !group.clients.contains(other); };
     const auto is_other = [&](const std::string& other) { return other != client; };
-    const auto most = std::ranges::max_element(
-        group.clients, {}, [](const auto& of_client) { return of_client.second; });
-    if (group.waiting.clients(is_other) == 0 || most == group.clients.end() ||
-        most->first != client)
-        return false;
+    if (own == group.clients.end() || group.waiting.clients(is_other) == 0) return false;
     const std::size_t clients = group.clients.size() + group.waiting.clients(is_idle);
-    const bool is_more = most->second > std::max(group.at_once / clients, immediate_body);
-    return computed > (is_more ? time_in_need : 2 * time_in_need);
+    const bool is_more = own->second > std::max(group.at_once / clients, immediate_body);
+    return age > (is_more ? 1 : 2) * group.in_need && computed > group.in_need / 10;
 }
 
 void AdmissionControl::stop_sweeps() {
@@ -379,7 +371,7 @@ Permit::Permit(
     : admission_(admission),
       client_(std::move(client)),
       gives_up_(std::move(gives_up)),
-      slice_(is_urgent ? urgent_slice : time_slice) {
+      is_urgent_(is_urgent) {
     if (may_begin) slot_ = admission_.try_acquire();
     if (!slot_)
         slot_ = is_urgent ? admission_.acquire_urgently(client_, gives_up_)
@@ -390,10 +382,13 @@ bool Permit::renew() {
     if (!slot_) return false;
     const bool is_grace = AdmissionControl::is_grace(slot_);
     const Clock::time_point now = Clock::now();
-    if (now - since_ < (is_grace ? grace_time : slice_)) return true;
+    const Clock::duration slice = is_urgent_ ? urgent_slice : time_slice;
+    if (now - since_ < (is_grace ? grace_time : slice)) return true;
     since_ = now;
     if (!is_grace && !admission_.others_are_due(client_)) return true;
-    slot_ = admission_.resume(client_, gives_up_, std::move(slot_));
+    if (is_urgent_) slot_.reset();
+    slot_ = is_urgent_ ? admission_.acquire_urgently(client_, gives_up_)
+                       : admission_.resume(client_, gives_up_, std::move(slot_));
     since_ = Clock::now();
     waited_ += since_ - now;
     return slot_ != nullptr;
@@ -403,7 +398,7 @@ bool Permit::wait_without_slot(const std::function<bool()>& wait) {
     const Clock::time_point began = Clock::now();
     slot_.reset();
     if (wait()) slot_ = admission_.acquire_urgently(client_, gives_up_);
-    slice_ = urgent_slice;
+    is_urgent_ = true;
     since_ = Clock::now();
     waited_ += since_ - began;
     return slot_ != nullptr;

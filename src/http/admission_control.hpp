@@ -107,7 +107,8 @@ public:
     /// From now on the sweep counts as the first of these clients that may have one more; false if
     /// none may.
     bool pass_on(const SweepSlot& slot, const std::vector<std::string>& clients);
-    bool sweeps_left() const;  ///< by the limit of all clients
+    /// By the limit of all clients.
+    bool sweeps_left() const { return load().sweeps < limits_.sweeps; }
 
     /// The right to read a large body and to compute with it. At most one of the largest, and
     /// several that are small together, have it at once, since these take many times their size;
@@ -123,11 +124,12 @@ public:
     /// for with a slot.
     SizePermit acquire_lists(
         const std::string& client, std::size_t bytes, const std::function<bool()>& gives_up);
-    /// True if other clients wait for permits like this one (may be null), of which this client has
-    /// most, and it has computed long enough: twice as long as usual with no more than an equal
-    /// share.
+    /// True if other clients wait for permits like this one (may be null), and its work, which has
+    /// it for `age` and has `computed` for a moment at least, is to end for them: with no more than
+    /// an equal share after twice the time.
     bool others_need(
-        const SizePermit& permit, const std::string& client, Clock::duration computed) const;
+        const SizePermit& permit, const std::string& client, Clock::duration age,
+        Clock::duration computed) const;
 
     /// Running sweeps end at their next check and no new one starts. Requests still compute.
     void stop_sweeps();
@@ -166,8 +168,9 @@ private:
     /// Work that is admitted by its size: several that have at most `at_once` bytes together, or
     /// one.
     struct BySize {
-        std::size_t at_once;
+        std::size_t at_once = 0;
         bool is_exempt = false;  ///< also at once where the process uses all of its memory
+        Clock::duration in_need = std::chrono::seconds(5);  ///< see others_need()
         Queue waiting = {};
         std::map<std::string, std::size_t> clients = {};  ///< bytes of each in work
         std::size_t in_work = 0;                          ///< bytes of all
@@ -202,8 +205,8 @@ inline constexpr std::size_t immediate_lists = 16 << 20;
 
 // Time for which work keeps a slot that other work of its class waits for.
 inline constexpr auto time_slice = std::chrono::milliseconds(20);
-// The same while others wait for its permit by size.
-inline constexpr auto urgent_slice = std::chrono::milliseconds(80);
+// The same of work with a permit by size, for which others can wait.
+inline constexpr auto urgent_slice = std::chrono::milliseconds(60);
 
 /// A foreground request's permission to compute: a slot or a grace period at once, otherwise after
 /// a wait. For one thread at a time; the admission control outlives it.
@@ -231,8 +234,8 @@ public:
     /// Time spent waiting, without the initial wait.
     Clock::duration waited() const { return waited_; }
 
-    /// From now on its time slices have the usual length.
-    void end_urgency() { slice_ = time_slice; }
+    /// From now on it waits with all others, and its time slices have the usual length.
+    void end_urgency() { is_urgent_ = false; }
 
 private:
     AdmissionControl& admission_;
@@ -240,7 +243,7 @@ private:
     const std::function<bool()> gives_up_;
     AdmissionControl::Slot slot_;
     Clock::time_point since_ = Clock::now();  // start of the grace period or the time slice
-    Clock::duration slice_;
+    bool is_urgent_;
     Clock::duration waited_{};
 };
 

@@ -33,9 +33,6 @@ constexpr std::size_t weight_of_fields = 16;
 // A list of impacts in JSON takes 45 times its size, a record in a table five times.
 constexpr std::size_t weight_of_lists = 10;
 
-// The text of a list takes about this many times its numbers.
-constexpr std::size_t text_size = 3;
-
 // One number per eight characters of the largest default body: a measured record has no fewer. They
 // take 64 MB while they are read. To identify a record takes up to 120 bytes for each sample.
 constexpr std::size_t most_numbers = 8'000'000;
@@ -101,7 +98,7 @@ public:
                  .most_other_values = most_outside_record,
                  .most_containers = std::max(least_parts, parts_of_a_point * points),
                  .most_impacts = most_impacts});
-            permit_.end_urgency();
+            if (!identifies()) permit_.end_urgency();
             return request;
         } catch (const api::Cancelled&) {
             if (!permit_ || request_.left() || service_.admission.all_stopped())
@@ -140,7 +137,14 @@ public:
             return lists_permit_ != nullptr;
         });
         if (!has_slot) throw_without_permit();
-        permit_.end_urgency();
+        listed_ = Clock::now();
+    }
+    /// True if the lists are to be freed for others.
+    bool others_need_lists() const {
+        const Clock::time_point now = Clock::now();
+        return service_.admission.others_need(
+            lists_permit_, request_.sender.client(), now - listed_,
+            now - began_ - permit_.waited());
     }
 
     /// Ends a request that has no permit: its client has left, or work whose turn is earlier came.
@@ -197,8 +201,8 @@ private:
         const std::string client = request_.sender.client();
         return (age > age_in_need && (request_.others_need_threads(age > 2 * age_in_need) ||
                                       service_.admission.others_are_stuck(client))) ||
-               service_.admission.others_need(body_permit_, client, age - permit_.waited()) ||
-               service_.admission.others_need(lists_permit_, client, age - permit_.waited());
+               others_need_lists() ||
+               service_.admission.others_need(body_permit_, client, age, age - permit_.waited());
     }
 
     const Request& request_;
@@ -208,7 +212,7 @@ private:
     AdmissionControl::SizePermit body_permit_, lists_permit_;
     Permit permit_;
     const Clock::time_point began_ = Clock::now();
-    Clock::time_point checked_ = began_;
+    Clock::time_point checked_ = began_, listed_;  // listed_: since when it has the lists' permit
     bool is_abandoned_ = false;
     std::optional<Clock::time_point> needed_;  // by others, from age_in_need on
 };
@@ -379,7 +383,7 @@ Response answer(Request& r, const Service& service, Stopwatch& watch) {
     if (!renewed) computing.throw_without_permit();
     service.metrics.count_runs(0, static_cast<std::size_t>(answer.impacts));
     if (answer.run) return stream_answer(std::move(answer), r, service.admission);
-    computing.wait_for_lists(text_size * api::packed_bytes(answer.json));
+    computing.wait_for_lists(3 * api::packed_bytes(answer.json));  // about the bytes of its text
     std::string bytes = encoded(
         std::move(answer), *format, options.answer_limit, provenance.size() + max_hash, r.left);
     computing.release_body();
@@ -389,8 +393,11 @@ Response answer(Request& r, const Service& service, Stopwatch& watch) {
         .body = std::move(bytes),
         .tag = std::move(tag),
         .headers = {varies}};
-    const auto gives_up = [&] { return r.left() || !computing.renew(); };
-    if (!compress(response, r, gives_up)) computing.throw_without_permit();
+    const auto gives_up = [&] {
+        return r.left() || !computing.renew() || computing.others_need_lists();
+    };
+    // Lists that others need are sent as they are.
+    if (!compress(response, r, gives_up) && !computing.renew()) computing.throw_without_permit();
     computing.lap("encode");
     return response;
 }

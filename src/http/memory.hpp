@@ -33,13 +33,13 @@ public:
     /// True if `more` bytes should not be accepted of a client: also if it would then hold more
     /// than is left. One client so has half of the budget, a second one a quarter, and so on; but
     /// more than a quarter alone, as long as it is not full. for_long: held while it is computed,
-    /// for which half of the budget is not available.
+    /// which, if it is large, half of the budget is not for.
     bool is_full_for(const std::string& client, std::size_t more, bool for_long = false) const {
         const std::lock_guard lock(mutex_);
         const auto own = clients_.find(client);
         const std::size_t held = own == clients_.end() ? 0 : own->second;
         const bool full = is_full() || held + std::min(more, limit_ / 4) >= limit_ - held_ ||
-                          (for_long && held_ + more > limit_ / 2);
+                          (for_long && more > limit_ / 16 && held_ + more > limit_ / 2);
         if (full) last_full_ = Clock::now();
         return full;
     }

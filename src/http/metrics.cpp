@@ -7,6 +7,7 @@
 #include <sys/resource.h>
 
 #include <chrono>
+#include <ctime>
 #include <filesystem>
 
 #include "api/version.hpp"
@@ -34,10 +35,6 @@ std::string method_label(const std::string& method) {
 constexpr std::array sweep_ends{"complete", "client_left", "deadline", "stopping", "failed"};
 
 const std::chrono::system_clock::time_point start_of_process = std::chrono::system_clock::now();
-
-double in_seconds(const timeval& time) {
-    return static_cast<double>(time.tv_sec) + 1e-6 * static_cast<double>(time.tv_usec);
-}
 
 /// Entries of a folder of /proc/self; 0 where the system does not tell.
 auto entries_in(const char* folder) {
@@ -143,10 +140,8 @@ std::string Metrics::text() const {
     add("vines_log_lines_dropped_total", "Log lines dropped because stderr was full.",
         log_lines_dropped(), MetricType::Counter);
     // The resource use of this process, by the names of Prometheus' client libraries.
-    rusage used{};
-    ::getrusage(RUSAGE_SELF, &used);
     add("process_cpu_seconds_total", "User and system time.",
-        in_seconds(used.ru_utime) + in_seconds(used.ru_stime), MetricType::Counter);
+        static_cast<double>(std::clock()) / CLOCKS_PER_SEC, MetricType::Counter);
     const std::chrono::duration<double> start = start_of_process.time_since_epoch();
     add("process_start_time_seconds", "Start of the process, since 1970.", start.count());
     const ProcessMemory memory = process_memory();

@@ -608,9 +608,11 @@ TEST_CASE("large lists are computed together as far as they fit, without a slot 
     });
     wait_until([&] { return waits && admission.load().running == 0; });
     CHECK(admission.acquire("third"));
-    wait_until([&] { return admission.others_need(first, client, std::chrono::seconds(3)); });
-    CHECK(!admission.others_need(first, client, time_slice));
-    CHECK(!admission.others_need(first, "other", std::chrono::seconds(6)));
+    using std::chrono::seconds;
+    wait_until([&] { return admission.others_need(first, client, seconds(3), seconds(1)); });
+    CHECK(!admission.others_need(first, client, seconds(1), seconds(1)));
+    CHECK(!admission.others_need(first, client, seconds(3), time_slice));
+    CHECK(!admission.others_need(first, "other", seconds(6), seconds(1)));
     first.reset();
     waiting.join();
     CHECK(second);
@@ -642,8 +644,8 @@ TEST_CASE("records share what one of the largest takes; of those that wait the s
     auto first = admission.acquire_body("first", 40 << 20, true, {});
     auto second = admission.acquire_body("second", 20 << 20, true, {});
     CHECK(second);
-    constexpr std::chrono::seconds long_enough(3), twice(6);
-    CHECK(!admission.others_need(first, "first", twice));
+    constexpr std::chrono::seconds long_enough(6), twice(11), computed(1);
+    CHECK(!admission.others_need(first, "first", twice, computed));
     std::string order;
     std::vector<std::thread> threads;
     std::array<std::atomic<bool>, 2> waits = {};
@@ -661,15 +663,15 @@ TEST_CASE("records share what one of the largest takes; of those that wait the s
     };
     wait_for("large", 60 << 20);
     wait_for("small", 45 << 20);
-    CHECK(!admission.others_need(first, "first", time_slice));
-    CHECK(admission.others_need(first, "first", long_enough));
+    CHECK(!admission.others_need(first, "first", time_slice, computed));
+    CHECK(admission.others_need(first, "first", long_enough, computed));
     const auto of_other_size = admission.acquire_body("first", 3 << 20, true, {});
-    CHECK(!admission.others_need(of_other_size, "first", twice));
-    CHECK(!admission.others_need({}, "first", twice));
-    CHECK(!admission.others_need(second, "second", twice));
+    CHECK(!admission.others_need(of_other_size, "first", twice, computed));
+    CHECK(!admission.others_need({}, "first", twice, computed));
+    CHECK(admission.others_need(second, "second", long_enough, computed));  // more than a fourth
     first.reset();
-    CHECK(admission.others_need(second, "second", twice));
-    CHECK(!admission.others_need(second, "second", long_enough));  // no more than a third
+    CHECK(admission.others_need(second, "second", twice, computed));
+    CHECK(!admission.others_need(second, "second", long_enough, computed));  // no more than a third
     second.reset();
     for (std::thread& thread : threads) thread.join();
     CHECK(order == "smalllarge");
