@@ -349,7 +349,7 @@ bool AdmissionControl::others_need(
     if (own == group.clients.end() || group.waiting.clients(is_other) == 0) return false;
     const std::size_t clients = group.clients.size() + group.waiting.clients(is_idle);
     const bool is_more = own->second > std::max(group.at_once / clients, immediate_body);
-    return age > (is_more ? 1 : 2) * group.in_need && computed > group.in_need / 10;
+    return age > (is_more ? 1 : 2) * group.in_need && computed > group.in_need / 20;
 }
 
 void AdmissionControl::stop_sweeps() {

@@ -206,7 +206,7 @@ inline constexpr std::size_t immediate_lists = 16 << 20;
 // Time for which work keeps a slot that other work of its class waits for.
 inline constexpr auto time_slice = std::chrono::milliseconds(20);
 // The same of work with a permit by size, for which others can wait.
-inline constexpr auto urgent_slice = std::chrono::milliseconds(60);
+inline constexpr auto urgent_slice = std::chrono::milliseconds(40);
 
 /// A foreground request's permission to compute: a slot or a grace period at once, otherwise after
 /// a wait. For one thread at a time; the admission control outlives it.

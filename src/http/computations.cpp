@@ -139,7 +139,7 @@ public:
         if (!has_slot) throw_without_permit();
         listed_ = Clock::now();
     }
-    /// True if the lists are to be freed for others.
+    /// Whether the lists are to be freed for others.
     bool others_need_lists() const {
         const Clock::time_point now = Clock::now();
         return service_.admission.others_need(
@@ -393,11 +393,10 @@ Response answer(Request& r, const Service& service, Stopwatch& watch) {
         .body = std::move(bytes),
         .tag = std::move(tag),
         .headers = {varies}};
-    const auto gives_up = [&] {
-        return r.left() || !computing.renew() || computing.others_need_lists();
-    };
+    const auto ends = [&] { return r.left() || !computing.renew(); };
+    const auto gives_up = [&] { return ends() || computing.others_need_lists(); };
     // Lists that others need are sent as they are.
-    if (!compress(response, r, gives_up) && !computing.renew()) computing.throw_without_permit();
+    if (!compress(response, r, gives_up) && ends()) computing.throw_without_permit();
     computing.lap("encode");
     return response;
 }
