@@ -74,17 +74,14 @@ bool fit_answer(SimulateRequest& r, std::size_t bytes, Warnings& warnings) {
     return true;
 }
 
-/// About the bytes that the lists of a run take, with four impacts per cycle or less.
+/// About the bytes that the lists of a run take.
 std::size_t expected_bytes(const SimulateRequest& r) {
     const AnalysisRequest& w = r.wanted;
     const AnswerSize size = size_of(r);
-    const double cycles = w.tau_end / w.parameters.cycle() + 1;
-    const auto at_most = [](double expected, std::size_t most) {
-        return std::min(expected, static_cast<double>(most));
-    };
-    double bytes = size.point * at_most(w.samples_per_cycle * cycles, w.most_points);
+    const double samples = w.samples_per_cycle * (w.tau_end / w.parameters.cycle() + 1);
+    double bytes = size.point * std::min(samples, static_cast<double>(w.most_points));
     if (w.parts.impacts)
-        bytes += size.impact * at_most(at_most(4 * cycles, w.most_listed), w.most_kept);
+        bytes += size.impact * static_cast<double>(std::min(impacts_expected(w), w.most_listed));
     return static_cast<std::size_t>(bytes);
 }
 

@@ -48,7 +48,7 @@ AdmissionControl::AdmissionControl(const AdmissionLimits& limits)
       lesser_records_{lesser_records_at_once, true},
       lists_{lists_at_once, true, std::chrono::seconds(2)} {}
 
-/// The time since which the work of a queue waits, the first or other; max() if it is empty.
+/// The earliest time since which work in a queue waits; max() if it is empty.
 AdmissionControl::Clock::time_point AdmissionControl::oldest(const Queue& queue) {
     Clock::time_point since = Clock::time_point::max();
     queue.for_each([&since](const Waiter* waiter) { since = std::min(since, waiter->since); });
@@ -87,7 +87,7 @@ void AdmissionControl::assign() {
 }
 
 /// The group whose work has waited longest, among those whose next work may begin; null if there is
-/// none. While the process uses all of its memory, one body or text may, and records beside it.
+/// none. While the process uses all of its memory, one body may, and exempt work beside it.
 AdmissionControl::BySize* AdmissionControl::next_by_size() {
     const std::array groups{
         &large_bodies_, &lesser_bodies_, &large_records_, &lesser_records_, &lists_};
@@ -195,10 +195,9 @@ AdmissionControl::Slot AdmissionControl::acquire_urgently(
 }
 
 bool AdmissionControl::must_yield(const Slot& background) const {
-    const auto now = Clock::now();
     const Release& slot = background.get_deleter();
-    return (foreground_waits_ && now >= slot.keeps_until) ||
-           (background_waits_ && now - slot.since > time_slice);
+    return (foreground_waits_ && Clock::now() >= slot.keeps_until) ||
+           (background_waits_ && Clock::now() - slot.since > time_slice);
 }
 
 bool AdmissionControl::others_are_due(const std::string& client) const {

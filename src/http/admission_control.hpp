@@ -107,7 +107,7 @@ public:
     /// From now on the sweep counts as the first of these clients that may have one more; false if
     /// none may.
     bool pass_on(const SweepSlot& slot, const std::vector<std::string>& clients);
-    /// By the limit of all clients.
+    /// True if fewer sweeps run than all clients together may have.
     bool sweeps_left() const { return load().sweeps < limits_.sweeps; }
 
     /// The right to read a large body and to compute with it. At most one of the largest, and
@@ -148,7 +148,7 @@ private:
         bool displaced = false;  ///< by another client, whose turn is earlier
         bool overtakes = false;  ///< granted although foreground work waits
         bool is_interrupted = false;
-        std::size_t bytes = 0;  ///< of a large body or answer
+        std::size_t bytes = 0;  ///< of a body or of lists
         Clock::time_point since = Clock::now();
     };
     using Queue = FairQueue<Waiter*>;
@@ -216,7 +216,7 @@ public:
 
     /// Waits for a slot if may_begin is false, or if neither a slot nor a grace period is free.
     /// gives_up() is polled while waiting.
-    /// is_urgent: it holds a permit by size, for which others wait; see end_urgency().
+    /// is_urgent: it holds a permit by size, for which others can wait; see end_urgency().
     Permit(
         AdmissionControl& admission, std::string client, std::function<bool()> gives_up,
         bool may_begin, bool is_urgent = false);

@@ -32,8 +32,8 @@ public:
     bool is_full() const { return held_ >= limit_; }
     /// True if `more` bytes should not be accepted of a client: also if it would then hold more
     /// than is left. One client so has half of the budget, a second one a quarter, and so on; but
-    /// more than a quarter alone, as long as it is not full. for_long: held while it is computed,
-    /// which, if it is large, half of the budget is not for.
+    /// more than a quarter alone, as long as it is not full. for_long: held while it is computed;
+    /// if that is large, half of the budget must stay free.
     bool is_full_for(const std::string& client, std::size_t more, bool for_long = false) const {
         const std::lock_guard lock(mutex_);
         const auto own = clients_.find(client);

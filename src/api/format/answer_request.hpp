@@ -41,7 +41,7 @@ struct ComputeOptions {
     std::size_t most_bytes = any_size;          ///< JSON of a simulation; see simulate_in_parts()
     std::size_t most_kept = most_kept_impacts;  ///< longer impact lists are streamed; JSON only
     std::size_t most_fitted = any_size;         ///< impacts of a record that are fitted
-    std::function<void(std::size_t bytes)> begins = {};  ///< of a simulation; likewise
+    std::function<void(std::size_t bytes)> begins = {};  ///< see simulate_in_parts()
     /// Called as an identification reaches each stage and round.
     std::function<void(IdentificationStage, int round)> reached = {};
 };

@@ -23,6 +23,12 @@ void add_warnings(const TransferProduct& product, bool histories, std::vector<Wa
     if (product.rank() < 4) warnings.push_back(warning::RankLost{product.rank()});
 }
 
+std::size_t impacts_expected(const AnalysisRequest& w) {
+    const double expected = 4 * (w.tau_end / w.parameters.cycle() + 1);
+    return static_cast<std::size_t>(
+        std::min({expected, static_cast<double>(w.max_impacts), static_cast<double>(w.most_kept)}));
+}
+
 namespace {
 
 constexpr std::size_t manifold_points = 200;  // on each branch
@@ -30,13 +36,6 @@ constexpr std::size_t manifold_points = 200;  // on each branch
 double series_step(const AnalysisRequest& w) {
     const double requested = w.parameters.cycle() / w.samples_per_cycle;
     return std::max(requested, w.tau_end / static_cast<double>(w.most_points - 1));
-}
-
-/// Upper estimate for most responses, four per cycle; sizes a reservation only.
-std::size_t impacts_expected(const AnalysisRequest& w) {
-    const double expected = 4 * (w.tau_end / w.parameters.cycle() + 1);
-    return static_cast<std::size_t>(
-        std::min({expected, static_cast<double>(w.max_impacts), static_cast<double>(w.most_kept)}));
 }
 
 /// Verdict and regime need the exponents by qr, whether or not these are requested.

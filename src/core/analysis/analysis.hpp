@@ -217,6 +217,9 @@ struct Analysis {
     std::vector<Warning> warnings;
 };
 
+/// Upper estimate for most responses, four per cycle; for reservations.
+std::size_t impacts_expected(const AnalysisRequest& wanted);
+
 Analysis analyse(const AnalysisRequest& wanted, const Interrupt& interrupt = {});
 
 }  // namespace vines

@@ -299,7 +299,9 @@ TEST_CASE(
     check_verdict_of_sticking(0.0175);
 }
 
-TEST_CASE("nor does it at b = 17 and 18 mm" * doctest::test_suite("statistics")) {
+TEST_CASE(
+    "a motion that sticks in each cycle gets no wrong verdict at b = 17 and 18 mm" *
+    doctest::test_suite("statistics")) {
     for (const double b : {0.017, 0.018}) check_verdict_of_sticking(b);
 }
 
