@@ -3,7 +3,7 @@ import assert from "node:assert/strict";
 import {spawnSync} from "node:child_process";
 import {existsSync} from "node:fs";
 import {test} from "node:test";
-import {exchange, send, serviceFor, until} from "./raw.mjs";
+import {endless, exchange, send, serviceFor, until} from "./raw.mjs";
 
 const setUp = new URL("../../build/tools/promtool", import.meta.url).pathname;
 const promtool = existsSync(setUp) ? setUp : "promtool"; // installed by scripts/setup, or Debian's
@@ -19,9 +19,6 @@ async function metrics(url) {
     }),
   );
 }
-
-// Runs until its deadline, or until its client leaves.
-const endless = {b: 0.0005, R: 1, tau_end: 1e7, max_impacts: 2e6, include: ["regime"]};
 
 test("requests are counted by route, method and status, durations by route; promtool finds no fault", async (t) => {
   const service = await serviceFor(t);

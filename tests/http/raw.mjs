@@ -16,6 +16,15 @@ export const get = (path, more = "") => `GET ${path} HTTP/1.1\r\nHost: localhost
 export const post = (path, body, more = "") =>
   `POST ${path} HTTP/1.1\r\nHost: localhost\r\nContent-Length: ${body.length}\r\n${more}\r\n${body}`;
 
+/** A simulation that runs until its deadline, half a minute, or until its client leaves. */
+export const endless = JSON.stringify({
+  b: 0.03,
+  tau_end: 1e7,
+  max_impacts: 2000000,
+  include: ["regime", "exponents"],
+  windows: Array.from({length: 900}, (_, i) => [i, 1e7]),
+});
+
 /** A POST by fetch. body: a text, or a value that is sent as JSON. */
 export const send = (url, path, body, options = {}) =>
   fetch(url + path, {
