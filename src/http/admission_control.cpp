@@ -18,8 +18,8 @@ constexpr int interrupted_per_slot = 8;
 // Time for which a look at the memory holds: little is allocated in it, and a look takes 15 us.
 constexpr auto memory_look = std::chrono::milliseconds(5);
 
-// Time after which background work no longer waits for foreground work.
-constexpr auto patience = std::chrono::milliseconds(200);
+// The time of background work counts this many times, so that it has a ninth of it or more.
+constexpr int background_weight = 4;
 
 // Bodies above immediate_body are read together up to this size; of larger ones one at a time,
 // beside them. While they are read and computed they take up to fifteen times their size, one of
@@ -42,48 +42,66 @@ constexpr auto grace_time = std::chrono::milliseconds(1);
 AdmissionControl::AdmissionControl(const AdmissionLimits& limits)
     : limits_(limits),
       free_(limits.running),
+      background_{background_weight},
       large_bodies_{bodies_at_once},
       lesser_bodies_{bodies_at_once},
       large_records_{records_at_once, true},
       lesser_records_{lesser_records_at_once, true},
-      lists_{lists_at_once, true, std::chrono::seconds(2)} {}
+      lists_{lists_at_once, true, std::chrono::seconds(2), std::chrono::seconds(8)} {}
 
-/// The earliest time since which work in a queue waits; max() if it is empty.
-AdmissionControl::Clock::time_point AdmissionControl::oldest(const Queue& queue) {
-    Clock::time_point since = Clock::time_point::max();
-    queue.for_each([&since](const Waiter* waiter) { since = std::min(since, waiter->since); });
-    return since;
-}
-
-/// True if background work may overtake foreground work: it then has a tenth of the time.
-bool AdmissionControl::may_overtake() const {
-    const auto now = Clock::now();
-    return now >= next_overtaking_ && oldest(background_) <= now - patience;
+/// The class whose waiting work has had least time, as if what runs had used its time slice; null
+/// if none waits.
+AdmissionControl::Class* AdmissionControl::next_class() {
+    const auto time = [](const Class* of) {
+        return of->used + of->running * of->weight * time_slice;
+    };
+    Class* next = nullptr;
+    for (Class* const its : {&urgent_, &foreground_, &background_})
+        if (!its->waiting.empty() && (!next || time(its) < time(next))) next = its;
+    return next;
 }
 
 /// Grants what is free to the next in the queues, and wakes only these threads.
 void AdmissionControl::assign() {
-    const auto grant_next = [](Queue& queue) -> Waiter& {
+    const auto grant_next = [](Queue& queue) {
         Waiter& next = **queue.pop();
-        next.granted = true;
-        next.changed.notify_one();
-        return next;
+        next.set(&Waiter::granted);
+        return next.bytes;
     };
     for (; free_ > 0; --free_) {
-        const bool requests_wait = !urgent_.empty() || !foreground_.empty();
-        if (!requests_wait && background_.empty()) break;
-        const bool overtakes = requests_wait && may_overtake();
-        if (overtakes) next_overtaking_ = Clock::now() + patience / limits_.running;
-        was_urgent_ = !overtakes && !urgent_.empty() && (foreground_.empty() || !was_urgent_);
-        Waiter& next = grant_next(
-            overtakes || !requests_wait ? background_
-            : was_urgent_               ? urgent_
-                                        : foreground_);
-        next.overtakes = overtakes;
+        Class* const next = next_class();
+        if (!next) break;
+        for (Class* const its : {&urgent_, &foreground_, &background_})
+            if (its->waiting.empty()) its->used = std::max(its->used, next->used);
+        grant_next(next->waiting);
+        ++next->running;
     }
-    foreground_waits_ = !foreground_.empty() || !urgent_.empty();
-    background_waits_ = !background_.empty();
-    while (BySize* const group = next_by_size()) group->in_work += grant_next(group->waiting).bytes;
+    foreground_waits_ = !foreground_.waiting.empty() || !urgent_.waiting.empty();
+    background_waits_ = !background_.waiting.empty();
+    const bool waits = foreground_waits_ || background_waits_;
+    contended_ = waits ? std::min(contended_, Clock::now()) : Clock::time_point::max();
+    while (BySize* const group = next_by_size()) group->in_work += grant_next(group->waiting);
+}
+
+AdmissionControl::Slot AdmissionControl::slot_of(Class& its, const std::string& client) {
+    return {this, {.its = &its, .client = client}};
+}
+
+/// Counts the time in which other work waited for what had the slot.
+void AdmissionControl::give_back(const Release& slot) {
+    if (!slot.its) {
+        --graces_;
+        return;
+    }
+    ++free_;
+    --slot.its->running;
+    const auto used = std::chrono::duration_cast<std::chrono::microseconds>(
+        Clock::now() - std::max(slot.since, contended_));
+    if (used.count() <= 0) return;
+    slot.its->used += slot.its->weight * used;
+    slot.its->waiting.charge(slot.client, used.count());
+    if (slot.its != &background_)
+        (slot.its == &urgent_ ? foreground_ : urgent_).waiting.charge(slot.client, used.count());
 }
 
 /// The group whose work has waited longest, among those whose next work may begin; null if there is
@@ -101,9 +119,12 @@ AdmissionControl::BySize* AdmissionControl::next_by_size() {
                });
     };
     BySize* next = nullptr;
+    auto oldest = Clock::time_point::max();
     for (BySize* const group : groups)
-        if (may_begin(group) && (!next || oldest(group->waiting) < oldest(next->waiting)))
-            next = group;
+        if (may_begin(group))
+            group->waiting.for_each([&](const Waiter* waiter) {
+                if (waiter->since < oldest) next = group, oldest = waiter->since;
+            });
     return next;
 }
 
@@ -113,11 +134,6 @@ bool AdmissionControl::end_wait(Queue& queue, Waiter& waiter) {
     queue.remove(&waiter);
     assign();
     return false;
-}
-
-void AdmissionControl::displace(Waiter& waiter) {
-    waiter.displaced = true;
-    waiter.changed.notify_one();
 }
 
 /// Waits in a queue until the waiter, which is in it, is granted what it waits for, is displaced,
@@ -138,22 +154,23 @@ bool AdmissionControl::wait(
 
 /// Requests in the queue that have not had a time slice.
 int AdmissionControl::new_waiting() const {
-    return static_cast<int>(foreground_.size()) - interrupted_;
+    return static_cast<int>(foreground_.waiting.size()) - interrupted_;
 }
 
 bool AdmissionControl::is_full() const { return new_waiting() + graces_ >= limits_.waiting; }
 
-AdmissionControl::Slot AdmissionControl::try_acquire() {
+AdmissionControl::Slot AdmissionControl::try_acquire(const std::string& client) {
     const std::lock_guard lock(mutex_);
     if (free_ > 0) {
         --free_;
-        return Slot(this);
+        ++foreground_.running;
+        return slot_of(foreground_, client);
     }
     // Many can allocate much before their grace periods end.
     if (is_full() || graces_ >= graces_per_slot * limits_.running || uses(limits_.memory / 2))
         return nullptr;
     ++graces_;
-    return {this, {.is_grace = true}};
+    return Slot(this);
 }
 
 AdmissionControl::Slot AdmissionControl::acquire(
@@ -162,36 +179,38 @@ AdmissionControl::Slot AdmissionControl::acquire(
     if (free_ == 0 && is_full()) {
         const auto is_new = [](const Waiter* waiter) { return !waiter->is_interrupted; };
         const auto is_own = [&client](const std::string& other) { return other == client; };
-        if (foreground_.precedes_last(client, is_new)) displace(*foreground_.pop_last(is_new));
-        else if (new_waiting() >= limits_.waiting || foreground_.clients(is_own) > 0)
-            return nullptr;
+        Queue& queue = foreground_.waiting;
+        if (const auto last = queue.pop_for(client, is_new)) (*last)->set(&Waiter::displaced);
+        else if (new_waiting() >= limits_.waiting || queue.clients(is_own) > 0) return nullptr;
     }
     Waiter waiter;
-    foreground_.push(client, &waiter);
-    return Slot(wait(lock, foreground_, waiter, gives_up) ? this : nullptr);
+    foreground_.waiting.push(client, &waiter);
+    if (!wait(lock, foreground_.waiting, waiter, gives_up)) return nullptr;
+    return slot_of(foreground_, client);
 }
 
 AdmissionControl::Slot AdmissionControl::resume(
     const std::string& client, const std::function<bool()>& gives_up, Slot begun) {
     std::unique_lock lock(mutex_);
     const bool had_slot = !is_grace(begun);
-    if (begun.release()) had_slot ? ++free_ : --graces_;
+    if (begun.release()) give_back(begun.get_deleter());
     Waiter waiter{.is_interrupted = had_slot};
-    foreground_.push_before(client, &waiter, [&waiter](const Waiter* other) {
+    foreground_.waiting.push_before(client, &waiter, [&waiter](const Waiter* other) {
         return waiter.is_interrupted && !other->is_interrupted;
     });
     interrupted_ += had_slot;
-    const bool granted = wait(lock, foreground_, waiter, gives_up);
+    const bool granted = wait(lock, foreground_.waiting, waiter, gives_up);
     interrupted_ -= had_slot;
-    return Slot(granted ? this : nullptr);
+    return granted ? slot_of(foreground_, client) : nullptr;
 }
 
 AdmissionControl::Slot AdmissionControl::acquire_urgently(
     const std::string& client, const std::function<bool()>& gives_up) {
     std::unique_lock lock(mutex_);
     Waiter waiter;
-    urgent_.push(client, &waiter);
-    return Slot(wait(lock, urgent_, waiter, gives_up) ? this : nullptr);
+    urgent_.waiting.push(client, &waiter);
+    if (!wait(lock, urgent_.waiting, waiter, gives_up)) return nullptr;
+    return slot_of(urgent_, client);
 }
 
 bool AdmissionControl::must_yield(const Slot& background) const {
@@ -204,15 +223,16 @@ bool AdmissionControl::others_are_due(const std::string& client) const {
     if (!foreground_waits_ && !background_waits_) return false;
     const std::lock_guard lock(mutex_);
     const auto is_other = [&client](const std::string& other) { return other != client; };
-    return !urgent_.empty() ||
-           ((foreground_.clients(is_other) > 0 || may_overtake()) && may_interrupt());
+    const bool background_is_due = background_waits_ && background_.used <= foreground_.used;
+    return !urgent_.waiting.empty() ||
+           ((foreground_.waiting.clients(is_other) > 0 || background_is_due) && may_interrupt());
 }
 
 bool AdmissionControl::others_are_stuck(const std::string& client) const {
     if (!foreground_waits_) return false;
     const std::lock_guard lock(mutex_);
     const auto is_other = [&client](const std::string& other) { return other != client; };
-    return foreground_.clients(is_other) > 0 && !may_interrupt();
+    return foreground_.waiting.clients(is_other) > 0 && !may_interrupt();
 }
 
 bool AdmissionControl::may_interrupt() const {
@@ -228,37 +248,25 @@ bool AdmissionControl::uses(std::size_t bytes) const {
 }
 
 AdmissionControl::Slot AdmissionControl::acquire_background(
-    const std::string& client, const std::stop_token& stop, Clock::duration waited) {
+    const std::string& client, const std::stop_token& stop) {
     std::unique_lock lock(mutex_);
-    Waiter waiter{.since = Clock::now() - waited};
-    background_.push(client, &waiter);
+    Waiter waiter;
+    background_.waiting.push(client, &waiter);
     assign();
     // The wait registers with the token before it checks the condition, so that no stop is missed.
     // The thread that requests the stop must not hold the mutex, and cannot.
     waiter.changed.wait(lock, stop, [this, &waiter] { return waiter.granted || sweeps_stopped_; });
-    if (!end_wait(background_, waiter)) return nullptr;
-    if (!sweeps_stopped_)
-        return {
-            this,
-            {.keeps_until = waiter.overtakes ? Clock::now() + time_slice : Clock::time_point{}}};
-    ++free_;
-    assign();
-    return nullptr;
+    if (!end_wait(background_.waiting, waiter)) return nullptr;
+    Slot slot = slot_of(background_, client);
+    if (foreground_waits_) slot.get_deleter().keeps_until = Clock::now() + time_slice;
+    lock.unlock();
+    return sweeps_stopped_ ? nullptr : std::move(slot);
 }
 
-AdmissionControl::Clock::duration AdmissionControl::Release::credit() const {
-    return std::max(keeps_until - Clock::now(), Clock::duration(0)) * (patience / time_slice);
-}
-
-void AdmissionControl::release(bool is_grace, Clock::duration credit) {
+void AdmissionControl::release(const Release& slot) {
     const std::lock_guard lock(mutex_);
-    if (is_grace) {
-        --graces_;
-    } else {
-        ++free_;
-        next_overtaking_ -= credit / limits_.running;
-        assign();
-    }
+    give_back(slot);
+    assign();
 }
 
 /// True if not all sweeps but one are this client's.
@@ -291,15 +299,15 @@ bool AdmissionControl::pass_on(const SweepSlot& slot, const std::vector<std::str
 bool AdmissionControl::make_space(Queue& queue, const std::string& client, std::size_t bytes) {
     std::size_t waiting = 0;
     queue.for_each([&waiting](const Waiter* body) { waiting += body->bytes; });
-    const auto fits = [bytes](std::size_t bodies, std::size_t others) {
+    const auto fits = [&](std::size_t bodies, std::size_t less) {
         return bodies == 0 ||
-               (bodies < most_waiting_bodies && others + bytes <= most_waiting_bytes);
+               (bodies < most_waiting_bodies && waiting - less + bytes <= most_waiting_bytes);
     };
-    if (fits(queue.size(), waiting)) return true;
-    if (!queue.precedes_last(client) || !fits(queue.size() - 1, waiting - queue.back()->bytes))
-        return false;
-    displace(*queue.pop_last());
-    return true;
+    if (fits(queue.size(), 0)) return true;
+    const auto last = queue.pop_for(
+        client, [&](const Waiter* body) { return fits(queue.size() - 1, body->bytes); });
+    if (last) (*last)->set(&Waiter::displaced);
+    return last.has_value();
 }
 
 AdmissionControl::SizePermit AdmissionControl::acquire_by_size(
@@ -310,9 +318,11 @@ AdmissionControl::SizePermit AdmissionControl::acquire_by_size(
     if (!wait(lock, group.waiting, waiter, gives_up)) return nullptr;
     group.clients[client] += bytes;
     lock.unlock();
-    return {&group, [this, &group, client, bytes](BySize*) {
+    return {&group, [this, &group, client, bytes, since = Clock::now()](BySize*) {
                 trim_memory();
                 const std::lock_guard ending(mutex_);
+                const auto held = (Clock::now() - since) / std::chrono::milliseconds(1);
+                group.waiting.charge(client, held * static_cast<long>(bytes >> 20));
                 group.in_work -= bytes;
                 if ((group.clients[client] -= bytes) == 0) group.clients.erase(client);
                 assign();
@@ -345,22 +355,24 @@ bool AdmissionControl::others_need(
     const auto own = group.clients.find(client);
     const auto is_idle = [&](const std::string& other) { return !group.clients.contains(other); };
     const auto is_other = [&](const std::string& other) { return other != client; };
-    if (own == group.clients.end() || group.waiting.clients(is_other) == 0) return false;
+    const auto others = static_cast<int>(group.waiting.clients(is_other));
+    if (own == group.clients.end() || others == 0) return false;
     const std::size_t clients = group.clients.size() + group.waiting.clients(is_idle);
     const bool is_more = own->second > std::max(group.at_once / clients, immediate_body);
-    return age > (is_more ? 1 : 2) * group.in_need && computed > group.in_need / 20;
+    return age > (is_more ? 1 : 2) * std::min(group.in_need, group.round / others) &&
+           computed > group.in_need / 20;
 }
 
 void AdmissionControl::stop_sweeps() {
     const std::lock_guard lock(mutex_);
     sweeps_stopped_ = true;
-    background_.for_each([](Waiter* waiter) { waiter->changed.notify_one(); });
+    background_.waiting.for_each([](Waiter* waiter) { waiter->changed.notify_one(); });
 }
 
 AdmissionLoad AdmissionControl::load() const {
     const std::lock_guard lock(mutex_);
     return {
-        limits_.running - free_, foreground_.size() + urgent_.size(),
+        limits_.running - free_, foreground_.waiting.size() + urgent_.waiting.size(),
         static_cast<int>(sweeps_.size())};
 }
 
@@ -371,7 +383,7 @@ Permit::Permit(
       client_(std::move(client)),
       gives_up_(std::move(gives_up)),
       is_urgent_(is_urgent) {
-    if (may_begin) slot_ = admission_.try_acquire();
+    if (may_begin) slot_ = admission_.try_acquire(client_);
     if (!slot_)
         slot_ = is_urgent ? admission_.acquire_urgently(client_, gives_up_)
                           : admission_.acquire(client_, gives_up_);
@@ -381,8 +393,7 @@ bool Permit::renew() {
     if (!slot_) return false;
     const bool is_grace = AdmissionControl::is_grace(slot_);
     const Clock::time_point now = Clock::now();
-    const Clock::duration slice = is_urgent_ ? urgent_slice : time_slice;
-    if (now - since_ < (is_grace ? grace_time : slice)) return true;
+    if (now - since_ < (is_grace ? grace_time : time_slice)) return true;
     since_ = now;
     if (!is_grace && !admission_.others_are_due(client_)) return true;
     if (is_urgent_) slot_.reset();

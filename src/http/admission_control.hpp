@@ -3,11 +3,10 @@
 // The server has more worker threads than cores, so a computation needs one of a fixed number of
 // slots (--compute-threads). Two classes of work compete for them:
 // - foreground: one request. It queues up to a limit and is refused beyond it.
-// - background: the points of a sweep, the lists of a streamed answer. It waits without limit,
-//   after all foreground work unless it has waited for long, and gives its slot back whenever
-//   foreground work waits.
-// In each class clients take turns. Work in the foreground keeps its slot for a time slice, then
-// gives it back if another client's work waits.
+// - background: the points of a sweep, the lists of a streamed answer. It waits without limit, has
+//   a ninth or more of the time while others wait, and else leaves its slot to the foreground.
+// In each class the client whose work has had least time is next. Work keeps its slot for a time
+// slice, then gives it back if another client's work waits.
 // Waiting for a slot costs a thread switch, which takes longer than a small answer. A foreground
 // request that finds no free slot therefore starts in a grace period of 1 ms without one, and
 // waits only if it needs longer (Permit).
@@ -48,14 +47,15 @@ public:
 
 private:
     struct BySize;
-    void release(bool is_grace, Clock::duration credit);
+    struct Class;
     struct Release {
-        bool is_grace = false;
+        Class* its = nullptr;  // null: of a grace period
+        std::string client = {};
         Clock::time_point keeps_until = {};  // of background work that foreground work waits for
         Clock::time_point since = Clock::now();
-        Clock::duration credit() const;
-        void operator()(AdmissionControl* its) const { its->release(is_grace, credit()); }
+        void operator()(AdmissionControl* admission) const { admission->release(*this); }
     };
+    void release(const Release& slot);
 
 public:
     explicit AdmissionControl(const AdmissionLimits& limits);
@@ -65,39 +65,31 @@ public:
     /// The right to compute, or null. The destructor gives it back. A grace period is the right for
     /// a moment without a slot; it counts towards the queue's limit.
     using Slot = std::unique_ptr<AdmissionControl, Release>;
-    static bool is_grace(const Slot& slot) { return slot && slot.get_deleter().is_grace; }
+    static bool is_grace(const Slot& slot) { return slot && !slot.get_deleter().its; }
     /// For foreground work; does not wait: a slot, a grace period or null.
-    Slot try_acquire();
-    /// For foreground work: waits for a slot. Null if the queue is full of work whose turn is
-    /// earlier, or gives_up() returned true; it is polled every 50 ms. Grace periods fill the queue
-    /// only for a client that waits in it: they have no clients whose turns could be compared.
+    Slot try_acquire(const std::string& client);
+    /// For foreground work: waits for a slot. Null if the queue is full and no client has more in
+    /// it, or gives_up() returned true; it is polled every 50 ms. Grace periods, which have no
+    /// clients, fill the queue only for a client that waits in it.
     Slot acquire(const std::string& client, const std::function<bool()>& gives_up = {});
     /// For foreground work that has begun: gives its slot or grace period back and waits for a
     /// slot; always finds space in the queue. Work that had a slot, or has given it back before
     /// (null), waits before the client's other work. Null as above.
     Slot resume(const std::string& client, const std::function<bool()>& gives_up, Slot begun);
-    /// For foreground work that holds a permit by size, for which others can wait: it gets every
-    /// second slot, and every one that no other foreground work waits for.
+    /// For foreground work that holds a permit by size, for which others can wait: it has half of
+    /// the foreground's time, and all that no other foreground work waits for. It counts as its
+    /// client's there, too.
     Slot acquire_urgently(const std::string& client, const std::function<bool()>& gives_up);
     /// True if foreground work with a slot should resume(): other clients' work is due.
     bool others_are_due(const std::string& client) const;
     /// True if other clients' work waits and is not due, since the process uses all of its memory:
     /// foreground work should end.
     bool others_are_stuck(const std::string& client) const;
-    /// For background work: waits for a slot, after the background work whose turn is earlier, and
-    /// after all foreground work unless it has waited for 200 ms; then at most one per slot and 200
-    /// ms overtakes. Null once `stop` is requested or sweeps are stopped. waited: counts as waited.
-    Slot acquire_background(
-        const std::string& client, const std::stop_token& stop = {}, Clock::duration waited = {});
-    /// The wait that the unused time of a slot is worth; `before` if it did not overtake.
-    static Clock::duration credit(const Slot& slot, Clock::duration before) {
-        if (!slot || slot.get_deleter().keeps_until == Clock::time_point{}) return before;
-        return slot.get_deleter().credit();
-    }
+    /// For background work: waits for a slot. Null once `stop` is requested or sweeps are stopped.
+    Slot acquire_background(const std::string& client, const std::stop_token& stop = {});
     /// True if background work should release its slot and wait again: foreground work waits, or
     /// other background work after a time slice.
     bool must_yield(const Slot& background) const;
-    bool foreground_waits() const { return foreground_waits_; }
     bool background_waits() const { return background_waits_; }
 
     /// The right to run one sweep. Null if the limit is reached, or all but one are this client's,
@@ -112,8 +104,8 @@ public:
 
     /// The right to read a large body and to compute with it. At most one of the largest, and
     /// several that are small together, have it at once, since these take many times their size;
-    /// others wait, the smallest first of equal turns. Null if too many wait whose turn is earlier,
-    /// or gives_up(), polled every 50 ms, returned true. Smaller bodies have it at once.
+    /// others wait. Null if too many wait and no client has more of them, or gives_up(), polled
+    /// every 50 ms, returned true. Smaller bodies have it at once.
     using SizePermit = std::shared_ptr<BySize>;
     /// Records, which keep it until they are identified, do not hold up other bodies.
     SizePermit acquire_body(
@@ -125,8 +117,8 @@ public:
     SizePermit acquire_lists(
         const std::string& client, std::size_t bytes, const std::function<bool()>& gives_up);
     /// True if other clients wait for permits like this one (may be null), and its work, which has
-    /// it for `age` and has `computed` for a moment at least, is to end for them: with no more than
-    /// an equal share after twice the time.
+    /// it for `age` and has `computed` for a moment at least, is to end for them: after in_need or
+    /// a part of the round; with no more than an equal share after twice the time.
     bool others_need(
         const SizePermit& permit, const std::string& client, Clock::duration age,
         Clock::duration computed) const;
@@ -145,25 +137,34 @@ private:
     struct Waiter {
         std::condition_variable_any changed = {};
         bool granted = false;    ///< a slot, or a permit by size
-        bool displaced = false;  ///< by another client, whose turn is earlier
-        bool overtakes = false;  ///< granted although foreground work waits
+        bool displaced = false;  ///< by a client that has less in the queue
         bool is_interrupted = false;
         std::size_t bytes = 0;  ///< of a body or of lists
         Clock::time_point since = Clock::now();
+        void set(bool Waiter::* state) {
+            this->*state = true;
+            changed.notify_one();
+        }
     };
-    using Queue = FairQueue<Waiter*>;
+    using Queue = FairQueue<Waiter*>;  // of slots: a turn for each microsecond
+    struct Class {
+        int weight = 1;  ///< of the time that it uses
+        Queue waiting = {};
+        int running = 0;            ///< slots in use
+        Clock::duration used = {};  ///< weighted, while other work waited
+    };
     using Lock = std::unique_lock<std::mutex>;
 
     bool uses(std::size_t bytes) const;
     bool may_interrupt() const;
     int new_waiting() const;
     bool is_full() const;
-    static Clock::time_point oldest(const Queue& queue);
-    bool may_overtake() const;
+    Class* next_class();
+    Slot slot_of(Class& its, const std::string& client);
+    void give_back(const Release& slot);
     bool may_sweep(const std::string& client) const;
     void assign();
     bool end_wait(Queue& queue, Waiter& waiter);
-    static void displace(Waiter& waiter);
     bool wait(Lock& lock, Queue& queue, Waiter& waiter, const std::function<bool()>& gives_up);
     /// Work that is admitted by its size: several that have at most `at_once` bytes together, or
     /// one.
@@ -171,6 +172,7 @@ private:
         std::size_t at_once = 0;
         bool is_exempt = false;  ///< also at once where the process uses all of its memory
         Clock::duration in_need = std::chrono::seconds(5);  ///< see others_need()
+        Clock::duration round = std::chrono::hours(1);      ///< time for all that wait, likewise
         Queue waiting = {};
         std::map<std::string, std::size_t> clients = {};  ///< bytes of each in work
         std::size_t in_work = 0;                          ///< bytes of all
@@ -183,14 +185,13 @@ private:
 
     const AdmissionLimits limits_;
     mutable std::mutex mutex_;
-    int free_, graces_ = 0;    // nobody waits while free_ > 0
-    bool was_urgent_ = false;  // the last work with a slot, in the foreground
-    int interrupted_ = 0;      // work that waits after a time slice
+    int free_, graces_ = 0;  // nobody waits while free_ > 0
+    int interrupted_ = 0;    // work that waits after a time slice
     mutable Clock::time_point memory_checked_ = {};
-    mutable std::size_t resident_ = 0;  // then, bytes
-    Clock::time_point next_overtaking_ = {};
-    std::list<std::string> sweeps_;  // their clients
-    Queue urgent_, foreground_, background_;
+    mutable std::size_t resident_ = 0;                        // then, bytes
+    Clock::time_point contended_ = Clock::time_point::max();  // since when work waits
+    std::list<std::string> sweeps_;                           // their clients
+    Class urgent_, foreground_, background_;
     BySize large_bodies_, lesser_bodies_, large_records_, lesser_records_, lists_, immediate_;
     // Written under the mutex; running work reads them without it.
     std::atomic<bool> foreground_waits_ = false, background_waits_ = false;
@@ -204,9 +205,7 @@ inline constexpr std::size_t immediate_body = 1 << 20;
 inline constexpr std::size_t immediate_lists = 16 << 20;
 
 // Time for which work keeps a slot that other work of its class waits for.
-inline constexpr auto time_slice = std::chrono::milliseconds(20);
-// The same of work with a permit by size, for which others can wait.
-inline constexpr auto urgent_slice = std::chrono::milliseconds(40);
+inline constexpr auto time_slice = std::chrono::milliseconds(5);
 
 /// A foreground request's permission to compute: a slot or a grace period at once, otherwise after
 /// a wait. For one thread at a time; the admission control outlives it.
@@ -234,7 +233,7 @@ public:
     /// Time spent waiting, without the initial wait.
     Clock::duration waited() const { return waited_; }
 
-    /// From now on it waits with all others, and its time slices have the usual length.
+    /// From now on it waits with all others.
     void end_urgency() { is_urgent_ = false; }
 
 private:

@@ -149,15 +149,17 @@ public:
 
     /// Ends a request that has no permit: its client has left, or work whose turn is earlier came.
     [[noreturn]] void throw_without_permit() const {
-        if (request_.left()) throw_client_left();
-        if (service_.admission.all_stopped()) throw *stopping_refusal().problem;
-        throw Problem::unavailable(
-            "computing", "the queue for computing is full; try again in a second");
+        throw_without("computing", "the queue for computing is full");
     }
 
 private:
     using Clock = Stopwatch::Clock;
 
+    [[noreturn]] void throw_without(const char* what, const std::string& reason) const {
+        if (request_.left()) throw_client_left();
+        if (service_.admission.all_stopped()) throw *stopping_refusal().problem;
+        throw Problem::unavailable(what, reason + "; try again in a second");
+    }
     /// The size of a body for its permit.
     std::size_t weighted(std::size_t bytes) const {
         if (!identifies()) return bytes * weight_of_fields;
@@ -174,11 +176,8 @@ private:
             [&, deadline = Clock::now() + longest] {
                 return request_.left() || admission.all_stopped() || Clock::now() > deadline;
             });
-        if (permit) return permit;
-        if (request_.left()) throw_client_left();
-        if (admission.all_stopped()) throw *stopping_refusal().problem;
-        throw Problem::unavailable(
-            "memory", "other large bodies are being read; try again in a second");
+        if (!permit) throw_without("memory", "other large bodies are being read");
+        return permit;
     }
 
     /// True after this multiple of the deadline, without the time in which the permit waits; after
@@ -384,8 +383,9 @@ Response answer(Request& r, const Service& service, Stopwatch& watch) {
     service.metrics.count_runs(0, static_cast<std::size_t>(answer.impacts));
     if (answer.run) return stream_answer(std::move(answer), r, service.admission);
     computing.wait_for_lists(3 * api::packed_bytes(answer.json));  // about the bytes of its text
+    const auto ends = [&] { return r.left() || !computing.renew(); };
     std::string bytes = encoded(
-        std::move(answer), *format, options.answer_limit, provenance.size() + max_hash, r.left);
+        std::move(answer), *format, options.answer_limit, provenance.size() + max_hash, ends);
     computing.release_body();
     if (stop.requested()) tag = {};  // a repeated request can get further
     Response response{
@@ -393,7 +393,6 @@ Response answer(Request& r, const Service& service, Stopwatch& watch) {
         .body = std::move(bytes),
         .tag = std::move(tag),
         .headers = {varies}};
-    const auto ends = [&] { return r.left() || !computing.renew(); };
     const auto gives_up = [&] { return ends() || computing.others_need_lists(); };
     // Lists that others need are sent as they are.
     if (!compress(response, r, gives_up) && ends()) computing.throw_without_permit();

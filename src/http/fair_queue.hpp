@@ -1,5 +1,6 @@
-// A queue in which clients take turns (start-time fair queueing with equal costs): the first
-// entries of all clients, then their second ones, and so on; among equals by cost, then arrival.
+// A queue in which clients take turns (start-time fair queueing): the first entries of all clients,
+// then their second ones, and so on; among equals by cost, then arrival. A client that is charged
+// loses turns.
 #pragma once
 
 #include <algorithm>
@@ -8,6 +9,7 @@
 #include <optional>
 #include <set>
 #include <string>
+#include <tuple>
 
 namespace vines::http {
 
@@ -17,7 +19,6 @@ public:
     bool empty() const { return entries_.empty(); }
     std::size_t size() const { return entries_.size(); }
     const T& front() const { return entries_.front().value; }
-    const T& back() const { return entries_.back().value; }
 
     void push(const std::string& client, T value, std::size_t cost = 0) {
         const long turn = last_turns_[client] = next_turn(client);
@@ -25,6 +26,16 @@ public:
             entries_.rbegin(), entries_.rend(),
             [=](const Entry& e) { return e.turn < turn || (e.turn == turn && e.cost <= cost); });
         entries_.insert(not_later.base(), {client, turn, cost, std::move(value)});
+    }
+    /// The client's next entries come this many turns later, unless the queue gets empty before.
+    void charge(const std::string& client, long turns) {
+        if (entries_.empty()) return;
+        last_turns_[client] = next_turn(client) - 1 + turns;
+        for (Entry& e : entries_)
+            if (e.client == client) e.turn += turns;
+        entries_.sort([](const Entry& a, const Entry& b) {
+            return std::tie(a.turn, a.cost) < std::tie(b.turn, b.cost);
+        });
     }
     /// The same, before the client's first entry with is_later(value): these move on by one turn.
     template <class IsLater>
@@ -35,29 +46,20 @@ public:
             if (e.client == client && (moves = moves || e.value == T{} || is_later(e.value)))
                 std::swap(e.value, value);
     }
-    /// True if an entry of this client would come before the last one that may(value).
-    template <class May = bool (*)(const T&)>
-    bool precedes_last(const std::string& client, const May& may = any) const {
-        const auto last = std::find_if(entries_.rbegin(), entries_.rend(), by_value(may));
-        return last != entries_.rend() && next_turn(client) < last->turn;
-    }
     const std::string& last_client() const { return entries_.back().client; }
-    /// The last entry that may(value), of which there is one.
+    T pop_last() { return take(std::prev(entries_.end())); }
+    /// Of the entries that may(value), the last one of the client with the most, if this client,
+    /// with one more, has fewer.
     template <class May = bool (*)(const T&)>
-    T pop_last(const May& may = any) {
-        return take(
-            std::prev(std::find_if(entries_.rbegin(), entries_.rend(), by_value(may)).base()));
-    }
-    /// The last entry of the client with the most, if this client, with one more, has fewer.
-    std::optional<T> pop_for(const std::string& client) {
+    std::optional<T> pop_for(const std::string& client, const May& may = any) {
         std::map<std::string, std::size_t> counts;
-        for (const Entry& e : entries_) ++counts[e.client];
+        for (const Entry& e : entries_) counts[e.client] += may(e.value);
         const std::size_t own = counts[client] + 1;
         const auto most =
             std::ranges::max_element(counts, {}, [](const auto& c) { return c.second; });
         if (most->second <= own) return std::nullopt;
         const auto last = std::find_if(entries_.rbegin(), entries_.rend(), [&](const Entry& e) {
-            return e.client == most->first;
+            return e.client == most->first && may(e.value);
         });
         return take(std::prev(last.base()));
     }
@@ -73,6 +75,7 @@ public:
         }
         T value = std::move(found->value);
         entries_.erase(found);
+        if (entries_.empty()) last_turns_.clear();
         return value;
     }
     std::optional<T> pop() {
@@ -106,9 +109,6 @@ private:
         T value;
     };
     static bool any(const T&) { return true; }
-    static auto by_value(const auto& may) {
-        return [&may](const Entry& e) { return may(e.value); };
-    }
 
     long next_turn(const std::string& client) const {
         const auto last = last_turns_.find(client);

@@ -115,13 +115,8 @@ public:
     bool is_cut_off() const { return is_cut_off_ || is_disowned_; }
 
     // Called by the threads that compute.
-    void begin() override {
-        slot() = admission_.acquire_background(owner(), stop_.get_token(), credit_);
-    }
-    void end() override {
-        credit_ = AdmissionControl::credit(slot(), credit_);
-        slot().reset();
-    }
+    void begin() override { slot() = admission_.acquire_background(owner(), stop_.get_token()); }
+    void end() override { slot().reset(); }
     bool stop_or_yield() override {
         if (slot() && (admission_.must_yield(slot()) || lines_.is_full())) {
             end();
@@ -244,7 +239,6 @@ private:
     std::atomic<bool> is_cut_off_ = false;
     std::atomic<bool> is_disowned_ = false;  // its client left, and the others have too many
     LineQueue lines_;
-    std::atomic<Clock::duration> credit_ = Clock::duration(0);  // of the last slot
     std::stop_source stop_;
     std::once_flag is_started_;
     Clock::time_point started_;
