@@ -35,7 +35,7 @@ constexpr std::size_t lists_at_once = 256 << 20;
 constexpr std::size_t most_waiting_bodies = 32, most_waiting_bytes = 256 << 20;
 
 // Many times the duration of a small answer, and short compared to a time slice of the scheduler.
-constexpr auto grace_time = std::chrono::milliseconds(1);
+constexpr std::chrono::microseconds grace_time(1000);
 
 }  // namespace
 
@@ -49,18 +49,6 @@ AdmissionControl::AdmissionControl(const AdmissionLimits& limits)
       lesser_records_{lesser_records_at_once, true},
       lists_{lists_at_once, true, std::chrono::seconds(2), std::chrono::seconds(8)} {}
 
-/// The class whose waiting work has had least time, as if what runs had used its time slice; null
-/// if none waits.
-AdmissionControl::Class* AdmissionControl::next_class() {
-    const auto time = [](const Class* of) {
-        return of->used + of->running * of->weight * time_slice;
-    };
-    Class* next = nullptr;
-    for (Class* const its : {&urgent_, &foreground_, &background_})
-        if (!its->waiting.empty() && (!next || time(its) < time(next))) next = its;
-    return next;
-}
-
 /// Grants what is free to the next in the queues, and wakes only these threads.
 void AdmissionControl::assign() {
     const auto grant_next = [](Queue& queue) {
@@ -68,13 +56,16 @@ void AdmissionControl::assign() {
         next.set(&Waiter::granted);
         return next.bytes;
     };
+    const std::array classes{&urgent_, &foreground_, &background_};
     for (; free_ > 0; --free_) {
-        Class* const next = next_class();
+        Class* next = nullptr;  // that has had least time
+        for (Class* const its : classes)
+            if (!its->waiting.empty() && (!next || its->used < next->used)) next = its;
         if (!next) break;
-        for (Class* const its : {&urgent_, &foreground_, &background_})
+        for (Class* const its : classes)
             if (its->waiting.empty()) its->used = std::max(its->used, next->used);
+        next->used += next->weight * time_slice;
         grant_next(next->waiting);
-        ++next->running;
     }
     foreground_waits_ = !foreground_.waiting.empty() || !urgent_.waiting.empty();
     background_waits_ = !background_.waiting.empty();
@@ -94,11 +85,10 @@ void AdmissionControl::give_back(const Release& slot) {
         return;
     }
     ++free_;
-    --slot.its->running;
-    const auto used = std::chrono::duration_cast<std::chrono::microseconds>(
-        Clock::now() - std::max(slot.since, contended_));
-    if (used.count() <= 0) return;
-    slot.its->used += slot.its->weight * used;
+    using std::chrono::microseconds;
+    const Clock::duration time = Clock::now() - std::max(slot.since, contended_);
+    const auto used = std::chrono::duration_cast<microseconds>(std::max(time, Clock::duration(0)));
+    slot.its->used += slot.its->weight * (used - time_slice);
     slot.its->waiting.charge(slot.client, used.count());
     if (slot.its != &background_)
         (slot.its == &urgent_ ? foreground_ : urgent_).waiting.charge(slot.client, used.count());
@@ -163,13 +153,16 @@ AdmissionControl::Slot AdmissionControl::try_acquire(const std::string& client) 
     const std::lock_guard lock(mutex_);
     if (free_ > 0) {
         --free_;
-        ++foreground_.running;
+        foreground_.used += time_slice;
         return slot_of(foreground_, client);
     }
+    Queue& queue = foreground_.waiting;
     // Many can allocate much before their grace periods end.
-    if (is_full() || graces_ >= graces_per_slot * limits_.running || uses(limits_.memory / 2))
+    if (is_full() || graces_ >= graces_per_slot * limits_.running || uses(limits_.memory / 2) ||
+        queue.has_debt(client))
         return nullptr;
     ++graces_;
+    queue.charge(client, grace_time.count());
     return Slot(this);
 }
 
@@ -360,7 +353,7 @@ bool AdmissionControl::others_need(
     const std::size_t clients = group.clients.size() + group.waiting.clients(is_idle);
     const bool is_more = own->second > std::max(group.at_once / clients, immediate_body);
     return age > (is_more ? 1 : 2) * std::min(group.in_need, group.round / others) &&
-           computed > group.in_need / 20;
+           computed > group.in_need / 10;
 }
 
 void AdmissionControl::stop_sweeps() {

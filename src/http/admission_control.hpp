@@ -66,7 +66,8 @@ public:
     /// a moment without a slot; it counts towards the queue's limit.
     using Slot = std::unique_ptr<AdmissionControl, Release>;
     static bool is_grace(const Slot& slot) { return slot && !slot.get_deleter().its; }
-    /// For foreground work; does not wait: a slot, a grace period or null.
+    /// For foreground work; does not wait: a slot, a grace period or null. While work waits, grace
+    /// periods count for their client like its time, and it gets none while it has had more.
     Slot try_acquire(const std::string& client);
     /// For foreground work: waits for a slot. Null if the queue is full and no client has more in
     /// it, or gives_up() returned true; it is polled every 50 ms. Grace periods, which have no
@@ -150,8 +151,8 @@ private:
     struct Class {
         int weight = 1;  ///< of the time that it uses
         Queue waiting = {};
-        int running = 0;            ///< slots in use
-        Clock::duration used = {};  ///< weighted, while other work waited
+        /// Weighted, while other work waited; of what has a slot as if it used a time slice.
+        Clock::duration used = {};
     };
     using Lock = std::unique_lock<std::mutex>;
 
@@ -159,7 +160,6 @@ private:
     bool may_interrupt() const;
     int new_waiting() const;
     bool is_full() const;
-    Class* next_class();
     Slot slot_of(Class& its, const std::string& client);
     void give_back(const Release& slot);
     bool may_sweep(const std::string& client) const;

@@ -27,16 +27,21 @@ public:
             [=](const Entry& e) { return e.turn < turn || (e.turn == turn && e.cost <= cost); });
         entries_.insert(not_later.base(), {client, turn, cost, std::move(value)});
     }
-    /// The client's next entries come this many turns later, unless the queue gets empty before.
+    /// The client's next entries come this many turns later, unless the queue gets empty before, up
+    /// to most_debt in all.
     void charge(const std::string& client, long turns) {
         if (entries_.empty()) return;
-        last_turns_[client] = next_turn(client) - 1 + turns;
+        const long last = next_turn(client) - 1;
+        turns = std::min(turns, std::max(now_ + most_debt - last, 0L));
+        last_turns_[client] = last + turns;
         for (Entry& e : entries_)
             if (e.client == client) e.turn += turns;
         entries_.sort([](const Entry& a, const Entry& b) {
             return std::tie(a.turn, a.cost) < std::tie(b.turn, b.cost);
         });
     }
+    /// True if the client has been charged more than others that have had their turn.
+    bool has_debt(const std::string& client) const { return next_turn(client) > now_ + 1; }
     /// The same, before the client's first entry with is_later(value): these move on by one turn.
     template <class IsLater>
     void push_before(const std::string& client, T value, const IsLater& is_later) {
@@ -108,6 +113,7 @@ private:
         std::size_t cost = 0;
         T value;
     };
+    static constexpr long most_debt = 40'000;
     static bool any(const T&) { return true; }
 
     long next_turn(const std::string& client) const {

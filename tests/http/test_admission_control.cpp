@@ -680,6 +680,35 @@ TEST_CASE("a client whose work had time while others waited comes after them, in
     }
 }
 
+TEST_CASE(
+    "while work waits, grace periods count for their client, which then gets no further one") {
+    AdmissionControl admission({.running = 1});
+    Slot slot = admission.try_acquire(client);
+    CHECK(admission.is_grace(admission.try_acquire("short")));
+    CHECK(admission.is_grace(admission.try_acquire("short")));
+    std::thread waiting([&] { CHECK(admission.acquire("other")); });
+    wait_until([&] { return admission.load().waiting == 1; });
+    CHECK(admission.is_grace(admission.try_acquire("short")));
+    CHECK(!admission.try_acquire("short"));
+    CHECK(admission.is_grace(admission.try_acquire("third")));
+    slot.reset();
+    waiting.join();
+}
+
+TEST_CASE("a client that was charged much waits for a limited number of turns") {
+    FairQueue<std::string> queue;
+    queue.push("heavy", "heavy");
+    queue.charge("heavy", 1'000'000'000);
+    int turns = 0;
+    do {
+        queue.push("light", "light");
+        queue.charge("light", 1000);
+        ++turns;
+    } while (queue.pop() == "light");
+    CHECK(turns > 10);
+    CHECK(turns < 100);
+}
+
 TEST_CASE("without memory no work starts in a grace period") {
     AdmissionControl admission({.running = 1, .memory = 0});
     const Slot slot = admission.try_acquire(client);
