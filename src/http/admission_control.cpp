@@ -351,7 +351,7 @@ bool AdmissionControl::others_need(
     const auto others = static_cast<int>(group.waiting.clients(is_other));
     if (own == group.clients.end() || others == 0) return false;
     const std::size_t clients = group.clients.size() + group.waiting.clients(is_idle);
-    const bool is_more = own->second > std::max(group.at_once / clients, immediate_body);
+    const bool is_more = own->second > std::max(group.at_once / clients, 2 * immediate_body);
     return age > (is_more ? 1 : 2) * std::min(group.in_need, group.round / others) &&
            computed > group.in_need / 10;
 }
