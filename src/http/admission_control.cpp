@@ -74,24 +74,23 @@ void AdmissionControl::assign() {
     while (BySize* const group = next_by_size()) group->in_work += grant_next(group->waiting);
 }
 
-AdmissionControl::Slot AdmissionControl::slot_of(Class& its, const std::string& client) {
-    return {this, {.its = &its, .client = client}};
-}
-
-/// Counts the time in which other work waited for what had the slot.
-void AdmissionControl::give_back(const Release& slot) {
-    if (!slot.its) {
-        --graces_;
-        return;
-    }
-    ++free_;
-    using std::chrono::microseconds;
-    const Clock::duration time = Clock::now() - std::max(slot.since, contended_);
-    const auto used = std::chrono::duration_cast<microseconds>(std::max(time, Clock::duration(0)));
-    slot.its->used += slot.its->weight * (used - time_slice);
+/// Counts the time since the last count in which other work waited for what has the slot.
+void AdmissionControl::count(Release& slot) {
+    const Clock::time_point now = Clock::now(), from = std::max(slot.since, contended_);
+    slot.since = now;
+    if (now <= from) return;
+    const auto used = std::chrono::duration_cast<std::chrono::microseconds>(now - from);
+    slot.its->used += slot.its->weight * used;
     slot.its->waiting.charge(slot.client, used.count());
     if (slot.its != &background_)
         (slot.its == &urgent_ ? foreground_ : urgent_).waiting.charge(slot.client, used.count());
+}
+
+void AdmissionControl::give_back(Release& slot) {
+    if (!slot.its) return void(--graces_);
+    ++free_;
+    count(slot);
+    slot.its->used -= slot.its->weight * time_slice;
 }
 
 /// The group whose work has waited longest, among those whose next work may begin; null if there is
@@ -154,7 +153,7 @@ AdmissionControl::Slot AdmissionControl::try_acquire(const std::string& client) 
     if (free_ > 0) {
         --free_;
         foreground_.used += time_slice;
-        return slot_of(foreground_, client);
+        return {this, {.its = &foreground_, .client = client}};
     }
     Queue& queue = foreground_.waiting;
     // Many can allocate much before their grace periods end.
@@ -179,7 +178,7 @@ AdmissionControl::Slot AdmissionControl::acquire(
     Waiter waiter;
     foreground_.waiting.push(client, &waiter);
     if (!wait(lock, foreground_.waiting, waiter, gives_up)) return nullptr;
-    return slot_of(foreground_, client);
+    return {this, {.its = &foreground_, .client = client}};
 }
 
 AdmissionControl::Slot AdmissionControl::resume(
@@ -194,7 +193,7 @@ AdmissionControl::Slot AdmissionControl::resume(
     interrupted_ += had_slot;
     const bool granted = wait(lock, foreground_.waiting, waiter, gives_up);
     interrupted_ -= had_slot;
-    return granted ? slot_of(foreground_, client) : nullptr;
+    return Slot(granted ? this : nullptr, {.its = &foreground_, .client = client});
 }
 
 AdmissionControl::Slot AdmissionControl::acquire_urgently(
@@ -203,7 +202,7 @@ AdmissionControl::Slot AdmissionControl::acquire_urgently(
     Waiter waiter;
     urgent_.waiting.push(client, &waiter);
     if (!wait(lock, urgent_.waiting, waiter, gives_up)) return nullptr;
-    return slot_of(urgent_, client);
+    return {this, {.its = &urgent_, .client = client}};
 }
 
 bool AdmissionControl::must_yield(const Slot& background) const {
@@ -212,9 +211,11 @@ bool AdmissionControl::must_yield(const Slot& background) const {
            (background_waits_ && Clock::now() - slot.since > time_slice);
 }
 
-bool AdmissionControl::others_are_due(const std::string& client) const {
+bool AdmissionControl::others_are_due(Slot& foreground) {
     if (!foreground_waits_ && !background_waits_) return false;
     const std::lock_guard lock(mutex_);
+    count(foreground.get_deleter());
+    const std::string& client = foreground.get_deleter().client;
     const auto is_other = [&client](const std::string& other) { return other != client; };
     const bool background_is_due = background_waits_ && background_.used <= foreground_.used;
     return !urgent_.waiting.empty() ||
@@ -250,13 +251,13 @@ AdmissionControl::Slot AdmissionControl::acquire_background(
     // The thread that requests the stop must not hold the mutex, and cannot.
     waiter.changed.wait(lock, stop, [this, &waiter] { return waiter.granted || sweeps_stopped_; });
     if (!end_wait(background_.waiting, waiter)) return nullptr;
-    Slot slot = slot_of(background_, client);
+    Slot slot(this, {.its = &background_, .client = client});
     if (foreground_waits_) slot.get_deleter().keeps_until = Clock::now() + time_slice;
     lock.unlock();
     return sweeps_stopped_ ? nullptr : std::move(slot);
 }
 
-void AdmissionControl::release(const Release& slot) {
+void AdmissionControl::release(Release& slot) {
     const std::lock_guard lock(mutex_);
     give_back(slot);
     assign();
@@ -388,7 +389,7 @@ bool Permit::renew() {
     const Clock::time_point now = Clock::now();
     if (now - since_ < (is_grace ? grace_time : time_slice)) return true;
     since_ = now;
-    if (!is_grace && !admission_.others_are_due(client_)) return true;
+    if (!is_grace && !admission_.others_are_due(slot_)) return true;
     if (is_urgent_) slot_.reset();
     slot_ = is_urgent_ ? admission_.acquire_urgently(client_, gives_up_)
                        : admission_.resume(client_, gives_up_, std::move(slot_));

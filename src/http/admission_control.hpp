@@ -53,9 +53,9 @@ private:
         std::string client = {};
         Clock::time_point keeps_until = {};  // of background work that foreground work waits for
         Clock::time_point since = Clock::now();
-        void operator()(AdmissionControl* admission) const { admission->release(*this); }
+        void operator()(AdmissionControl* admission) { admission->release(*this); }
     };
-    void release(const Release& slot);
+    void release(Release& slot);
 
 public:
     explicit AdmissionControl(const AdmissionLimits& limits);
@@ -82,7 +82,7 @@ public:
     /// client's there, too.
     Slot acquire_urgently(const std::string& client, const std::function<bool()>& gives_up);
     /// True if foreground work with a slot should resume(): other clients' work is due.
-    bool others_are_due(const std::string& client) const;
+    bool others_are_due(Slot& foreground);
     /// True if other clients' work waits and is not due, since the process uses all of its memory:
     /// foreground work should end.
     bool others_are_stuck(const std::string& client) const;
@@ -160,8 +160,8 @@ private:
     bool may_interrupt() const;
     int new_waiting() const;
     bool is_full() const;
-    Slot slot_of(Class& its, const std::string& client);
-    void give_back(const Release& slot);
+    void count(Release& slot);
+    void give_back(Release& slot);
     bool may_sweep(const std::string& client) const;
     void assign();
     bool end_wait(Queue& queue, Waiter& waiter);

@@ -5,6 +5,7 @@
 #include <array>
 #include <atomic>
 #include <mutex>
+#include <optional>
 #include <string>
 #include <thread>
 #include <vector>
@@ -293,7 +294,9 @@ TEST_CASE("a long run gives its slot to another client's request, not to its own
     Permit run(admission, client, {}, false);
     std::thread own([&] { CHECK(admission.acquire(client)); });
     wait_until([&] { return admission.load().waiting == 1; });
-    CHECK(!admission.others_are_due(client));
+    const auto began = Permit::Clock::now();
+    wait_until([&] { return !run.renew() || Permit::Clock::now() > began + 3 * time_slice; });
+    CHECK(admission.load().waiting == 1);
     std::atomic<bool> served = false;
     std::thread other([&] { served = admission.acquire("other") != nullptr; });
     while (!served) REQUIRE(run.renew());
@@ -315,7 +318,7 @@ TEST_CASE("interrupted work continues in its order, before other work of its cli
     };
     threads.emplace_back([&] { note(admission.acquire("long"), '3'); });
     wait_until([&] { return admission.load().waiting == 1; });
-    CHECK(!admission.others_are_due("long"));
+    CHECK(!admission.others_are_due(first));
     std::atomic<int> entered = 0, may_leave = 0;
     const auto interrupt = [&](Slot& run, char mark) {
         const int before = entered;
@@ -324,7 +327,7 @@ TEST_CASE("interrupted work continues in its order, before other work of its cli
             ++entered;
             wait_until([&] { return may_leave > before; });
         });
-        wait_until([&] { return admission.others_are_due("long"); });
+        wait_until([&] { return admission.others_are_due(run); });
         threads.emplace_back(
             [&, mark] { note(admission.resume("long", {}, std::move(run)), mark); });
         wait_until([&] { return entered > before; });
@@ -350,7 +353,7 @@ TEST_CASE("background work has its turn although foreground work waits, for a ti
     wait_until([&] { return admission.background_waits(); });
     std::thread second([&] { second_entered = admission.acquire(client) != nullptr; });
     wait_until([&] { return admission.load().waiting > 0; });
-    wait_until([&] { return admission.others_are_due(client); });
+    wait_until([&] { return admission.others_are_due(first); });
     const auto released = Permit::Clock::now();
     first.reset();
     waiting.join();
@@ -652,6 +655,22 @@ TEST_CASE("classes of work share the time, whatever the length of their pieces")
         ended = true;
         for (std::thread& thread : threads) thread.join();
     }
+}
+
+TEST_CASE("background work has its part beside one run that nothing else interrupts") {
+    AdmissionControl admission({.running = 1});
+    std::optional<Permit> run(std::in_place, admission, client, nullptr, false);
+    std::atomic<int> turns = 0;
+    std::thread sweep([&] {
+        for (; turns < 5; ++turns) {
+            const Slot slot = admission.acquire_background("sweep");
+            const auto until = Permit::Clock::now() + time_slice;
+            wait_until([&] { return Permit::Clock::now() > until; });
+        }
+    });
+    wait_until([&] { return !run->renew() || turns == 5; });
+    run.reset();
+    sweep.join();
 }
 
 TEST_CASE("a client whose work had time while others waited comes after them, in each class") {
