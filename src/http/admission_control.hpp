@@ -1,7 +1,7 @@
 // Admission control: limits how many computations run at once.
 //
 // The server has more worker threads than cores, so a computation needs one of a fixed number of
-// slots (--compute-threads). Two classes of work compete for them:
+// slots (--compute-threads). Work in the foreground and in the background competes for them:
 // - foreground: one request. It queues up to a limit and is refused beyond it.
 // - background: the points of a sweep, the lists of a streamed answer. It waits without limit, has
 //   a ninth or more of the time while others wait, and else leaves its slot to the foreground.
@@ -81,7 +81,7 @@ public:
     /// the foreground's time, and all that no other foreground work waits for. It counts as its
     /// client's there, too.
     Slot acquire_urgently(const std::string& client, const std::function<bool()>& gives_up);
-    /// True if foreground work with a slot should resume(): other clients' work is due.
+    /// Counts the time of foreground work; true if it should resume(): other clients' work is due.
     bool others_are_due(Slot& foreground);
     /// True if other clients' work waits and is not due, since the process uses all of its memory:
     /// foreground work should end.

@@ -147,7 +147,7 @@ public:
             now - began_ - permit_.waited());
     }
 
-    /// Ends a request that has no permit: its client has left, or work whose turn is earlier came.
+    /// Ends a request that has no permit: its client has left, or a full queue had no place.
     [[noreturn]] void throw_without_permit() const {
         throw_without("computing", "the queue for computing is full");
     }

@@ -40,7 +40,7 @@ public:
             return std::tie(a.turn, a.cost) < std::tie(b.turn, b.cost);
         });
     }
-    /// True if the client has been charged more than others that have had their turn.
+    /// True if the client's next entry comes later than that of a client without any.
     bool has_debt(const std::string& client) const { return next_turn(client) > now_ + 1; }
     /// The same, before the client's first entry with is_later(value): these move on by one turn.
     template <class IsLater>
@@ -53,8 +53,8 @@ public:
     }
     const std::string& last_client() const { return entries_.back().client; }
     T pop_last() { return take(std::prev(entries_.end())); }
-    /// Of the entries that may(value), the last one of the client with the most, if this client,
-    /// with one more, has fewer.
+    /// The last entry for which may(value) is true of the client that has the most of these;
+    /// nothing if this client, with one more, would not have fewer.
     template <class May = bool (*)(const T&)>
     std::optional<T> pop_for(const std::string& client, const May& may = any) {
         std::map<std::string, std::size_t> counts;

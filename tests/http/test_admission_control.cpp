@@ -425,7 +425,8 @@ TEST_CASE("a permit without a grace period waits for a slot") {
     CHECK(admission.load().running == 1);
 }
 
-TEST_CASE("a client whose turn is earlier displaces the last request of a full queue") {
+TEST_CASE(
+    "a client that has less in a full queue displaces the last request of the one with the most") {
     AdmissionControl admission({.running = 1, .waiting = 3});
     Slot slot = admission.acquire("greedy");
     std::atomic<int> refused = 0, served = 0;
