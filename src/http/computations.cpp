@@ -59,6 +59,10 @@ constexpr std::size_t max_hash = 256;
 // fraction is left to finish the answer.
 constexpr std::chrono::duration<double> age_in_need(5);
 
+// Time for which a client that holds little waits for memory: those that hold it while it is scarce
+// must read their answers in 30 s.
+constexpr std::chrono::seconds longest_wait_for_memory(35);
+
 /// Ends the request of a client that has left; only the log shows its status.
 [[noreturn]] void throw_client_left() { throw Problem(499, "the client has left"); }
 
@@ -138,6 +142,18 @@ public:
         });
         if (!has_slot) throw_without_permit();
         listed_ = Clock::now();
+    }
+    /// Gives the slot back and, if the client has a claim, waits for memory for the response: a
+    /// text of lists, whose permit counts its bytes until then, or a stream. If it gives up, the
+    /// response is refused.
+    void wait_for_memory(const Response& response) {
+        if (!lists_permit_ && !response.stream) return;
+        permit_.wait_without_slot([&, end = Clock::now() + longest_wait_for_memory] {
+            while (Clock::now() < end && !request_.left() && request_.has_claim_for(response) &&
+                   !request_.others_need_threads(false) && !service_.admission.all_stopped())
+                std::this_thread::sleep_for(client_check_interval / 4);
+            return false;
+        });
     }
     /// Whether the lists are to be freed for others.
     bool others_need_lists() const {
@@ -381,7 +397,11 @@ Response answer(Request& r, const Service& service, Stopwatch& watch) {
     computing.lap("solve");
     if (!renewed) computing.throw_without_permit();
     service.metrics.count_runs(0, static_cast<std::size_t>(answer.impacts));
-    if (answer.run) return stream_answer(std::move(answer), r, service.admission);
+    if (answer.run) {
+        Response response = stream_answer(std::move(answer), r, service.admission);
+        computing.wait_for_memory(response);
+        return response;
+    }
     computing.wait_for_lists(3 * api::packed_bytes(answer.json));  // about the bytes of its text
     const auto ends = [&] { return r.left() || !computing.renew(); };
     std::string bytes = encoded(
@@ -397,6 +417,7 @@ Response answer(Request& r, const Service& service, Stopwatch& watch) {
     // Lists that others need are sent as they are.
     if (!compress(response, r, gives_up) && ends()) computing.throw_without_permit();
     computing.lap("encode");
+    computing.wait_for_memory(response);
     return response;
 }
 

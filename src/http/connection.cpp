@@ -47,7 +47,7 @@ Connection::Connection(int socket, std::string peer, RequestHandler& handler, Me
 
 Connection::~Connection() {
     if (delivery_) delivery_->outbox.cancel();
-    memory_.count(held_, held_.client, 0);
+    memory_.count(held_, held_.client, {});
 }
 
 Connection::Progress Connection::advance() try {
@@ -62,7 +62,7 @@ Connection::Progress Connection::advance() try {
         half_closed_ = *size == 0;
         if (bytes_.empty() && !half_closed_ && !request_) wait_for_head(head_time);
         bytes_.append(piece.data(), *size);
-        hold(0);
+        hold_received();
         if (request_ && bytes_.size() >= expected_) expect_more();
         taken += *size;
     }
@@ -147,13 +147,13 @@ void Connection::deliver(std::size_t max_bytes) {
     aborted_ = state == Outbox::State::broken;
     if (!delivery->keep_alive || aborted_) return begin_closing();
     wait_for_head(bytes_.empty() ? Clock::duration(idle_time) : head_time);
-    hold(0);
+    hold_received();
 }
 
 void Connection::begin_closing() {
     closing_ = true;
     bytes_ = {};
-    hold(0);
+    hold_received();
     if (aborted_) {
         const linger reset{1, 0};
         ::setsockopt(socket(), SOL_SOCKET, SO_LINGER, &reset, sizeof reset);

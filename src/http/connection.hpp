@@ -104,14 +104,15 @@ public:
     /// The client of the complete request, see Sender.
     std::string client() const { return request_->sender.client(); }
 
-    /// Sets the bytes of answers held for the client; received bytes are added.
-    void hold(std::size_t bytes) {
-        const std::string client = request_ ? this->client() : held_.client;
-        memory_.count(held_, client.empty() ? owner_ : client, bytes + bytes_.capacity());
+    /// Sets the bytes of an answer held for the client, and of these for long; received bytes are
+    /// added.
+    void hold(const std::string& client, std::size_t bytes, std::size_t for_long) {
+        memory_.count(held_, client, {bytes + bytes_.capacity(), for_long});
     }
 
 private:
     Progress read_request();
+    void hold_received() { hold(request_ ? client() : owner_, 0, 0); }
     std::size_t body_size() const { return request_->head.content_length; }
     void wait_for_head(Clock::duration time);
     void begin_request();

@@ -14,6 +14,7 @@
 #include <map>
 #include <mutex>
 #include <string>
+#include <tuple>
 #include <utility>
 
 #ifdef __GLIBC__
@@ -32,16 +33,33 @@ public:
     bool is_full() const { return held_ >= limit_; }
     /// True if `more` bytes should not be accepted of a client: also if it would then hold more
     /// than is left. One client so has half of the budget, a second one a quarter, and so on; but
-    /// more than a quarter alone, as long as it is not full. for_long: held while it is computed;
-    /// if that is large, half of the budget must stay free.
-    bool is_full_for(const std::string& client, std::size_t more, bool for_long = false) const {
+    /// more than a quarter alone, as long as it is not full. for_long: bytes of these that are held
+    /// while more is computed, which have half of the budget, divided likewise. One that is refused
+    /// although it holds little has a claim for 2 s: whoever would hold more is refused first.
+    bool is_full_for(const std::string& client, std::size_t more, std::size_t for_long = 0) const {
         const std::lock_guard lock(mutex_);
-        const auto own = clients_.find(client);
-        const std::size_t held = own == clients_.end() ? 0 : own->second;
-        const bool full = is_full() || held + std::min(more, limit_ / 4) >= limit_ - held_ ||
-                          (for_long && more > limit_ / 16 && held_ + more > limit_ / 2);
-        if (full) last_full_ = Clock::now();
+        const auto found = clients_.find(client);
+        const Bytes own = found == clients_.end() ? Bytes() : found->second;
+        const Clock::time_point now = Clock::now();
+        std::erase_if(claims_, [now](const auto& claim) { return claim.second.until < now; });
+        Claim claim{own.all + more, now, now + std::chrono::seconds(2)};
+        if (const auto before = claims_.find(client); before != claims_.end())
+            claim.since = before->second.since;
+        std::size_t left = limit_ - std::min(limit_, held_.load());
+        for (const auto& [other, its] : claims_)
+            if (other != client &&
+                std::tie(its.bytes, its.since) < std::tie(claim.bytes, claim.since))
+                left -= std::min(left, its.bytes);
+        const bool full = own.all + std::min(more, limit_ / 4) >= left ||
+                          (for_long > 0 && own.for_long + for_long + held_for_long_ > limit_ / 2);
+        if (full) last_full_ = now;
+        if (full && own.all <= limit_ / 1024) claims_[client] = claim;
+        else claims_.erase(client);
         return full;
+    }
+    bool has_claim(const std::string& client) const {
+        const std::lock_guard lock(mutex_);
+        return claims_.contains(client);
     }
     /// Time at which it was last full, also for one client alone.
     Clock::time_point last_full() const {
@@ -55,20 +73,25 @@ public:
         return std::exchange(most_, held_);
     }
 
+    struct Bytes {
+        std::size_t all = 0, for_long = 0;
+    };
     struct Counted {
         std::string client;
-        std::size_t bytes = 0;
+        Bytes bytes;
     };
     /// Counts these bytes of a client instead of what was counted.
-    void count(Counted& counted, const std::string& client, std::size_t bytes) {
+    void count(Counted& counted, const std::string& client, Bytes bytes) {
         const std::lock_guard lock(mutex_);
-        held_ += bytes - counted.bytes;
+        held_ += bytes.all - counted.bytes.all;
+        held_for_long_ += bytes.for_long - counted.bytes.for_long;
         most_ = std::max(most_, held_.load());
-        if (counted.bytes > 0) {
-            const auto before = clients_.find(counted.client);
-            if ((before->second -= counted.bytes) == 0) clients_.erase(before);
-        }
-        if (bytes > 0) clients_[client] += bytes;
+        Bytes& before = clients_[counted.client];
+        before.all -= counted.bytes.all, before.for_long -= counted.bytes.for_long;
+        if (before.all == 0) clients_.erase(counted.client);
+        Bytes& now = clients_[client];
+        now.all += bytes.all, now.for_long += bytes.for_long;
+        if (now.all == 0) clients_.erase(client);
         counted = {client, bytes};
     }
 
@@ -76,9 +99,14 @@ private:
     const std::size_t limit_;
     std::atomic<std::size_t> held_ = 0;
     mutable std::mutex mutex_;
-    std::size_t most_ = 0;
+    std::size_t most_ = 0, held_for_long_ = 0;
     mutable Clock::time_point last_full_ = {};
-    std::map<std::string, std::size_t> clients_;  // bytes of each
+    std::map<std::string, Bytes> clients_;
+    struct Claim {
+        std::size_t bytes;
+        Clock::time_point since, until;
+    };
+    mutable std::map<std::string, Claim> claims_;
 };
 
 /// Limits the memory that malloc keeps. Blocks of 1 MiB and more are mapped one by one: glibc's own

@@ -97,6 +97,9 @@ struct Request {
     /// Returns true while another client's request waits for a thread, of which this one has more;
     /// with true, also if this is its client's only one.
     std::function<bool(bool)> others_need_threads = [](bool) { return false; };
+    /// Returns true while memory lacks for this response, and its client holds so little that what
+    /// others free is kept for it (MemoryBudget).
+    std::function<bool(const Response&)> has_claim_for = [](const Response&) { return false; };
     const Route* route = nullptr;                      ///< can be null if refused
     std::optional<Response> refused = {};              ///< its connection is then read no further
     std::chrono::steady_clock::time_point since = {};  ///< time at which the request was complete

@@ -63,10 +63,14 @@ void Outbox::add(std::string bytes) {
     }
     if (bytes.empty()) return;
     unsent_ += bytes.size();
-    while_scarce_.rate = std::max(while_scarce_.rate, static_cast<double>(unsent_) / 60);  // 60 s
+    expect(unsent_);
     if (!parts_.empty() && parts_.back().size() + bytes.size() <= usual_part)
         parts_.back() += bytes;
     else parts_.push_back(std::move(bytes));
+}
+
+void Outbox::expect(std::size_t held) {
+    while_scarce_.rate = std::max(while_scarce_.rate, static_cast<double>(held) / 30);  // 30 s
 }
 
 void Outbox::end(bool whole) {

@@ -89,6 +89,10 @@ Task Server::answer(Connection& connection, Request received) {
     Request& request = delivery->request;
     request.id = request_id(request.head);
     request.left = [&outbox = delivery->outbox] { return outbox.client_has_left(); };
+    request.has_claim_for = [this, &request](const Response& its) {
+        return lacks_memory(request, its) &&
+               event_loop_.memory().has_claim(request.sender.client());
+    };
     request.others_need_threads = [this, &request](bool even_last) {
         return event_loop_.others_need_threads(request.sender.client(), even_last);
     };
@@ -110,7 +114,8 @@ Task Server::answer(Connection& connection, Request received) {
     outcome.timing = response.timing;
     if (response.problem) outcome.lacking = response.problem->lacking;
     if (outcome.lacking == "sweeps" && !response.own_limit) event_loop_.note_scarcity_of_streams();
-    connection.hold(response.body.size() + response.held);
+    connection.hold(request.sender.client(), response.body.size() + response.held, response.held);
+    delivery->outbox.expect(response.held);
     delivery->is_streaming = static_cast<bool>(response.stream);
     // Without chunks only the end of the connection marks the end of a stream.
     delivery->keep_alive = request.head.keep_alive && !request.refused && !closing_ &&
@@ -141,12 +146,15 @@ Response Server::answer_to(Request& request) const {
     return response;
 }
 
+bool Server::lacks_memory(const Request& request, const Response& response) const {
+    const std::size_t size =
+        std::max(response.body.size(), response.uncompressed_size) + response.held;
+    return size > small_answer &&
+           event_loop_.memory().is_full_for(request.sender.client(), size, response.held);
+}
+
 Response Server::completed(const Request& request, Response response) const {
-    const std::size_t size = std::max(response.body.size(), response.uncompressed_size);
-    if (size + response.held > small_answer &&
-        event_loop_.memory().is_full_for(
-            request.sender.client(), size + response.held, response.silent))
-        response = memory_refusal();
+    if (lacks_memory(request, response)) response = memory_refusal();
     std::ranges::move(
         cors_headers(request.head, options_.access), std::back_inserter(response.headers));
     complete(request, response);

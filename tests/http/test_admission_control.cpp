@@ -554,13 +554,44 @@ TEST_CASE("without memory one large body is in work at a time, and records besid
     CHECK(admission.acquire_body("third", 3 << 20, true, gives_up));
 }
 
-TEST_CASE("what is held while it is computed leaves half of the memory to answers") {
+TEST_CASE("what is held while more is computed leaves half of the memory to answers") {
+    MemoryBudget budget(128);
+    std::list<MemoryBudget::Counted> lists;
+    const auto lists_of = [&](const std::string& owner) {
+        int count = 0;
+        for (; !budget.is_full_for(owner, 8, 8); ++count)
+            budget.count(lists.emplace_back(), owner, {8, 8});
+        return count;
+    };
+    CHECK(lists_of("first") == 4);
+    CHECK(lists_of("second") == 2);
+    CHECK(lists_of("third") == 1);
+    CHECK(lists_of("fourth") == 1);
+    CHECK(lists_of(client) == 0);
+    CHECK(!budget.is_full_for(client, 60));
+    for (auto& list : lists) budget.count(list, list.client, {});
+    CHECK(budget.bytes() == 0);
+    CHECK(!budget.is_full_for(client, 64, 64));
+    CHECK(budget.is_full_for(client, 65, 65));
+}
+
+TEST_CASE("memory that a client with little waits for is not given to who would hold more") {
     MemoryBudget budget(100);
-    MemoryBudget::Counted other;
-    budget.count(other, "other", 10);
-    CHECK(!budget.is_full_for(client, 41));
-    CHECK(!budget.is_full_for(client, 40, true));
-    CHECK(budget.is_full_for(client, 41, true));
+    MemoryBudget::Counted first, second, small;
+    budget.count(first, "first", {40});
+    budget.count(second, "second", {40});
+    CHECK(budget.is_full_for("first", 12));  // it holds more than is left
+    CHECK(!budget.has_claim("first"));
+    CHECK(budget.is_full_for(client, 24));
+    CHECK(budget.has_claim(client));
+    budget.count(second, "second", {12});
+    CHECK(!budget.is_full_for("third", 20));
+    CHECK(budget.is_full_for("third", 30));
+    CHECK(budget.is_full_for("second", 18));
+    CHECK(!budget.is_full_for("second", 10));
+    CHECK(!budget.is_full_for(client, 24));
+    CHECK(!budget.has_claim(client));
+    CHECK(!budget.is_full_for("second", 15));
 }
 
 TEST_CASE("records share what one of the largest takes; of those that wait the smallest is next") {
