@@ -6,7 +6,7 @@
 #include <algorithm>
 #include <cctype>
 #include <charconv>
-#include <chrono>
+#include <ctime>
 #include <set>
 
 #include "api/parse.hpp"
@@ -80,37 +80,28 @@ std::vector<Cell> cells_of(std::string_view line, char separator) {
     return cells;
 }
 
-/// Seconds of a time stamp hh:mm:ss, with a fraction or none, after a date yyyy-mm-dd (ISO 8601,
-/// counted from 2020) or none; nullopt for other text.
-std::optional<double> seconds_of_stamp(std::string_view text) {
-    int parts[6] = {2020, 1, 1, 0, 0, 0};
-    const auto read = [&](int part, std::size_t digits) {
-        const auto [end, error] =
-            std::from_chars(text.data(), text.data() + std::min(digits, text.size()), parts[part]);
-        if (error != std::errc() || end != text.data() + digits) return false;
-        text.remove_prefix(digits);
-        return true;
-    };
-    const auto skip = [&](std::string_view signs) {
-        if (text.empty() || signs.find(text[0]) == signs.npos) return false;
-        text.remove_prefix(1);
-        return true;
-    };
-    const bool dated = text.size() > 10 && text[4] == '-';
-    if (dated && !(read(0, 4) && skip("-") && read(1, 2) && skip("-") && read(2, 2) && skip("T ")))
-        return std::nullopt;
-    if (text.ends_with('Z')) text.remove_suffix(1);
-    if (!(read(3, 2) && skip(":") && read(4, 2) && skip(":") && read(5, 2))) return std::nullopt;
+// 2020-01-01 in Unix time, s: as an origin it leaves a double more digits of the fraction.
+constexpr std::time_t stamp_origin = 1577836800;
+
+/// Seconds of a time stamp hh:mm:ss, with a fraction or none, after a date yyyy-mm-dd (ISO 8601) or
+/// none; nullopt for other text.
+std::optional<double> seconds_of_stamp(std::string text) {
+    std::tm time{};
+    time.tm_year = 120, time.tm_mday = 1;
+    const bool is_dated =
+        text.size() > 10 && text[4] == '-' && (text[10] == ' ' || text[10] == 'T');
+    if (is_dated) text[10] = 'T';
+    if (text.ends_with('Z')) text.pop_back();
+    const char* const end = text.data() + text.size();
+    const char* const rest =
+        ::strptime(text.c_str(), is_dated ? "%Y-%m-%dT%H:%M:%S" : "%H:%M:%S", &time);
     double fraction = 0;
-    if (!text.empty()) {
-        const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), fraction);
-        if (text[0] != '.' || error != std::errc() || end != text.data() + text.size())
-            return std::nullopt;
+    if (!rest) return std::nullopt;
+    if (rest != end) {
+        const auto [read, error] = std::from_chars(rest, end, fraction);
+        if (*rest != '.' || error != std::errc() || read != end) return std::nullopt;
     }
-    using namespace std::chrono;
-    const sys_days day = year(parts[0]) / parts[1] / parts[2], origin = year(2020) / 1 / 1;
-    return fraction + 86400.0 * static_cast<double>((day - origin).count()) + 3600.0 * parts[3] +
-           60.0 * parts[4] + parts[5];
+    return fraction + static_cast<double>(::timegm(&time) - stamp_origin);
 }
 
 /// nullopt if the cell is neither a number nor a time stamp.
@@ -122,7 +113,7 @@ std::optional<double> number_of(const Cell& cell, char separator) {
         std::replace(copy.begin(), copy.end(), ',', '.');
         text = copy;
     }
-    if (text.find(':') != text.npos) return seconds_of_stamp(text);
+    if (text.find(':') != text.npos) return seconds_of_stamp(std::string(text));
     // Fortran's exponent
     if (const std::size_t at = text.find_first_of("dD"); at != text.npos && at > 0) {
         copy = text;
@@ -269,12 +260,6 @@ void complete_cells(
     else if (cells.size() != columns) fault_of_length(line, cells.size(), columns);
 }
 
-/// Room for lines like the first: columns of a large record are not copied as they grow.
-void reserve(Csv& csv, std::size_t rows) {
-    for (CsvColumn& column : csv.columns) column.values.reserve(rows);
-    csv.lines.reserve(rows);
-}
-
 [[noreturn]] void refuse_empty(const Heading& heading) {
     throw Problem(
         422, heading.has_something()
@@ -308,7 +293,10 @@ Csv parse_csv(std::string_view bytes, const ReadLimits& limits) {
                 continue;
             }
             csv.columns = heading.columns(line, cells_of(line.text, *separator).size(), *separator);
-            reserve(csv, rest.size() / (line.text.size() + 1) + 2);
+            // For lines like this one: columns of a large record are not copied as they grow.
+            const std::size_t rows = rest.size() / (line.text.size() + 1) + 2;
+            for (CsvColumn& column : csv.columns) column.values.reserve(rows);
+            csv.lines.reserve(rows);
         } else if (comment_of(line.text)) {
             continue;
         }

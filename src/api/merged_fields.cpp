@@ -24,8 +24,8 @@ const std::vector<std::string> si_names = [] {
 
 std::vector<std::string> present(const Json& object, const std::vector<std::string>& names) {
     std::vector<std::string> found;
-    for (const std::string& name : names)
-        if (object.contains(name)) found.push_back(name);
+    std::ranges::copy_if(
+        names, std::back_inserter(found), [&](const auto& name) { return object.contains(name); });
     return found;
 }
 
@@ -164,9 +164,8 @@ Json drop_inapplicable_fields(Json& preset, const FieldTable& table, const Json&
     auto replaced = [&](const std::string& name) {
         return given.contains(name) && (!preset.contains(name) || preset[name] != given[name]);
     };
-    const bool another_system =
-        std::any_of(oscillator_fields.begin(), oscillator_fields.end(), replaced);
-    const bool another_run = std::any_of(table.begin(), table.end(), [&](const Field& f) {
+    const bool another_system = std::ranges::any_of(oscillator_fields, replaced);
+    const bool another_run = std::ranges::any_of(table, [&](const Field& f) {
         const bool of_the_motion = is_of_system(f) || f.group == "laws" || f.group == "load" ||
                                    f.group == "start" || f.name == "tau_end" || f.name == "cycles";
         return of_the_motion && f.name != "preset" && replaced(f.name);

@@ -80,8 +80,9 @@ std::size_t expected_bytes(const SimulateRequest& r) {
     const AnswerSize size = size_of(r);
     const double samples = w.samples_per_cycle * (w.tau_end / w.parameters.cycle() + 1);
     double bytes = size.point * std::min(samples, static_cast<double>(w.most_points));
-    if (w.parts.impacts)
-        bytes += size.impact * static_cast<double>(std::min(impacts_expected(w), w.most_listed));
+    const auto impacts = std::min(impacts_expected(w), w.most_listed);
+    if (w.parts.impacts && impacts <= w.most_kept)
+        bytes += size.impact * static_cast<double>(impacts);
     return static_cast<std::size_t>(bytes);
 }
 

@@ -81,11 +81,9 @@ Stoppable::Stoppable(std::function<void()> final_message) {
 }
 
 Stoppable::~Stoppable() {
-    {
-        const std::lock_guard lock(work().mutex);
-        work().stoppable = false;
-        work().final_message = nullptr;
-    }
+    const std::lock_guard lock(work().mutex);
+    work().stoppable = false;
+    work().final_message = nullptr;
     work().finished.notify_all();
 }
 
@@ -99,15 +97,15 @@ Command ended_by_signals(Command command) {
 
 Command with_exit_codes(CLI::App* app, std::function<int()> run, const std::string& examples) {
     add_examples(*app, examples, exit_codes);
-    return ended_by_signals({app, [run = std::move(run)]() -> int {
-                                 try {
-                                     return run();
-                                 } catch (const api::Problem& problem) {
-                                     std::fputs(
-                                         (printable(problem.body(), "\n") + "\n").c_str(), stderr);
-                                     return refused;
-                                 }
-                             }});
+    const auto reporting = [run = std::move(run)]() -> int {
+        try {
+            return run();
+        } catch (const api::Problem& problem) {
+            std::fputs((printable(problem.body(), "\n") + "\n").c_str(), stderr);
+            return refused;
+        }
+    };
+    return ended_by_signals({app, reporting});
 }
 
 }  // namespace vines::cli

@@ -106,15 +106,6 @@ void add(SweepFile& all, const std::string& path, const std::string& first_path)
     for (const auto& [index, line] : part.points) add_point(all, line, index, path, true);
 }
 
-std::size_t first_missing(const SweepFile& file) {
-    std::size_t first = 0;
-    for (const auto& [index, line] : file.points) {
-        if (index != first) break;
-        ++first;
-    }
-    return first;
-}
-
 int merge(const MergeOptions& o) {
     SweepFile all;
     for (const std::string& path : o.inputs) add(all, path, o.inputs[0]);
@@ -125,10 +116,12 @@ int merge(const MergeOptions& o) {
             "lines of points into one file and complete it with vines basins --resume");
     const std::size_t points = request.plan.grid.lines();
     if (all.points.size() < points) {
+        std::size_t first = 0;
+        while (all.points.contains(first)) ++first;
         print_message(fmt::format(
             "{} of {} points are missing, the first is {}: a shard is not complete or was not "
             "given",
-            points - all.points.size(), points, first_missing(all)));
+            points - all.points.size(), points, first));
         return incomplete;
     }
     write_all(o.output, all.text(request));

@@ -320,13 +320,11 @@ Command add_completion(CLI::App& app) {
         "source <(vines completion bash)    # or zsh; for the current shell only\n"
         "vines completion fish | source",
         "The Debian package installs completion for all three shells.");
-    return ended_by_signals({command, [shell] {
-                                 print(
-                                     *shell == "bash"  ? bash_function
-                                     : *shell == "zsh" ? zsh_function
-                                                       : fish_function);
-                                 return 0;
-                             }});
+    const auto run = [shell] {
+        print(*shell == "bash" ? bash_function : *shell == "zsh" ? zsh_function : fish_function);
+        return 0;
+    };
+    return ended_by_signals({command, run});
 }
 
 Command add_manual(CLI::App& app) {

@@ -3,7 +3,6 @@
 // and strings. Of a sweep it recomputes each point that the file has.
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <memory>
 #include <optional>
 #include <string>
@@ -39,33 +38,16 @@ std::string in_line(const Json& value) {
     return api::shortened(value.dump());
 }
 
-/// First difference of two answers, as "impacts.tau[3]: 1.0 became 2.0"; empty if they are equal.
-std::string difference(const Json& stored, const Json& computed, const std::string& path) {
-    const auto below = [&path](const std::string& name) {
-        return path.empty() ? name : path + "." + name;
-    };
-    if (stored.is_object() && computed.is_object()) {
-        for (const auto& [name, value] : stored.items()) {
-            if (!computed.contains(name)) return below(name) + " is missing";
-            if (std::string found = difference(value, computed[name], below(name)); !found.empty())
-                return found;
-        }
-        for (const auto& [name, value] : computed.items())
-            if (!stored.contains(name)) return below(name) + " is new";
-        return {};
-    }
-    if (stored.is_array() && computed.is_array()) {
-        for (std::size_t k = 0; k < std::min(stored.size(), computed.size()); ++k)
-            if (std::string found =
-                    difference(stored[k], computed[k], fmt::format("{}[{}]", path, k));
-                !found.empty())
-                return found;
-        if (stored.size() == computed.size()) return {};
-        return fmt::format("{} has {} entries instead of {}", path, computed.size(), stored.size());
-    }
-    return stored == computed
-               ? std::string()
-               : fmt::format("{}: {} became {}", path, in_line(stored), in_line(computed));
+/// First difference of two answers, as "/impacts/tau/3: 1.0 became 2.0"; empty if they are equal.
+std::string difference(const Json& stored, const Json& computed) {
+    const Json changes = Json::diff(stored, computed);
+    if (changes.empty()) return {};
+    const Json& first = changes[0];
+    const std::string path = first["path"];
+    if (first["op"] == "remove") return path + " is missing";
+    if (first["op"] == "add") return path + " is new";
+    return fmt::format(
+        "{}: {} became {}", path, in_line(part(stored, path)), in_line(first["value"]));
 }
 
 /// A recomputed answer.
@@ -156,13 +138,13 @@ int verify_answer(const api::Unsealed& stored, const VerifyOptions& o) {
     }
     std::string in_answer;
     if (stored.sha256 != computed->sha256)
-        in_answer = difference(stored.answer, api::unsealed(computed->text)->answer, "");
+        in_answer = difference(stored.answer, api::unsealed(computed->text)->answer);
     print_line("recomputed: " + (in_answer.empty() ? "the same values" : in_answer));
     // The hash does not cover the provenance. The commit differs between builds.
     Json provenance = api::describe(computed->provenance, stored.provenance["sha256"]);
     if (!word_of(part(stored.provenance, "/commit")).empty())
         provenance["commit"] = stored.provenance["commit"];
-    const std::string in_provenance = difference(stored.provenance, provenance, "");
+    const std::string in_provenance = difference(stored.provenance, provenance);
     if (!in_provenance.empty()) print_line("provenance: " + in_provenance);
     const bool is_same = in_answer.empty() && in_provenance.empty() && stored.is_unmodified;
     return is_same ? complete : differs;
@@ -183,7 +165,7 @@ int verify_sweep(const SweepFile& file, const std::string& name) {
         const std::string& stored = file.points.at(index).text;
         ++all;
         const std::string where =
-            stored == computed ? "" : difference(parse_answer(stored), parse_answer(computed), "");
+            stored == computed ? "" : difference(parse_answer(stored), parse_answer(computed));
         same += where.empty();
         if (!where.empty() && !first) first = fmt::format("point {}: {}", index, where);
     });

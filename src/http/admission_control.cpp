@@ -316,7 +316,7 @@ AdmissionControl::SizePermit AdmissionControl::acquire_by_size(
                 trim_memory();
                 const std::lock_guard ending(mutex_);
                 const auto held = (Clock::now() - since) / std::chrono::milliseconds(1);
-                group.waiting.charge(client, held * static_cast<long>(bytes >> 20));
+                group.waiting.charge(client, held * static_cast<long>(bytes >> 24));
                 group.in_work -= bytes;
                 if ((group.clients[client] -= bytes) == 0) group.clients.erase(client);
                 assign();
@@ -387,14 +387,12 @@ bool Permit::renew() {
     if (!slot_) return false;
     const bool is_grace = AdmissionControl::is_grace(slot_);
     const Clock::time_point now = Clock::now();
-    if (now - since_ < (is_grace ? grace_time : time_slice)) return true;
-    since_ = now;
+    if (now - slot_.get_deleter().since < (is_grace ? grace_time : time_slice)) return true;
     if (!is_grace && !admission_.others_are_due(slot_)) return true;
     if (is_urgent_) slot_.reset();
     slot_ = is_urgent_ ? admission_.acquire_urgently(client_, gives_up_)
                        : admission_.resume(client_, gives_up_, std::move(slot_));
-    since_ = Clock::now();
-    waited_ += since_ - now;
+    waited_ += Clock::now() - now;
     return slot_ != nullptr;
 }
 
@@ -403,8 +401,7 @@ bool Permit::wait_without_slot(const std::function<bool()>& wait) {
     slot_.reset();
     if (wait()) slot_ = admission_.acquire_urgently(client_, gives_up_);
     is_urgent_ = true;
-    since_ = Clock::now();
-    waited_ += since_ - began;
+    waited_ += Clock::now() - began;
     return slot_ != nullptr;
 }
 

@@ -241,7 +241,6 @@ private:
     const std::string client_;
     const std::function<bool()> gives_up_;
     AdmissionControl::Slot slot_;
-    Clock::time_point since_ = Clock::now();  // start of the grace period or the time slice
     bool is_urgent_;
     Clock::duration waited_{};
 };

@@ -23,6 +23,9 @@ constexpr double time_to_write = 0.2;
 // Answers from this size on return their memory to the system at once, bytes.
 constexpr std::size_t large = 16 << 20;
 
+// The memory of a run's lists is three to five times the size of an answer above 16 MiB.
+constexpr std::size_t least_over_answer = 3;
+
 // Largest body that is read in a small part of the grace period, bytes.
 constexpr std::size_t max_body_in_grace = 16 << 10;
 
@@ -59,8 +62,7 @@ constexpr std::size_t max_hash = 256;
 // fraction is left to finish the answer.
 constexpr std::chrono::duration<double> age_in_need(5);
 
-// Time for which a client that holds little waits for memory: those that hold it while it is scarce
-// must read their answers in 30 s.
+// Longest wait for memory: while it is scarce answers must be read in 30 s.
 constexpr std::chrono::seconds longest_wait_for_memory(35);
 
 /// Ends the request of a client that has left; only the log shows its status.
@@ -85,7 +87,7 @@ public:
           permit_(
               service.admission, request.sender.client(), request.left,
               request.body.size() <= max_body_in_grace, body_bytes_ > immediate_body) {
-        if (!permit_) throw_without_permit();
+        if (!permit_) throw_without();
         watch.lap("queue");
     }
 
@@ -105,8 +107,7 @@ public:
             if (!identifies()) permit_.end_urgency();
             return request;
         } catch (const api::Cancelled&) {
-            if (!permit_ || request_.left() || service_.admission.all_stopped())
-                throw_without_permit();
+            if (!permit_ || is_unwanted()) throw_without();
             if (needed_)
                 throw Problem::unavailable(
                     "threads", "others need the thread that reads it; try again in a second");
@@ -129,29 +130,24 @@ public:
     bool renew() { return permit_.renew(); }  ///< see Permit
     /// To be called once the body is read, or, since its record is kept, once it is identified.
     void release_body() { body_permit_.reset(); }
-    /// Waits for the permit to hold lists with a text of these bytes, unless it has one.
-    void wait_for_lists(std::size_t bytes) {
+    /// Waits for the permit to hold lists with a text of these bytes, unless it has one; before
+    /// it, if given, for memory for the answer.
+    void wait_for_lists(std::size_t bytes, std::size_t answer = 0) {
         if (bytes <= immediate_lists || lists_permit_) return;
-        const auto gives_up = [this] {
-            return request_.left() || service_.admission.all_stopped();
-        };
         const bool has_slot = permit_.wait_without_slot([&] {
-            lists_permit_ =
-                service_.admission.acquire_lists(request_.sender.client(), bytes, gives_up);
+            if (answer > 0) wait_for_memory(answer, 0);
+            lists_permit_ = service_.admission.acquire_lists(
+                request_.sender.client(), bytes, [this] { return is_unwanted(); });
             return lists_permit_ != nullptr;
         });
-        if (!has_slot) throw_without_permit();
+        if (!has_slot) throw_without();
         listed_ = Clock::now();
     }
-    /// Gives the slot back and, if the client has a claim, waits for memory for the response: a
-    /// text of lists, whose permit counts its bytes until then, or a stream. If it gives up, the
-    /// response is refused.
-    void wait_for_memory(const Response& response) {
-        if (!lists_permit_ && !response.stream) return;
-        permit_.wait_without_slot([&, end = Clock::now() + longest_wait_for_memory] {
-            while (Clock::now() < end && !request_.left() && request_.has_claim_for(response) &&
-                   !request_.others_need_threads(false) && !service_.admission.all_stopped())
-                std::this_thread::sleep_for(client_check_interval / 4);
+    /// Gives slot and permit of lists back, and waits for memory for a stream.
+    void wait_for_stream(std::size_t bytes) {
+        lists_permit_.reset();
+        permit_.wait_without_slot([&] {
+            wait_for_memory(bytes, bytes);
             return false;
         });
     }
@@ -164,18 +160,25 @@ public:
     }
 
     /// Ends a request that has no permit: its client has left, or a full queue had no place.
-    [[noreturn]] void throw_without_permit() const {
-        throw_without("computing", "the queue for computing is full");
+    [[noreturn]] void throw_without(
+        const char* what = "computing",
+        const std::string& reason = "the queue for computing is full") const {
+        if (request_.left()) throw_client_left();
+        if (service_.admission.all_stopped()) throw *stopping_refusal().problem;
+        throw Problem::unavailable(what, reason + "; try again in a second");
     }
 
 private:
     using Clock = Stopwatch::Clock;
 
-    [[noreturn]] void throw_without(const char* what, const std::string& reason) const {
-        if (request_.left()) throw_client_left();
-        if (service_.admission.all_stopped()) throw *stopping_refusal().problem;
-        throw Problem::unavailable(what, reason + "; try again in a second");
+    /// Waits for memory for these bytes of the answer. If it gives up, the answer can be refused.
+    void wait_for_memory(std::size_t bytes, std::size_t for_long) const {
+        const auto end = Clock::now() + longest_wait_for_memory;
+        while (request_.awaits_memory(bytes, for_long) && Clock::now() < end && !is_unwanted() &&
+               !request_.others_need_threads(false))
+            std::this_thread::sleep_for(client_check_interval / 4);
     }
+    bool is_unwanted() const { return request_.left() || service_.admission.all_stopped(); }
     /// The size of a body for its permit.
     std::size_t weighted(std::size_t bytes) const {
         if (!identifies()) return bytes * weight_of_fields;
@@ -189,8 +192,8 @@ private:
         const std::chrono::duration<double> longest(2 * service_.options.deadline);
         auto permit = admission.acquire_body(
             request_.sender.client(), body_bytes_, identifies(),
-            [&, deadline = Clock::now() + longest] {
-                return request_.left() || admission.all_stopped() || Clock::now() > deadline;
+            [this, deadline = Clock::now() + longest] {
+                return is_unwanted() || Clock::now() > deadline;
             });
         if (!permit) throw_without("memory", "other large bodies are being read");
         return permit;
@@ -204,7 +207,7 @@ private:
         const auto now = Clock::now();
         if (now - checked_ > client_check_interval) {
             checked_ = now;
-            is_abandoned_ = request_.left() || service_.admission.all_stopped();
+            is_abandoned_ = is_unwanted();
             if (!needed_ && others_need_it(now - began_)) needed_ = now;
         }
         const std::chrono::duration<double> time(fraction * service_.options.deadline);
@@ -302,11 +305,9 @@ public:
           client_(std::move(client)),
           out_(out) {}
     void begin() override {
+        const auto gives_up = [this] { return !out_.connected() || admission_.all_stopped(); };
         slot_ = admission_.acquire_background(client_);
-        while (!slot_ && out_.connected() && !admission_.all_stopped()) {
-            slot_ = admission_.acquire(client_);
-            if (!slot_) std::this_thread::sleep_for(client_check_interval);  // the queue is full
-        }
+        if (!slot_) slot_ = admission_.resume(client_, gives_up, nullptr);
     }
     void end() override { slot_.reset(); }
     bool stop_or_yield() override {
@@ -334,7 +335,8 @@ private:
 constexpr std::size_t held_by_answer = 24 << 20;
 
 /// Sends an answer whose lists of impacts are computed meanwhile.
-Response stream_answer(api::Answer answer, const Request& request, AdmissionControl& admission) {
+Response stream_answer(
+    api::Answer answer, const Request& request, AdmissionControl& admission, Computing& computing) {
     // Shared, because a response can be copied.
     auto shared = std::make_shared<api::Answer>(std::move(answer));
     const auto stream = [shared, client = request.sender.client(), &admission](Writer& out) {
@@ -351,6 +353,7 @@ Response stream_answer(api::Answer answer, const Request& request, AdmissionCont
         trim_memory();
         return whole;
     };
+    computing.wait_for_stream(held_by_answer);
     return {
         .headers = {{"Cache-Control", "no-store"}, varies},
         .stream = stream,
@@ -387,21 +390,18 @@ Response answer(Request& r, const Service& service, Stopwatch& watch) {
     computing.lap("parse");
     const api::Stop stop = computing.stop();
     api::Answer answer = api::compute_answer(
-        std::move(request),
-        {.stop = stop,
-         .most_bytes = options.answer_limit,
-         .most_kept = options.most_kept_impacts,
-         .most_fitted = most_fitted,
-         .begins = [&](std::size_t bytes) { computing.wait_for_lists(bytes); }});
+        std::move(request), {.stop = stop,
+                             .most_bytes = options.answer_limit,
+                             .most_kept = options.most_kept_impacts,
+                             .most_fitted = most_fitted,
+                             .begins = [&](std::size_t bytes) {
+                                 computing.wait_for_lists(bytes, bytes / least_over_answer);
+                             }});
     const bool renewed = computing.renew();
     computing.lap("solve");
-    if (!renewed) computing.throw_without_permit();
+    if (!renewed) computing.throw_without();
     service.metrics.count_runs(0, static_cast<std::size_t>(answer.impacts));
-    if (answer.run) {
-        Response response = stream_answer(std::move(answer), r, service.admission);
-        computing.wait_for_memory(response);
-        return response;
-    }
+    if (answer.run) return stream_answer(std::move(answer), r, service.admission, computing);
     computing.wait_for_lists(3 * api::packed_bytes(answer.json));  // about the bytes of its text
     const auto ends = [&] { return r.left() || !computing.renew(); };
     std::string bytes = encoded(
@@ -415,9 +415,8 @@ Response answer(Request& r, const Service& service, Stopwatch& watch) {
         .headers = {varies}};
     const auto gives_up = [&] { return ends() || computing.others_need_lists(); };
     // Lists that others need are sent as they are.
-    if (!compress(response, r, gives_up) && ends()) computing.throw_without_permit();
+    if (!compress(response, r, gives_up) && ends()) computing.throw_without();
     computing.lap("encode");
-    computing.wait_for_memory(response);
     return response;
 }
 

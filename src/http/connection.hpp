@@ -104,8 +104,7 @@ public:
     /// The client of the complete request, see Sender.
     std::string client() const { return request_->sender.client(); }
 
-    /// Sets the bytes of an answer held for the client, and of these for long; received bytes are
-    /// added.
+    /// Sets the bytes of the client's answer, and of these for long; received bytes are added.
     void hold(const std::string& client, std::size_t bytes, std::size_t for_long) {
         memory_.count(held_, client, {bytes + bytes_.capacity(), for_long});
     }

@@ -98,10 +98,6 @@ std::optional<std::string> gzip(std::string_view text, const std::function<bool(
     return out + whole.add(text, true);
 }
 
-std::string gzip(std::string_view text) {
-    return *gzip(text, [] { return false; });
-}
-
 bool accepts_gzip(std::string_view accept_encoding) {
     std::optional<double> by_name, by_star;
     double identity = 0;  // if not listed, anything is preferred to it
@@ -172,7 +168,7 @@ void set_encoding(const Head& head, bool was_304, Response& response) {
     if (!response.compressible || response.status == 304) return;
     response.headers.emplace_back("Content-Encoding", "gzip");
     if (response.stream || is_zipped) return;
-    response.body = response.gzipped.empty() ? gzip(response.body) : std::string(response.gzipped);
+    response.body = response.gzipped.empty() ? *gzip(response.body) : std::string(response.gzipped);
 }
 
 }  // namespace

@@ -31,7 +31,7 @@ public:
 
     /// Runs until stop() has been called and all connections are closed.
     void run();
-    const MemoryBudget& memory() const { return memory_; }
+    MemoryBudget& memory() { return memory_; }
     ConnectionLoad load() const {
         return {
             .open = count_ + with_workers_,

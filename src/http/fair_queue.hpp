@@ -69,8 +69,8 @@ public:
         return take(std::prev(last.base()));
     }
     /// The first entry whose client may(client); nothing if there is none.
-    template <class May>
-    std::optional<T> pop(const May& may) {
+    template <class May = bool (*)(const std::string&)>
+    std::optional<T> pop(const May& may = any_client) {
         const auto found = std::find_if(
             entries_.begin(), entries_.end(), [&may](const Entry& e) { return may(e.client); });
         if (found == entries_.end()) return std::nullopt;
@@ -82,9 +82,6 @@ public:
         entries_.erase(found);
         if (entries_.empty()) last_turns_.clear();
         return value;
-    }
-    std::optional<T> pop() {
-        return pop([](const std::string&) { return true; });
     }
     void remove(const T& value) {
         const auto found = std::find_if(entries_.begin(), entries_.end(), [&value](const Entry& e) {
@@ -115,6 +112,7 @@ private:
     };
     static constexpr long most_debt = 40'000;
     static bool any(const T&) { return true; }
+    static bool any_client(const std::string&) { return true; }
 
     long next_turn(const std::string& client) const {
         const auto last = last_turns_.find(client);

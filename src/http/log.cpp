@@ -144,12 +144,8 @@ void log_failure(std::string_view path, const std::string& request_id) {
     });
 }
 
-void log_event(const std::string& what) {
-    log(Level::info, [&](Line& line) { line.add("what", what); });
-}
-
-void log_warning(const std::string& what) {
-    log(Level::warn, [&](Line& line) { line.add("what", what); });
+void log_event(const std::string& what, bool is_warning) {
+    log(is_warning ? Level::warn : Level::info, [&](Line& line) { line.add("what", what); });
 }
 
 }  // namespace vines::http

@@ -30,8 +30,7 @@ void log_unanswered(const Request& request, double ms);
 /// process.
 void log_failure(std::string_view path, const std::string& request_id);
 
-void log_event(const std::string& what);
-void log_warning(const std::string& what);
+void log_event(const std::string& what, bool is_warning = false);
 
 /// Lines dropped so far because stderr was full.
 std::size_t log_lines_dropped();

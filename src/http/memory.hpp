@@ -14,7 +14,6 @@
 #include <map>
 #include <mutex>
 #include <string>
-#include <tuple>
 #include <utility>
 
 #ifdef __GLIBC__
@@ -34,32 +33,25 @@ public:
     /// True if `more` bytes should not be accepted of a client: also if it would then hold more
     /// than is left. One client so has half of the budget, a second one a quarter, and so on; but
     /// more than a quarter alone, as long as it is not full. for_long: bytes of these that are held
-    /// while more is computed, which have half of the budget, divided likewise. One that is refused
-    /// although it holds little has a claim for 2 s: whoever would hold more is refused first.
-    bool is_full_for(const std::string& client, std::size_t more, std::size_t for_long = 0) const {
+    /// while more is computed, which have half of the budget, divided likewise.
+    bool is_full_for(const std::string& client, std::size_t more, std::size_t for_long = 0) {
         const std::lock_guard lock(mutex_);
-        const auto found = clients_.find(client);
-        const Bytes own = found == clients_.end() ? Bytes() : found->second;
-        const Clock::time_point now = Clock::now();
-        std::erase_if(claims_, [now](const auto& claim) { return claim.second.until < now; });
-        Claim claim{own.all + more, now, now + std::chrono::seconds(2)};
-        if (const auto before = claims_.find(client); before != claims_.end())
-            claim.since = before->second.since;
-        std::size_t left = limit_ - std::min(limit_, held_.load());
-        for (const auto& [other, its] : claims_)
-            if (other != client &&
-                std::tie(its.bytes, its.since) < std::tie(claim.bytes, claim.since))
-                left -= std::min(left, its.bytes);
-        const bool full = own.all + std::min(more, limit_ / 4) >= left ||
-                          (for_long > 0 && own.for_long + for_long + held_for_long_ > limit_ / 2);
-        if (full) last_full_ = now;
-        if (full && own.all <= limit_ / 1024) claims_[client] = claim;
-        else claims_.erase(client);
-        return full;
+        return lacks(client, new_claim(client, more), for_long);
     }
-    bool has_claim(const std::string& client) const {
+    /// The same before the bytes are made, of a client that holds less than half of them; false for
+    /// any other. Unless for_long, it then has a claim for 3 s: clients that hold more get nothing
+    /// that it needs, and others wait in the order of time, later by 35 s times the part of the
+    /// limit that they would hold.
+    bool must_wait(const std::string& client, std::size_t more, std::size_t for_long = 0) {
         const std::lock_guard lock(mutex_);
-        return claims_.contains(client);
+        if (2 * bytes_of(client).all >= more) return false;
+        std::erase_if(claims_, [](const auto& claim) { return claim.second.until < Clock::now(); });
+        Claim claim = new_claim(client, more);
+        const auto own = claims_.find(client);
+        if (own != claims_.end() && own->second.bytes == more) claim.due = own->second.due;
+        if (for_long == 0 && (own == claims_.end() || own->second.bytes <= more))
+            claims_[client] = claim;
+        return lacks(client, claim, for_long, true);
     }
     /// Time at which it was last full, also for one client alone.
     Clock::time_point last_full() const {
@@ -92,21 +84,51 @@ public:
         Bytes& now = clients_[client];
         now.all += bytes.all, now.for_long += bytes.for_long;
         if (now.all == 0) clients_.erase(client);
+        const auto claim = claims_.find(client);
+        if (claim != claims_.end() && claim->second.bytes <= 2 * bytes.all) claims_.erase(claim);
         counted = {client, bytes};
     }
 
 private:
+    struct Claim {
+        std::size_t bytes;
+        Clock::time_point due, until;
+    };
+    Bytes bytes_of(const std::string& client) const {
+        const auto found = clients_.find(client);
+        return found == clients_.end() ? Bytes() : found->second;
+    }
+    Claim new_claim(const std::string& client, std::size_t more) const {
+        const auto all = static_cast<double>(bytes_of(client).all + more);
+        const std::chrono::duration<double> later(35 * all / static_cast<double>(limit_));
+        const auto now = Clock::now();
+        return {
+            more, now + std::chrono::duration_cast<Clock::duration>(later),
+            now + std::chrono::seconds(3)};
+    }
+    bool lacks(
+        const std::string& client, const Claim& claim, std::size_t for_long,
+        bool is_early = false) {
+        const Bytes own = bytes_of(client);
+        const bool holds_little = 2 * own.all < claim.bytes;
+        std::size_t claimed = 0;
+        for (const auto& [other, its] : claims_)
+            if (for_long == 0 && other != client && its.due < claim.due &&
+                its.until > Clock::now() && (is_early || !holds_little))
+                claimed += std::min(its.bytes, limit_ / 4);
+        const bool full = own.all + std::min(claim.bytes, limit_ / 4) + held_ + claimed >= limit_ ||
+                          (for_long > 0 && own.for_long + for_long + held_for_long_ > limit_ / 2);
+        if (is_full() || (full && holds_little)) last_full_ = Clock::now();
+        return full;
+    }
+
     const std::size_t limit_;
     std::atomic<std::size_t> held_ = 0;
     mutable std::mutex mutex_;
     std::size_t most_ = 0, held_for_long_ = 0;
-    mutable Clock::time_point last_full_ = {};
+    Clock::time_point last_full_ = {};
     std::map<std::string, Bytes> clients_;
-    struct Claim {
-        std::size_t bytes;
-        Clock::time_point since, until;
-    };
-    mutable std::map<std::string, Claim> claims_;
+    std::map<std::string, Claim> claims_;
 };
 
 /// Limits the memory that malloc keeps. Blocks of 1 MiB and more are mapped one by one: glibc's own

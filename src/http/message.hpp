@@ -52,11 +52,10 @@ struct Response {
     int status = 200;
     std::string content_type = "application/json";
     std::string body = {};
-    std::string_view gzipped = {};  ///< the compressed body, if precomputed
-    std::size_t uncompressed_size =
-        0;                   ///< size of the uncompressed body; 0: body is not compressed
-    bool immutable = false;  ///< the content of this path never changes
-    std::string tag = {};    ///< header ETag; empty: computed from the body
+    std::string_view gzipped = {};      ///< the compressed body, if precomputed
+    std::size_t uncompressed_size = 0;  ///< of a compressed body; 0: it is not compressed
+    bool immutable = false;             ///< the content of this path never changes
+    std::string tag = {};               ///< header ETag; empty: computed from the body
     std::vector<Header> headers = {};
     /// Writes the answer instead of a body; false closes the connection with a reset.
     std::function<bool(Writer&)> stream = {};
@@ -97,9 +96,8 @@ struct Request {
     /// Returns true while another client's request waits for a thread, of which this one has more;
     /// with true, also if this is its client's only one.
     std::function<bool(bool)> others_need_threads = [](bool) { return false; };
-    /// Returns true while memory lacks for this response, and its client holds so little that what
-    /// others free is kept for it (MemoryBudget).
-    std::function<bool(const Response&)> has_claim_for = [](const Response&) { return false; };
+    /// MemoryBudget::must_wait() for the client.
+    std::function<bool(std::size_t, std::size_t)> awaits_memory = [](auto, auto) { return false; };
     const Route* route = nullptr;                      ///< can be null if refused
     std::optional<Response> refused = {};              ///< its connection is then read no further
     std::chrono::steady_clock::time_point since = {};  ///< time at which the request was complete

@@ -45,7 +45,7 @@ Route document(std::string path, Json (*make)()) {
         std::call_once(made->once, [&] {
             made->response = json_response(make());
             made->response.tag = entity_tag(made->response.body);
-            made->gzipped = gzip(made->response.body);
+            made->gzipped = *gzip(made->response.body);
             made->response.gzipped = made->gzipped;
         });
         return made->response;

@@ -154,7 +154,7 @@ constexpr int exit_unanswered = 3;
 std::size_t report_unanswered(Server& server) {
     const std::size_t number = server.log_unanswered();
     if (number == 0) log_event("stopped");
-    else log_warning(fmt::format("stopped; unanswered requests: {}", number));
+    else log_event(fmt::format("stopped; unanswered requests: {}", number), true);
     return number;
 }
 
@@ -166,7 +166,7 @@ int wait_for_stop(ApiKeys* keys) {
         try {
             log_event(fmt::format("API keys reloaded: {}", keys->reload()));
         } catch (const std::runtime_error& e) {
-            log_warning(fmt::format("API keys unchanged: {}", e.what()));
+            log_event(fmt::format("API keys unchanged: {}", e.what()), true);
         }
     }
 }

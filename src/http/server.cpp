@@ -89,9 +89,8 @@ Task Server::answer(Connection& connection, Request received) {
     Request& request = delivery->request;
     request.id = request_id(request.head);
     request.left = [&outbox = delivery->outbox] { return outbox.client_has_left(); };
-    request.has_claim_for = [this, &request](const Response& its) {
-        return lacks_memory(request, its) &&
-               event_loop_.memory().has_claim(request.sender.client());
+    request.awaits_memory = [this, &request](std::size_t bytes, std::size_t for_long) {
+        return event_loop_.memory().must_wait(request.sender.client(), bytes, for_long);
     };
     request.others_need_threads = [this, &request](bool even_last) {
         return event_loop_.others_need_threads(request.sender.client(), even_last);
@@ -146,15 +145,11 @@ Response Server::answer_to(Request& request) const {
     return response;
 }
 
-bool Server::lacks_memory(const Request& request, const Response& response) const {
-    const std::size_t size =
-        std::max(response.body.size(), response.uncompressed_size) + response.held;
-    return size > small_answer &&
-           event_loop_.memory().is_full_for(request.sender.client(), size, response.held);
-}
-
-Response Server::completed(const Request& request, Response response) const {
-    if (lacks_memory(request, response)) response = memory_refusal();
+Response Server::completed(const Request& request, Response response) {
+    const auto size = std::max(response.body.size(), response.uncompressed_size) + response.held;
+    if (size > small_answer &&
+        event_loop_.memory().is_full_for(request.sender.client(), size, response.held))
+        response = memory_refusal();
     std::ranges::move(
         cors_headers(request.head, options_.access), std::back_inserter(response.headers));
     complete(request, response);

@@ -42,8 +42,7 @@ private:
     Task answer(Connection& connection, Request received) override;
     void finish(const std::shared_ptr<Delivery>& delivery, Outbox::State state) override;
     Response answer_to(Request& request) const;
-    bool lacks_memory(const Request& request, const Response& response) const;
-    Response completed(const Request& request, Response response) const;
+    Response completed(const Request& request, Response response);
 
     const ServerOptions options_;
     const std::vector<Route> routes_;

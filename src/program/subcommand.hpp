@@ -46,8 +46,7 @@ AddCommand add_reproduce;  ///< exits with code 0 if every verdict is the expect
 /// Sets the help footer: `lines`, one example command per line, then `paragraph`, if any.
 inline void add_examples(
     CLI::App& command, const std::string& lines, const std::string& paragraph = "") {
-    std::string text = "Examples:\n  ";
-    for (const char c : lines) text += c == '\n' ? std::string("\n  ") : std::string(1, c);
+    const std::string text = "Examples:\n  " + CLI::detail::find_and_replace(lines, "\n", "\n  ");
     command.footer(text + (paragraph.empty() ? "" : "\n\n" + paragraph));
 }
 

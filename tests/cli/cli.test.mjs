@@ -33,13 +33,13 @@ test("an answer contains its provenance, and verify reproduces it", async () => 
   assert.match(same.out, /sha256: matches\nrecomputed: the same values\n/);
   const changed = await verify(answer.replace(/"z":[\d.]+/, '"z":9'));
   assert.equal(changed.code, 1);
-  assert.match(changed.out, /the answer was modified\nrecomputed: regime\.z: 9 became /);
+  assert.match(changed.out, /the answer was modified\nrecomputed: \/regime\/z: 9 became /);
   // A recomputed hash does not hide the change.
   const forged = answer.replace(/"z":[\d.]+/, '"z":9');
   const hash = contentHash(JSON.parse(forged));
   const again = await verify(forged.replace(provenance.sha256, hash));
   assert.equal(again.code, 1);
-  assert.match(again.out, /sha256: matches\nrecomputed: regime\.z: 9 became /);
+  assert.match(again.out, /sha256: matches\nrecomputed: \/regime\/z: 9 became /);
 });
 
 /** The text with another spelling of each number and string: 0.15 as 150e-3, "a" as "\u0061". */
@@ -116,14 +116,14 @@ test("verify also compares the provenance and reports another build's commit", a
     return verify(`${answer.slice(0, at)},"provenance":${JSON.stringify(fields.provenance)}}\n`);
   };
   const cases = [
-    [(p) => Object.assign(p, {extra: 1}), /^provenance: extra is missing$/m],
+    [(p) => Object.assign(p, {extra: 1}), /^provenance: \/extra is missing$/m],
     [
       (p) => Object.assign(p, {answer_limit: 1e9}),
-      /^provenance: answer_limit: 1000000000 became null/m,
+      /^provenance: \/answer_limit: 1000000000 became null/m,
     ],
-    [(p) => Object.assign(p, {commit: 7}), /^provenance: commit: 7 became "/m],
-    [(p) => delete p.commit, /^provenance: commit is new$/m],
-    [(p) => Object.assign(p.request, {b: 0.019}), /^recomputed: parameters/m],
+    [(p) => Object.assign(p, {commit: 7}), /^provenance: \/commit: 7 became "/m],
+    [(p) => delete p.commit, /^provenance: \/commit is new$/m],
+    [(p) => Object.assign(p.request, {b: 0.019}), /^recomputed: \/parameters/m],
   ];
   for (const [alter, message] of cases) {
     const {code, out, errors} = await altered(alter);
@@ -183,7 +183,7 @@ test("verify reports malformed, repeated and modified answers without an excepti
       "brackets and quotes in a text",
       `{"a":[[["]\\"["]]],${answer.slice(1)}`,
       1,
-      /recomputed: a is missing/,
+      /recomputed: \/a is missing/,
     ],
     [
       "deep lists in the request",
@@ -210,7 +210,7 @@ test("control characters of a file appear as escapes and cannot forge a line", a
   const answer = await simulated({tau_end: 40, include: ["regime"]});
   const {out, errors} = await verify(`{"${name}":1,${answer.slice(1)}`);
   inert(out + errors);
-  assert.ok(out.includes("recomputed: a\\u000asha256: matches"), out);
+  assert.ok(out.includes("recomputed: /a\\u000asha256: matches"), out);
   const version = await verify(answer.replace(/"version":"[^"]*"/, `"version":"${name}"`));
   inert(version.out + version.errors);
   await writeFile(at(forged), `{"${name}":1}\n{"type":"${name}"}\n`);
@@ -258,7 +258,7 @@ test("verify reproduces the service's answers: runs, manifolds, identifications,
     swept.replace(/("index":7,.*"z":)[\d.]+/, (_, prefix) => `${prefix}9`),
   );
   assert.equal(changed.code, 1);
-  assert.match(changed.out, /39 of 40 points are the same\npoint 7: z: 9 became /);
+  assert.match(changed.out, /39 of 40 points are the same\npoint 7: \/z: 9 became /);
   await service.stop();
 });
 

@@ -1,11 +1,13 @@
 #include "support.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <fstream>
 #include <sstream>
 #include <stdexcept>
 
 #include "core/analysis/analysis.hpp"
+#include "core/stability/linear.hpp"
 
 namespace vines::test {
 
@@ -101,6 +103,12 @@ CapturedTransient captured_transient() {
             return {p, *capture->tau};
     }
     throw std::runtime_error("no capture among twenty runs");
+}
+
+Moduli eigenvalue_moduli(const Matrix4& m) {
+    Moduli moduli;
+    std::ranges::transform(eigenvalues_of(m), moduli.begin(), elementary::modulus);
+    return moduli;
 }
 
 }  // namespace vines::test

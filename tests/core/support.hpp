@@ -32,6 +32,9 @@ struct Reference {
 };
 Reference read_reference(const std::string& name);
 
+/// Moduli of the eigenvalues by a general solver, descending.
+Moduli eigenvalue_moduli(const Matrix4& m);
+
 /// A run with all its events.
 struct Record {
     Outcome outcome;

@@ -575,23 +575,22 @@ TEST_CASE("what is held while more is computed leaves half of the memory to answ
     CHECK(budget.is_full_for(client, 65, 65));
 }
 
-TEST_CASE("memory that a client with little waits for is not given to who would hold more") {
+TEST_CASE("memory that a client waits for is not given to who would hold more") {
     MemoryBudget budget(100);
-    MemoryBudget::Counted first, second, small;
+    MemoryBudget::Counted first, second, third;
     budget.count(first, "first", {40});
     budget.count(second, "second", {40});
-    CHECK(budget.is_full_for("first", 12));  // it holds more than is left
-    CHECK(!budget.has_claim("first"));
-    CHECK(budget.is_full_for(client, 24));
-    CHECK(budget.has_claim(client));
+    CHECK(!budget.must_wait("first", 12));  // it holds more than it asks for, and is refused
+    CHECK(budget.is_full_for("first", 12));
+    CHECK(budget.must_wait(client, 24));
     budget.count(second, "second", {12});
-    CHECK(!budget.is_full_for("third", 20));
-    CHECK(budget.is_full_for("third", 30));
-    CHECK(budget.is_full_for("second", 18));
-    CHECK(!budget.is_full_for("second", 10));
-    CHECK(!budget.is_full_for(client, 24));
-    CHECK(!budget.has_claim(client));
-    CHECK(!budget.is_full_for("second", 15));
+    CHECK(!budget.must_wait("third", 20));
+    CHECK(budget.must_wait("third", 30));
+    CHECK(!budget.must_wait("third", 12, 12));  // of what streams may hold nothing is claimed
+    CHECK(!budget.must_wait(client, 24));
+    CHECK(budget.must_wait("third", 30));  // the bytes are not yet made
+    budget.count(third, client, {24});
+    CHECK(!budget.must_wait("third", 23));
 }
 
 TEST_CASE("records share what one of the largest takes; of those that wait the smallest is next") {

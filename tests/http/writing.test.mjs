@@ -92,6 +92,21 @@ test("answers that are not read give their memory to others", async (t) => {
   await until(() => isAnswered(url, "/v1/simulate", large), soon);
 });
 
+test("a client that holds nothing waits for the memory of others", async (t) => {
+  // 32 MB, of which a client keeps all; the text of such a list is made while it waits.
+  const larger = {...large, tau_end: 8000, max_points: 4e5};
+  const args = ["--memory-limit", "36000000"];
+  const {url, accepted} = await serviceWith(t, args, 1, "/v1/simulate", larger);
+  assert.equal(accepted, 1);
+  assert.ok(await isAnswered(url, "/v1/simulate", larger));
+});
+
+test("an answer counts for the client that the proxy states", async (t) => {
+  const args = ["--memory-limit", "24000000"];
+  const {accepted} = await serviceWith(t, args, 3, "/v1/simulate", large, 1);
+  assert.equal(accepted, 2);
+});
+
 test("sweeps that are not read give their places to others", async (t) => {
   const {url, accepted} = await serviceWith(t, ["--sweeps", "4"], 4, "/v1/sweep", sweep);
   assert.equal(accepted, 4);

@@ -9,6 +9,7 @@
 #include <numeric>
 #include <span>
 
+#include "core/stability/linear.hpp"
 #include "report/claims.hpp"
 
 namespace vines::report {
@@ -59,7 +60,8 @@ double error_of_M(const PaperRun& r) {
     const double R = r.parameters.R_plus;  // of both walls
     std::vector<double> errors;
     for (const Matrix4& matrix : r.run.matrices->M) {
-        const Moduli M = eigenvalue_moduli(matrix);
+        Moduli M;
+        std::ranges::transform(eigenvalues_of(matrix), M.begin(), elementary::modulus);
         errors.push_back(std::max(
             {std::abs(M[0] - 1), std::abs(M[1] - 1), std::abs(M[2] - R), std::abs(M[3] - R)}));
     }

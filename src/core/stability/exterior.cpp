@@ -239,12 +239,6 @@ Moduli PowerProduct::log_moduli() const {
     return logs;
 }
 
-Moduli eigenvalue_moduli(const Matrix4& m) {
-    Moduli moduli;
-    std::ranges::transform(eigenvalues_of(m), moduli.begin(), elementary::modulus);
-    return moduli;
-}
-
 Moduli ImpactTransfer::moduli(bool with_impact) const {
     PowerProduct product(epsilon);
     for (const Leg& leg : legs) product.pass(leg);

@@ -78,7 +78,6 @@ struct Flag {
 
 /// Moduli of four eigenvalues, or their logarithms; descending.
 using Moduli = std::array<double, 4>;
-Moduli eigenvalue_moduli(const Matrix4& m);
 
 /// A product of transfer matrices as exterior powers, rescaled as they grow: the largest eigenvalue
 /// of the k-th power is the product of the k largest ones, at any ratio between these.

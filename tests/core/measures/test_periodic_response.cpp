@@ -3,6 +3,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "../support.hpp"
 #include "core/sweep/point.hpp"
 #include "judged_run.hpp"
 
