@@ -82,7 +82,7 @@ using Samples = std::vector<const Json*>;
 std::string fault_of_names(const std::string& name, const Json& object, const Samples& samples) {
     const auto likeness = [&object](const Json* sample) {
         auto common = -static_cast<long>(sample->size());
-        for (const auto& [field, value] : object.items()) common += 2 * sample->contains(field);
+        for (const auto& [field, value] : object.items()) common += sample->contains(field) ? 2 : 0;
         return common;
     };
     const Json& nearest = **std::ranges::max_element(samples, {}, likeness);
