@@ -80,9 +80,6 @@ std::vector<Cell> cells_of(std::string_view line, char separator) {
     return cells;
 }
 
-// 2020-01-01 in Unix time, s: as an origin it leaves a double more digits of the fraction.
-constexpr std::time_t stamp_origin = 1577836800;
-
 /// Seconds of a time stamp hh:mm:ss, with a fraction or none, after a date yyyy-mm-dd (ISO 8601) or
 /// none; nullopt for other text.
 std::optional<double> seconds_of_stamp(std::string text) {
@@ -93,15 +90,18 @@ std::optional<double> seconds_of_stamp(std::string text) {
     if (is_dated) text[10] = 'T';
     if (text.ends_with('Z')) text.pop_back();
     const char* const end = text.data() + text.size();
-    const char* const rest =
-        ::strptime(text.c_str(), is_dated ? "%Y-%m-%dT%H:%M:%S" : "%H:%M:%S", &time);
+    const char* rest = is_dated ? ::strptime(text.c_str(), "%Y-%m-%dT", &time) : text.c_str();
+    if (!rest || !std::isdigit(static_cast<unsigned char>(*rest))) return std::nullopt;
+    rest = std::from_chars(rest, end, time.tm_hour).ptr;  // 24 and more in elapsed time
+    rest = ::strptime(rest, ":%M:%S", &time);
     double fraction = 0;
     if (!rest) return std::nullopt;
     if (rest != end) {
         const auto [read, error] = std::from_chars(rest, end, fraction);
         if (*rest != '.' || error != std::errc() || read != end) return std::nullopt;
     }
-    return fraction + static_cast<double>(::timegm(&time) - stamp_origin);
+    constexpr std::time_t origin = 1577836800;  // 2020: leaves more digits to the fraction
+    return fraction + static_cast<double>(::timegm(&time) - origin);
 }
 
 /// nullopt if the cell is neither a number nor a time stamp.
@@ -293,10 +293,9 @@ Csv parse_csv(std::string_view bytes, const ReadLimits& limits) {
                 continue;
             }
             csv.columns = heading.columns(line, cells_of(line.text, *separator).size(), *separator);
-            // For lines like this one: columns of a large record are not copied as they grow.
             const std::size_t rows = rest.size() / (line.text.size() + 1) + 2;
             for (CsvColumn& column : csv.columns) column.values.reserve(rows);
-            csv.lines.reserve(rows);
+            csv.lines.reserve(rows);  // columns of a large record are not copied as they grow
         } else if (comment_of(line.text)) {
             continue;
         }

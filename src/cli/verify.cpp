@@ -39,15 +39,20 @@ std::string in_line(const Json& value) {
 }
 
 /// First difference of two answers, as "/impacts/tau/3: 1.0 became 2.0"; empty if they are equal.
-std::string difference(const Json& stored, const Json& computed) {
-    const Json changes = Json::diff(stored, computed);
-    if (changes.empty()) return {};
-    const Json& first = changes[0];
-    const std::string path = first["path"];
-    if (first["op"] == "remove") return path + " is missing";
-    if (first["op"] == "add") return path + " is new";
-    return fmt::format(
-        "{}: {} became {}", path, in_line(part(stored, path)), in_line(first["value"]));
+std::string difference(const Json& stored, const Json& computed, const std::string& path = "") {
+    if (stored == computed) return {};
+    if (!stored.is_structured() || stored.type() != computed.type())
+        return fmt::format("{}: {} became {}", path, in_line(stored), in_line(computed));
+    for (const auto& [name, value] : stored.items()) {
+        const Json::json_pointer at = Json::json_pointer() / name;
+        if (!computed.contains(at)) return path + at.to_string() + " is missing";
+        const std::string found = difference(value, computed[at], path + at.to_string());
+        if (!found.empty()) return found;
+    }
+    for (const auto& [name, value] : computed.items())
+        if (const auto at = Json::json_pointer() / name; !stored.contains(at))
+            return path + at.to_string() + " is new";
+    return {};
 }
 
 /// A recomputed answer.

@@ -36,7 +36,7 @@ public:
     /// while more is computed, which have half of the budget, divided likewise.
     bool is_full_for(const std::string& client, std::size_t more, std::size_t for_long = 0) {
         const std::lock_guard lock(mutex_);
-        return lacks(client, new_claim(client, more), for_long);
+        return lacks(client, new_claim(client, more), for_long, false);
     }
     /// The same before the bytes are made, of a client that holds less than half of them; false for
     /// any other. Unless for_long, it then has a claim for 3 s: clients that hold more get nothing
@@ -106,15 +106,13 @@ private:
             more, now + std::chrono::duration_cast<Clock::duration>(later),
             now + std::chrono::seconds(3)};
     }
-    bool lacks(
-        const std::string& client, const Claim& claim, std::size_t for_long,
-        bool is_early = false) {
+    bool lacks(const std::string& client, const Claim& claim, std::size_t for_long, bool early) {
         const Bytes own = bytes_of(client);
         const bool holds_little = 2 * own.all < claim.bytes;
         std::size_t claimed = 0;
         for (const auto& [other, its] : claims_)
             if (for_long == 0 && other != client && its.due < claim.due &&
-                its.until > Clock::now() && (is_early || !holds_little))
+                its.until > Clock::now() && (early || !holds_little))
                 claimed += std::min(its.bytes, limit_ / 4);
         const bool full = own.all + std::min(claim.bytes, limit_ / 4) + held_ + claimed >= limit_ ||
                           (for_long > 0 && own.for_long + for_long + held_for_long_ > limit_ / 2);

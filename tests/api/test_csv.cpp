@@ -109,6 +109,7 @@ TEST_CASE("Fortran's exponents and time stamps are read as numbers") {
     for (const char* text :
          {"Time,x\n10:59:59.75,1\n11:00:00.25,2\n", "Time;x\n10:59:59,75;1\n11:00:00,25;2\n",
           "Time,x\n2024-02-29T10:59:59.75Z,1\n2024-02-29T11:00:00.25Z,2\n",
+          "Elapsed,x\n24:59:59.75,1\n25:00:00.25,2\n",
           "Time,x\n2024-02-28 23:59:59.75,1\n2024-02-29 00:00:00.25,2\n"}) {
         CAPTURE(text);
         const std::vector<double> times = parse_csv(text).columns[0].values;
