@@ -23,8 +23,9 @@ constexpr double time_to_write = 0.2;
 // Answers from this size on return their memory to the system at once, bytes.
 constexpr std::size_t large = 16 << 20;
 
-// The memory of a run's lists is three to five times the size of an answer above 16 MiB.
-constexpr std::size_t least_over_answer = 3;
+// The memory of a run's lists is at least this many times the size of a binary answer above 16 MiB,
+// and at least that of a text.
+constexpr std::size_t least_over_binary = 3;
 
 // Largest body that is read in a small part of the grace period, bytes.
 constexpr std::size_t max_body_in_grace = 16 << 10;
@@ -131,23 +132,30 @@ public:
     /// To be called once the body is read, or, since its record is kept, once it is identified.
     void release_body() { body_permit_.reset(); }
     /// Waits for the permit to hold lists with a text of these bytes, unless it has one; before
-    /// it, if given, for memory for the answer.
+    /// it, if given, for memory for the answer, which is reserved with it.
     void wait_for_lists(std::size_t bytes, std::size_t answer = 0) {
         if (bytes <= immediate_lists || lists_permit_) return;
         const bool has_slot = permit_.wait_without_slot([&] {
-            if (answer > 0) wait_for_memory(answer, 0);
-            lists_permit_ = service_.admission.acquire_lists(
-                request_.sender.client(), bytes, [this] { return is_unwanted(); });
+            const Clock::time_point since = Clock::now();
+            do {
+                lists_permit_.reset();
+                wait_for_memory({answer}, since);
+                lists_permit_ = service_.admission.acquire_lists(
+                    request_.sender.client(), bytes, [this] { return is_unwanted(); });
+            } while (lists_permit_ && lacks_memory({answer}, since));
+            if (answer > 0) request_.reserve_memory({answer});
             return lists_permit_ != nullptr;
         });
         if (!has_slot) throw_without();
         listed_ = Clock::now();
     }
-    /// Gives slot and permit of lists back, and waits for memory for a stream.
+    /// Gives back what the lists have, and waits for memory for a stream, which is reserved.
     void wait_for_stream(std::size_t bytes) {
         lists_permit_.reset();
+        request_.reserve_memory({});
         permit_.wait_without_slot([&] {
-            wait_for_memory(bytes, bytes);
+            wait_for_memory({bytes, bytes}, Clock::now());
+            request_.reserve_memory({bytes, bytes});
             return false;
         });
     }
@@ -171,12 +179,15 @@ public:
 private:
     using Clock = Stopwatch::Clock;
 
-    /// Waits for memory for these bytes of the answer. If it gives up, the answer can be refused.
-    void wait_for_memory(std::size_t bytes, std::size_t for_long) const {
-        const auto end = Clock::now() + longest_wait_for_memory;
-        while (request_.awaits_memory(bytes, for_long) && Clock::now() < end && !is_unwanted() &&
-               !request_.others_need_threads(false))
-            std::this_thread::sleep_for(client_check_interval / 4);
+    /// Whether it is to wait, since this time, for memory for these bytes of the answer. If it
+    /// gives up, the answer can be refused.
+    bool lacks_memory(MemoryBudget::Bytes bytes, Clock::time_point since) const {
+        return request_.awaits_memory(bytes, since) &&
+               Clock::now() < since + longest_wait_for_memory && !is_unwanted() &&
+               !request_.others_need_threads(false);
+    }
+    void wait_for_memory(MemoryBudget::Bytes bytes, Clock::time_point since) const {
+        while (lacks_memory(bytes, since)) std::this_thread::sleep_for(client_check_interval / 4);
     }
     bool is_unwanted() const { return request_.left() || service_.admission.all_stopped(); }
     /// The size of a body for its permit.
@@ -389,13 +400,15 @@ Response answer(Request& r, const Service& service, Stopwatch& watch) {
         return {.status = 304, .tag = tag, .headers = {varies}};
     computing.lap("parse");
     const api::Stop stop = computing.stop();
+    const bool is_binary = *format == api::Format::cbor || *format == api::Format::npz;
+    const std::size_t over_answer = is_binary ? least_over_binary : 1;
     api::Answer answer = api::compute_answer(
         std::move(request), {.stop = stop,
                              .most_bytes = options.answer_limit,
                              .most_kept = options.most_kept_impacts,
                              .most_fitted = most_fitted,
                              .begins = [&](std::size_t bytes) {
-                                 computing.wait_for_lists(bytes, bytes / least_over_answer);
+                                 computing.wait_for_lists(bytes, bytes / over_answer);
                              }});
     const bool renewed = computing.renew();
     computing.lap("solve");

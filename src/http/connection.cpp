@@ -82,7 +82,7 @@ Connection::Progress Connection::read_request() {
     // Large bodies only: the number of connections bounds the small ones.
     if (!is_whole() && body_size() > small_body) {
         const std::size_t held = bytes_.capacity();
-        if (memory_.is_full_for(client(), std::max(body_size(), held) - held))
+        if (memory_.is_full_for(client(), {std::max(body_size(), held) - held}))
             request_->refused = memory_refusal();
     }
     return is_whole() ? Progress::complete : Progress::waits;

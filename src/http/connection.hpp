@@ -104,14 +104,18 @@ public:
     /// The client of the complete request, see Sender.
     std::string client() const { return request_->sender.client(); }
 
-    /// Sets the bytes of the client's answer, and of these for long; received bytes are added.
-    void hold(const std::string& client, std::size_t bytes, std::size_t for_long) {
-        memory_.count(held_, client, {bytes + bytes_.capacity(), for_long});
+    /// Sets the bytes of the client's answer; received bytes are added.
+    void hold(const std::string& client, MemoryBudget::Bytes bytes) {
+        memory_.count(held_, client, {bytes.all + bytes_.capacity(), bytes.for_long});
+    }
+    /// The same, see MemoryBudget.
+    bool reserve(const std::string& client, MemoryBudget::Bytes bytes) {
+        return memory_.reserve(held_, client, {bytes.all + bytes_.capacity(), bytes.for_long});
     }
 
 private:
     Progress read_request();
-    void hold_received() { hold(request_ ? client() : owner_, 0, 0); }
+    void hold_received() { hold(request_ ? client() : owner_, {}); }
     std::size_t body_size() const { return request_->head.content_length; }
     void wait_for_head(Clock::duration time);
     void begin_request();

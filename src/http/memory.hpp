@@ -30,28 +30,47 @@ public:
     explicit MemoryBudget(std::size_t limit) : limit_(limit) {}
     /// True if nothing large should be accepted.
     bool is_full() const { return held_ >= limit_; }
+    struct Bytes {
+        std::size_t all = 0;
+        std::size_t for_long = 0;  ///< of these, held while more is computed
+    };
+    struct Counted {
+        std::string client;
+        Bytes bytes;
+    };
     /// True if `more` bytes should not be accepted of a client: also if it would then hold more
     /// than is left. One client so has half of the budget, a second one a quarter, and so on; but
-    /// more than a quarter alone, as long as it is not full. for_long: bytes of these that are held
-    /// while more is computed, which have half of the budget, divided likewise.
-    bool is_full_for(const std::string& client, std::size_t more, std::size_t for_long = 0) {
+    /// more than a quarter alone, as long as it is not full. Bytes held for long have half of the
+    /// budget, divided likewise.
+    bool is_full_for(const std::string& client, Bytes more) {
         const std::lock_guard lock(mutex_);
-        return lacks(client, new_claim(client, more), for_long, false);
+        return is_refused(client, more);
     }
-    /// The same before the bytes are made, of a client that holds less than half of them; false for
-    /// any other. Unless for_long, it then has a claim for 3 s: clients that hold more get nothing
-    /// that it needs, and others wait in the order of time, later by 35 s times the part of the
-    /// limit that they would hold.
-    bool must_wait(const std::string& client, std::size_t more, std::size_t for_long = 0) {
+    /// The same before the bytes are made, of a client that holds less than half of them and has
+    /// waited since this time; false for any other. Unless they are for long, it then has a claim
+    /// for 3 s: clients that hold more get nothing that it needs, and others wait in the order of
+    /// time, later by 35 s times the part of the limit that they would hold.
+    bool must_wait(const std::string& client, Bytes more, Clock::time_point since) {
         const std::lock_guard lock(mutex_);
-        if (2 * bytes_of(client).all >= more) return false;
-        std::erase_if(claims_, [](const auto& claim) { return claim.second.until < Clock::now(); });
-        Claim claim = new_claim(client, more);
-        const auto own = claims_.find(client);
-        if (own != claims_.end() && own->second.bytes == more) claim.due = own->second.due;
-        if (for_long == 0 && (own == claims_.end() || own->second.bytes <= more))
-            claims_[client] = claim;
-        return lacks(client, claim, for_long, true);
+        if (!holds_little(client, more)) return false;
+        const Clock::time_point now = Clock::now(), own = due(client, more, since);
+        std::erase_if(claims_, [&](const auto& claim) { return claim.second.until < now; });
+        if (more.for_long == 0)
+            if (Claim& claim = claims_[client]; claim.bytes <= more.all)
+                claim = {more.all, own, now + std::chrono::seconds(3)};
+        return is_lacking(client, more, own);
+    }
+    /// Counts these bytes instead of what was counted, unless what they add is_full_for() it.
+    bool reserve(Counted& counted, const std::string& client, Bytes bytes) {
+        const std::lock_guard lock(mutex_);
+        const auto [all, for_long] = counted.bytes;
+        const Bytes more{
+            bytes.all - std::min(bytes.all, all),
+            bytes.for_long - std::min(bytes.for_long, for_long)};
+        const bool is_less = more.all == 0 && more.for_long == 0;
+        if (!is_less && is_refused(client, more)) return false;
+        change(counted, client, bytes);
+        return true;
     }
     /// Time at which it was last full, also for one client alone.
     Clock::time_point last_full() const {
@@ -65,16 +84,48 @@ public:
         return std::exchange(most_, held_);
     }
 
-    struct Bytes {
-        std::size_t all = 0, for_long = 0;
-    };
-    struct Counted {
-        std::string client;
-        Bytes bytes;
-    };
     /// Counts these bytes of a client instead of what was counted.
     void count(Counted& counted, const std::string& client, Bytes bytes) {
         const std::lock_guard lock(mutex_);
+        change(counted, client, bytes);
+    }
+
+private:
+    struct Claim {
+        std::size_t bytes = 0;
+        Clock::time_point due, until;
+    };
+    Bytes bytes_of(const std::string& client) const {
+        const auto found = clients_.find(client);
+        return found == clients_.end() ? Bytes() : found->second;
+    }
+    Clock::time_point due(const std::string& client, Bytes more, Clock::time_point since) const {
+        const auto all = static_cast<double>(bytes_of(client).all + more.all);
+        const std::chrono::duration<double> later(35 * all / static_cast<double>(limit_));
+        return since + std::chrono::duration_cast<Clock::duration>(later);
+    }
+    bool holds_little(const std::string& client, Bytes more) const {
+        return 2 * bytes_of(client).all < more.all;
+    }
+    /// Claims do not count against who holds little: its bytes are made.
+    bool is_refused(const std::string& client, Bytes more) {
+        const auto own = holds_little(client, more) ? Clock::time_point::min() : Clock::now();
+        return is_lacking(client, more, due(client, more, own));
+    }
+    /// due: claims of others that are due before it count.
+    bool is_lacking(const std::string& client, Bytes more, Clock::time_point due) {
+        const Bytes own = bytes_of(client);
+        std::size_t claimed = 0;
+        for (const auto& [other, its] : claims_)
+            if (more.for_long == 0 && other != client && its.due < due && its.until > Clock::now())
+                claimed += std::min(its.bytes, limit_ / 4);
+        const bool is_full_now =
+            own.all + std::min(more.all, limit_ / 4) + held_ + claimed >= limit_ ||
+            (more.for_long > 0 && own.for_long + more.for_long + held_for_long_ > limit_ / 2);
+        if (is_full() || (is_full_now && holds_little(client, more))) last_full_ = Clock::now();
+        return is_full_now;
+    }
+    void change(Counted& counted, const std::string& client, Bytes bytes) {
         held_ += bytes.all - counted.bytes.all;
         held_for_long_ += bytes.for_long - counted.bytes.for_long;
         most_ = std::max(most_, held_.load());
@@ -87,37 +138,6 @@ public:
         const auto claim = claims_.find(client);
         if (claim != claims_.end() && claim->second.bytes <= 2 * bytes.all) claims_.erase(claim);
         counted = {client, bytes};
-    }
-
-private:
-    struct Claim {
-        std::size_t bytes;
-        Clock::time_point due, until;
-    };
-    Bytes bytes_of(const std::string& client) const {
-        const auto found = clients_.find(client);
-        return found == clients_.end() ? Bytes() : found->second;
-    }
-    Claim new_claim(const std::string& client, std::size_t more) const {
-        const auto all = static_cast<double>(bytes_of(client).all + more);
-        const std::chrono::duration<double> later(35 * all / static_cast<double>(limit_));
-        const auto now = Clock::now();
-        return {
-            more, now + std::chrono::duration_cast<Clock::duration>(later),
-            now + std::chrono::seconds(3)};
-    }
-    bool lacks(const std::string& client, const Claim& claim, std::size_t for_long, bool early) {
-        const Bytes own = bytes_of(client);
-        const bool holds_little = 2 * own.all < claim.bytes;
-        std::size_t claimed = 0;
-        for (const auto& [other, its] : claims_)
-            if (for_long == 0 && other != client && its.due < claim.due &&
-                its.until > Clock::now() && (early || !holds_little))
-                claimed += std::min(its.bytes, limit_ / 4);
-        const bool full = own.all + std::min(claim.bytes, limit_ / 4) + held_ + claimed >= limit_ ||
-                          (for_long > 0 && own.for_long + for_long + held_for_long_ > limit_ / 2);
-        if (is_full() || (full && holds_little)) last_full_ = Clock::now();
-        return full;
     }
 
     const std::size_t limit_;

@@ -136,7 +136,8 @@ std::string Metrics::text() const {
     const ConnectionLoad now = implementation_->connections();
     add("vines_http_connections", "Open connections.", now.open);
     add("vines_http_requests_in_flight", "Requests received and not yet answered.", now.in_flight);
-    add("vines_http_held_bytes", "Bytes of requests and answers in memory.", now.held_bytes);
+    add("vines_http_held_bytes",
+        "Bytes of requests and answers in memory, and reserved for answers.", now.held_bytes);
     add("vines_log_lines_dropped_total", "Log lines dropped because stderr was full.",
         log_lines_dropped(), MetricType::Counter);
     // The resource use of this process, by the names of Prometheus' client libraries.

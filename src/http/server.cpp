@@ -89,8 +89,11 @@ Task Server::answer(Connection& connection, Request received) {
     Request& request = delivery->request;
     request.id = request_id(request.head);
     request.left = [&outbox = delivery->outbox] { return outbox.client_has_left(); };
-    request.awaits_memory = [this, &request](std::size_t bytes, std::size_t for_long) {
-        return event_loop_.memory().must_wait(request.sender.client(), bytes, for_long);
+    request.awaits_memory = [this, &request](MemoryBudget::Bytes bytes, auto since) {
+        return event_loop_.memory().must_wait(request.sender.client(), bytes, since);
+    };
+    request.reserve_memory = [&](MemoryBudget::Bytes bytes) {
+        return connection.reserve(request.sender.client(), bytes);
     };
     request.others_need_threads = [this, &request](bool even_last) {
         return event_loop_.others_need_threads(request.sender.client(), even_last);
@@ -113,7 +116,7 @@ Task Server::answer(Connection& connection, Request received) {
     outcome.timing = response.timing;
     if (response.problem) outcome.lacking = response.problem->lacking;
     if (outcome.lacking == "sweeps" && !response.own_limit) event_loop_.note_scarcity_of_streams();
-    connection.hold(request.sender.client(), response.body.size() + response.held, response.held);
+    connection.hold(request.sender.client(), {response.body.size() + response.held, response.held});
     delivery->outbox.expect(response.held);
     delivery->is_streaming = static_cast<bool>(response.stream);
     // Without chunks only the end of the connection marks the end of a stream.
@@ -147,8 +150,7 @@ Response Server::answer_to(Request& request) const {
 
 Response Server::completed(const Request& request, Response response) {
     const auto size = std::max(response.body.size(), response.uncompressed_size) + response.held;
-    if (size > small_answer &&
-        event_loop_.memory().is_full_for(request.sender.client(), size, response.held))
+    if (size > small_answer && !request.reserve_memory({size, response.held}))
         response = memory_refusal();
     std::ranges::move(
         cors_headers(request.head, options_.access), std::back_inserter(response.headers));

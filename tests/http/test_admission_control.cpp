@@ -559,7 +559,7 @@ TEST_CASE("what is held while more is computed leaves half of the memory to answ
     std::list<MemoryBudget::Counted> lists;
     const auto lists_of = [&](const std::string& owner) {
         int count = 0;
-        for (; !budget.is_full_for(owner, 8, 8); ++count)
+        for (; !budget.is_full_for(owner, {8, 8}); ++count)
             budget.count(lists.emplace_back(), owner, {8, 8});
         return count;
     };
@@ -568,29 +568,49 @@ TEST_CASE("what is held while more is computed leaves half of the memory to answ
     CHECK(lists_of("third") == 1);
     CHECK(lists_of("fourth") == 1);
     CHECK(lists_of(client) == 0);
-    CHECK(!budget.is_full_for(client, 60));
+    CHECK(!budget.is_full_for(client, {60}));
     for (auto& list : lists) budget.count(list, list.client, {});
     CHECK(budget.bytes() == 0);
-    CHECK(!budget.is_full_for(client, 64, 64));
-    CHECK(budget.is_full_for(client, 65, 65));
+    CHECK(!budget.is_full_for(client, {64, 64}));
+    CHECK(budget.is_full_for(client, {65, 65}));
 }
 
 TEST_CASE("memory that a client waits for is not given to who would hold more") {
     MemoryBudget budget(100);
+    const auto since = MemoryBudget::Clock::now();
     MemoryBudget::Counted first, second, third;
     budget.count(first, "first", {40});
     budget.count(second, "second", {40});
-    CHECK(!budget.must_wait("first", 12));  // it holds more than it asks for, and is refused
-    CHECK(budget.is_full_for("first", 12));
-    CHECK(budget.must_wait(client, 24));
+    CHECK(
+        !budget.must_wait("first", {12}, since));  // it holds more than it asks for, and is refused
+    CHECK(budget.is_full_for("first", {12}));
+    CHECK(budget.must_wait(client, {24}, since));
     budget.count(second, "second", {12});
-    CHECK(!budget.must_wait("third", 20));
-    CHECK(budget.must_wait("third", 30));
-    CHECK(!budget.must_wait("third", 12, 12));  // of what streams may hold nothing is claimed
-    CHECK(!budget.must_wait(client, 24));
-    CHECK(budget.must_wait("third", 30));  // the bytes are not yet made
+    CHECK(!budget.must_wait("third", {20}, since));
+    CHECK(budget.must_wait("third", {30}, since));
+    CHECK(!budget.must_wait(
+        "third", {12, 12}, since));  // of what streams may hold nothing is claimed
+    CHECK(!budget.must_wait(client, {24}, since));
+    CHECK(budget.must_wait("third", {30}, since));  // the bytes are not yet made
     budget.count(third, client, {24});
-    CHECK(!budget.must_wait("third", 23));
+    CHECK(!budget.must_wait("third", {23}, since));
+}
+
+TEST_CASE("memory that is reserved is there for what needs no more") {
+    MemoryBudget budget(100);
+    MemoryBudget::Counted answer, other;
+    CHECK(budget.reserve(answer, client, {24}));
+    budget.count(other, "other", {70});
+    CHECK(budget.is_full_for(client, {24}));
+    CHECK(budget.reserve(answer, client, {20}));
+    CHECK(budget.bytes() == 90);
+    CHECK(!budget.reserve(answer, client, {50}));
+    CHECK(!budget.reserve(answer, client, {20, 20}));  // of it, for long: nothing was reserved so
+    CHECK(budget.bytes() == 90);
+    budget.count(other, "other", {});
+    CHECK(budget.reserve(answer, client, {20, 20}));
+    CHECK(budget.reserve(answer, client, {}));
+    CHECK(budget.bytes() == 0);
 }
 
 TEST_CASE("records share what one of the largest takes; of those that wait the smallest is next") {
