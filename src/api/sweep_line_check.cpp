@@ -168,7 +168,16 @@ std::string SweepLineCheck::fault_of_place(const std::string& line, const Json& 
     const Json& index = parsed["index"];
     const std::string place_text = json_text(describe_place(request_, index.get<std::size_t>()));
     if (line.starts_with(place_text.substr(0, place_text.size() - 1) + ",")) return "";
-    return fmt::format("point {} does not begin with {}", index.dump(), place_text);
+    const Json place = Json::parse(place_text);
+    for (const auto& [name, value] : place.items()) {
+        const auto given = parsed.find(name);
+        if (given == parsed.end()) return name + " is missing";
+        if (given->type() != value.type() || *given != value)
+            return fmt::format(
+                "{} is {}, but point {} lies at {}", name, given->dump(), index.dump(),
+                value.dump());
+    }
+    return "";
 }
 
 std::string SweepLineCheck::fault_of(const std::string& line, const Json& parsed) const {
