@@ -18,10 +18,7 @@ constexpr int depth_of_true = 2;
 
 /// Numbers of the system, without those of the start.
 std::vector<std::string> continued_names() {
-    std::vector<std::string> names;
-    for (const Field& f : sweep_base_fields())
-        if (is_continued(f)) names.push_back(f.name);
-    return names;
+    return texts_of(simulate_fields_where(is_continued), &Field::name);
 }
 
 Json continued(const Json& given, const char* name) {

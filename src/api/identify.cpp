@@ -242,8 +242,7 @@ void add_continuity_warnings(const MeasurementResult& result, Warnings& warnings
 
 /// Reasons against a verdict from this measurement; empty if it is sound.
 std::vector<std::string> all_doubts(const MeasurementResult& result) {
-    std::vector<std::string> doubts;
-    for (const Doubt doubt : result.doubts) doubts.push_back(text_of(doubt));
+    auto doubts = texts_of(result.doubts, [](Doubt doubt) { return text_of(doubt); });
     if (result.continuity.is_incomplete())
         doubts.insert(
             doubts.begin(),

@@ -89,10 +89,9 @@ void check_alternatives(const Json& object, std::vector<FieldError>& errors) {
 const Preset& preset_named(const std::string& name) {
     const auto preset = std::ranges::find(presets(), name, &Preset::name);
     if (preset != presets().end()) return *preset;
-    Json names = Json::array();
-    for (const Preset& p : presets()) names.push_back(p.name);
     refuse(
-        {{"/preset", name, names, "there is no preset of this name; GET /v1/presets lists them"}});
+        {{"/preset", name, texts_of(presets(), &Preset::name),
+          "there is no preset of this name; GET /v1/presets lists them"}});
 }
 
 /// Restates the preset's system in the kind of fields that the request uses, so that each given

@@ -118,9 +118,7 @@ double unit_factor(const Channel& q, const Json& fields, const CsvColumn& column
 }  // namespace
 
 std::vector<std::string> names_of(const std::vector<CsvColumn>& columns) {
-    std::vector<std::string> names;
-    for (const CsvColumn& c : columns) names.push_back(shortened(c.name));
-    return names;
+    return texts_of(columns, [](const CsvColumn& c) { return shortened(c.name); });
 }
 
 RecordColumn find_column(

@@ -72,10 +72,8 @@ Json describe_peak(const SweepRequest& r, Place place, const Peak& peak) {
 /// The reason why a point's fields form no valid system.
 std::string fault_of(const SweepRequest& r, const Place& place) {
     try {
-        std::vector<std::string> details;
-        for (const FieldError& e : read_started_system(fields_of(r, place)).errors)
-            details.push_back(e.detail);
-        return joined(details);
+        return joined(
+            texts_of(read_started_system(fields_of(r, place)).errors, &FieldError::detail));
     } catch (const Problem& problem) {
         return problem.what();
     }

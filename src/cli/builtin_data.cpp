@@ -6,7 +6,6 @@
 #include <memory>
 #include <string>
 #include <utility>
-#include <vector>
 
 #include "api/json_text.hpp"
 #include "api/openapi/openapi.hpp"
@@ -64,15 +63,14 @@ std::string text_of(const api::Preset& p) {
 }
 
 std::string text_of_presets(const std::string& name) {
-    std::vector<std::string> names;
     std::size_t width = 0, source = 0;
     for (const api::Preset& p : api::presets()) {
         if (p.name == name) return text_of(p);
-        names.push_back(p.name);
         width = std::max(width, p.name.size());
         source = std::max(source, p.source.size());
     }
-    if (!name.empty()) refuse_name("preset", names, name);
+    if (!name.empty())
+        refuse_name("preset", api::texts_of(api::presets(), &api::Preset::name), name);
     std::string text;
     for (const api::Preset& p : api::presets())
         text += fmt::format("{:<{}}  {:<{}}  {}\n", p.name, width, p.source, source, p.title);

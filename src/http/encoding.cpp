@@ -47,9 +47,9 @@ api::Format accepted_format(std::string_view accept, std::span<const api::Format
         }
     }
     if (best) return best->format;
-    std::vector<std::string> types;
-    for (const api::FormatName& name : formats) types.push_back(name.media_type);
-    throw api::Problem(406, "Accept lists none of this server's formats: " + api::joined(types));
+    throw api::Problem(
+        406, "Accept lists none of this server's formats: " +
+                 api::joined(api::texts_of(formats, &api::FormatName::media_type)));
 }
 
 // --- Compression and ETags ---

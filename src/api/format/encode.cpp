@@ -131,8 +131,7 @@ Table only_table(const Json& answer) {
     std::vector<Table> tables;
     add_tables(answer, "", tables);
     if (tables.size() == 1) return std::move(tables[0]);
-    std::vector<std::string> paths;
-    for (const Table& t : tables) paths.push_back(t.path);
+    const std::vector<std::string> paths = texts_of(tables, &Table::path);
     const std::string which =
         tables.empty() ? "none" : fmt::format("{}: {}", tables.size(), joined(paths));
     refuse(

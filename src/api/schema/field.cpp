@@ -90,9 +90,7 @@ std::string did_you_mean(std::span<const std::string> names, const std::string& 
 }
 
 std::string did_you_mean(const FieldTable& table, const std::string& name) {
-    std::vector<std::string> names;
-    for (const Field& field : table) names.push_back(field.name);
-    return did_you_mean(names, name);
+    return did_you_mean(texts_of(table, &Field::name), name);
 }
 
 std::vector<std::string> split(const std::string& text, char separator) {

@@ -4,6 +4,7 @@
 #pragma once
 
 #include <cstddef>
+#include <functional>
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <span>
@@ -125,6 +126,14 @@ std::vector<std::string> split(const std::string& text, char separator);
 
 /// The text without blanks and tabs at its ends.
 std::string_view trimmed(std::string_view text);
+
+/// f of each element of a list, a member or a function that returns a text.
+template <class List, class F>
+std::vector<std::string> texts_of(const List& list, const F& f) {
+    std::vector<std::string> texts;
+    for (const auto& element : list) texts.push_back(std::invoke(f, element));
+    return texts;
+}
 
 /// "one, two, three", for a sentence.
 std::string joined(const std::vector<std::string>& items);

@@ -127,9 +127,7 @@ const Channel force_channel{"force",     "force_N",
                             "the force", "a force on m1 that drives it instead of the base"};
 
 std::vector<std::string> unit_names(const Channel& channel) {
-    std::vector<std::string> names;
-    for (const Unit& unit : channel.units) names.push_back(unit.name);
-    return names;
+    return texts_of(channel.units, &Unit::name);
 }
 
 const FieldTable& identify_fields() {
