@@ -96,14 +96,6 @@ std::string_view reason_phrase(int status) {
     }
 }
 
-void add_errors(
-    const std::string& where, std::vector<FieldError> nested, std::vector<FieldError>& all) {
-    for (FieldError& e : nested) {
-        e.pointer = where + e.pointer;
-        all.push_back(std::move(e));
-    }
-}
-
 void refuse(std::vector<FieldError> errors) {
     const std::string detail =
         errors.size() == 1 ? errors[0].detail

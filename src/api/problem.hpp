@@ -29,10 +29,6 @@ std::string shortened(std::string_view text);
 /// "Unprocessable Content" for 422, and so on.
 std::string_view reason_phrase(int status);
 
-/// Adds the errors of a nested object, with `where` before their pointers.
-void add_errors(
-    const std::string& where, std::vector<FieldError> nested, std::vector<FieldError>& all);
-
 /// Throws a Problem 422 that lists the errors.
 [[noreturn]] void refuse(std::vector<FieldError> errors);
 /// The same if there are errors.

@@ -123,11 +123,7 @@ void check_field(const Checked& c, const Json& value) {
         case FieldType::object:
             if (!value.is_object()) return c.fail("", value, "must be an object");
             if (f.fields.empty()) return;  // the reader of the request checks it
-            for (FieldError& e : check(f.fields, value)) {
-                e.pointer = pointer(f.name) + e.pointer;
-                c.errors.push_back(std::move(e));
-            }
-            return;
+            return add_errors(pointer(f.name), check(f.fields, value), c.errors);
         case FieldType::objects:  // the reader of the request checks each
             if (!value.is_array() && !c.is_choice(value))
                 c.fail(
@@ -176,6 +172,14 @@ std::vector<FieldError> check(const FieldTable& table, const Json& object) {
                  "unknown field" + did_you_mean(table, name)});
     }
     return errors;
+}
+
+void add_errors(
+    const std::string& where, std::vector<FieldError> nested, std::vector<FieldError>& all) {
+    for (FieldError& e : nested) {
+        e.pointer = where + e.pointer;
+        all.push_back(std::move(e));
+    }
 }
 
 Json beginning_of(const Json& value) {

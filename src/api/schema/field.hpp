@@ -154,6 +154,10 @@ inline constexpr std::size_t most_errors = 20;
 /// The errors that each field shows on its own, up to most_errors.
 std::vector<FieldError> check(const FieldTable& table, const Json& object);
 
+/// Adds the errors of a nested object, with `where` before their pointers.
+void add_errors(
+    const std::string& where, std::vector<FieldError> nested, std::vector<FieldError>& all);
+
 /// Bytes of an invalid value that a response repeats.
 inline constexpr std::size_t longest_echo = 200;
 
