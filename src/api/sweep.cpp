@@ -185,8 +185,8 @@ Json describe_point(const SweepRequest& r, std::size_t index, const SweepPoint& 
     if (r.plan.default_set) {
         line["worst"] = describe_motion(r, worst);
         line["best"] = describe_motion(r, motions.empty() ? worst : *motions.front());
-        line["starts"] = Json::array();
-        for (const Motion& m : point.motions) line["starts"].push_back(describe_motion(r, m));
+        line["starts"] =
+            column(point.motions, [&r](const Motion& m) { return describe_motion(r, m); });
         line["lifetime"] = describe(properties::lifetime, lifetime_of(point.motions));
     } else if (point.second) {
         line["second_start"] = describe_motion(r, *point.second);
@@ -205,9 +205,9 @@ Json describe_row(const SweepRequest& r, std::size_t index, const RowSummary& ro
     if (r.plan.default_set) {
         line["worst"] = describe_peak(r, place, row.worst);
         line["best"] = describe_peak(r, place, row.best);
-        line["starts"] = Json::array();
-        for (const auto& of_start : row.starts)
-            line["starts"].push_back(describe_peak(r, place, of_start.peak));
+        line["starts"] = column(row.starts, [&](const RowSummary::FromStart& of) {
+            return describe_peak(r, place, of.peak);
+        });
     }
     line["x_free_peak"] = or_null(row.x_free);
     line["points"] = row.points;

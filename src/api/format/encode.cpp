@@ -225,9 +225,7 @@ Json cbor_of(const Quadruple& doubles) {
     return typed_array;
 }
 Json cbor_of(const MatrixByRows& rows) {
-    Json array = Json::array();
-    for (const Quadruple& row : rows) array.push_back(cbor_of(row));
-    return array;
+    return column(rows, [](const Quadruple& row) { return cbor_of(row); });
 }
 
 /// Turns packed lists into values that to_cbor() writes as documented.
