@@ -240,12 +240,13 @@ Json describe_window(const TransferProduct& product) {
 
 void add_estimators(
     Json& j, const TransferProduct& product, const Growth& growth, const ExponentOptions& shown,
-    bool histories) {
+    bool histories, bool slopes) {
     const auto add = [&](const char* name, const Exponents& values, const Json& more,
                          const ExponentHistory& history) {
         Json part = describe_final(values);
         part.update(more);
         if (histories) part["history"] = describe(history_columns, history);
+        if (slopes) part["slope"] = finite_or_null(coarse_slope(history, product.start_tau()));
         j[name] = std::move(part);
     };
     if (shown.qr)
@@ -280,14 +281,7 @@ Json describe_exponents(
         j["verdict_sigmas"] = finite_or_null(w.growth.lambda1 / w.growth.standard_error[0]);
         j["verdict_reason"] = reason_of(w.judgement, w.growth, regime);
     }
-    add_estimators(j, w.product, w.growth, shown, histories);
-    const auto add_slope = [&](bool is_shown, const char* estimator, const ExponentHistory& h) {
-        if (is_shown)
-            j[estimator]["slope"] = finite_or_null(coarse_slope(h, w.product.start_tau()));
-    };
-    add_slope(shown.qr, "qr", w.product.qr_history());
-    add_slope(shown.eigenvalues, "eigenvalues", w.product.eigenvalues_history());
-    add_slope(shown.raw_product, "raw_product", w.product.raw_product_history());
+    add_estimators(j, w.product, w.growth, shown, histories, true);
     return j;
 }
 

@@ -31,11 +31,12 @@ Json describe_final(const Exponents& values);
 Json describe_exponents(
     const WindowExponents& window, const ExponentOptions& shown, const Regime& regime,
     bool histories);
-/// The parts of describe_exponents(): the window, and the result of each estimator.
+/// The parts of describe_exponents(): the window, and the result of each estimator, with its slope
+/// if `slopes`.
 Json describe_window(const TransferProduct& product);
 void add_estimators(
     Json& part, const TransferProduct& product, const Growth& growth, const ExponentOptions& shown,
-    bool histories);
+    bool histories, bool slopes);
 
 Json describe_perturbation(Perturbation&& perturbation);
 

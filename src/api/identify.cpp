@@ -117,7 +117,7 @@ Json describe_measured(
     const MeasuredExponents& e, const std::vector<KnownStretch>& stretches,
     const std::vector<IdentifiedImpact>& impacts, Warnings& warnings) {
     Json j = describe_window(e.all());
-    add_estimators(j, e.all(), growth_of(e.all()), e.all().options(), true);
+    add_estimators(j, e.all(), growth_of(e.all()), e.all().options(), true, false);
     change_numbers(j["qr"]["history"][quantity.tau.name].get_binary(), [&e](double tau) {
         return e.moment(tau);
     });
@@ -130,7 +130,8 @@ Json describe_measured(
             warnings.push_back(text);
     }
     Json longest = describe_window(e.longest());
-    add_estimators(longest, e.longest(), growth_of(e.longest()), e.longest().options(), true);
+    add_estimators(
+        longest, e.longest(), growth_of(e.longest()), e.longest().options(), true, false);
     for (const char* name : {"eigenvalues", "raw_product"})
         if (longest.contains(name)) {
             j[name] = longest[name];
