@@ -61,6 +61,12 @@ CurveEquations with_test(const OrbitEquations& equations, const SpecialTest& tes
     };
 }
 
+/// A point of a curve of special points.
+OrbitPoint orbit_at(
+    const OrbitEquations& equations, const Unknowns& z, const OrbitMeasures& measures) {
+    return orbit_point(equations, z, eigenvalues_of(equations.values(z)->transfer), measures);
+}
+
 /// The check of an orbit, for which an impact without speed is one.
 OrbitCheck check_special(const SpecialTest& test, const Unknowns& z) {
     auto approach = test.equations.values(z)->approach;
@@ -137,12 +143,6 @@ public:
         return std::nullopt;
     }
 
-    OrbitPoint point(const Unknowns& z) const {
-        const auto values = over_both_->values(z);
-        return orbit_point(
-            *over_both_, z, eigenvalues_of(values->transfer), over_both_->check(z, {}).measures);
-    }
-
     /// From a birth in one direction of the second parameter.
     bool follow(Unknowns z, int direction, int number, BranchSink& sink) const {
         const Eigen::Index second = z.size() - 1;
@@ -156,7 +156,7 @@ public:
         double h = plan_.resolution;
         for (long points = 1;; ++points) {
             if (plan_.stop && plan_.stop()) return false;
-            const OrbitPoint here = point(z);
+            const OrbitPoint here = orbit_at(*over_both_, z, over_both_->check(z, {}).measures);
             sink.point(number, here);
             if (z(second) == limit || plan_.family.end_before(0, z(second - 1)))
                 end = BranchEnd::range;
@@ -219,10 +219,6 @@ bool follow_curve(
     const auto begin = point_in_plane(curve, z, along, along.dot(z));
     for (const int direction : {1, -1}) {
         sink.branch({number, -1, point.kind, direction});
-        const auto orbit_at = [&](const Unknowns& u, const OrbitCheck& check) {
-            return orbit_point(
-                equations, u, eigenvalues_of(equations.values(u)->transfer), check.measures);
-        };
         if (!begin) {
             sink.special(number++, {SpecialKind::end, point.orbit, BranchEnd::not_decided});
             continue;
@@ -234,7 +230,7 @@ bool follow_curve(
         double h = first_curve_arc;
         for (long points = 0; !end; ++points) {
             if (plan.stop && plan.stop()) return false;
-            sink.point(number, orbit_at(a.z, check));
+            sink.point(number, orbit_at(equations, a.z, check.measures));
             if (points + 1 >= plan.most_points) end = BranchEnd::most_points;
             const double most = a.tangent.tail<2>().cwiseAbs().maxCoeff();
             h = std::min({h, longest_curve_arc, plan.resolution / most});
@@ -252,7 +248,8 @@ bool follow_curve(
             else a = *b;
             h *= curve_growth;
         }
-        sink.special(number++, {SpecialKind::end, orbit_at(a.z, check_special(test, a.z)), *end});
+        const OrbitMeasures measures = check_special(test, a.z).measures;
+        sink.special(number++, {SpecialKind::end, orbit_at(equations, a.z, measures), *end});
     }
     return true;
 }
