@@ -23,11 +23,10 @@ std::vector<IdentifiedImpact> listed(std::vector<IdentifiedImpact> impacts) {
 
 Json describe_identified(const std::vector<IdentifiedImpact>& impacts) {
     // A long list is copied only if it has to be.
-    const bool all = std::ranges::none_of(impacts, &IdentifiedImpact::comes_to_rest);
-    const std::vector<IdentifiedImpact> some =
-        all ? std::vector<IdentifiedImpact>() : listed(impacts);
-    const std::vector<IdentifiedImpact>& shown = all ? impacts : some;
-    Json j = describe(identified_wall_columns, shown), others = describe(identified_columns, shown);
+    if (std::ranges::any_of(impacts, &IdentifiedImpact::comes_to_rest))
+        return describe_identified(listed(impacts));
+    Json j = describe(identified_wall_columns, impacts),
+         others = describe(identified_columns, impacts);
     make_room(j, others.size());
     for (auto& [name, value] : others.get_ref<Json::object_t&>()) j[name] = std::move(value);
     return j;

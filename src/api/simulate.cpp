@@ -156,13 +156,11 @@ std::vector<std::string> add_parts(
         if (r.system.si) add_si(part, *r.system.si);
         append(answer, {{name, std::move(part)}});
     };
-    const auto add_in_time = [&](const char* name, auto describe_part) {
+    const auto part = [&](bool is_wanted, const char* name, auto describe_part) {
+        if (!is_wanted) return;
         const bool late = stop.late && stop.late();
         if (late) left_out.push_back(name);
         add(name, late ? Json(nullptr) : describe_part());
-    };
-    const auto part = [&](bool is_wanted, const char* name, auto describe_part) {
-        if (is_wanted) add_in_time(name, describe_part);
     };
     const Parts& parts = r.wanted.parts;
     const ExponentOptions& shown = r.wanted.estimators;
@@ -189,8 +187,9 @@ std::vector<std::string> add_parts(
     part(parts.energy, "energy", [&] { return describe_energy(*a.energy); });
     part(parts.regime, "regime", [&] { return describe_regime(*a.regime); });
     part(parts.manifold, "manifold", [&] { return describe_manifold(*a.manifold); });
-    if (a.perturbation)
-        add_in_time("perturbation", [&] { return describe_perturbation(*taken(a.perturbation)); });
+    part(a.perturbation.has_value(), "perturbation", [&] {
+        return describe_perturbation(*taken(a.perturbation));
+    });
     return left_out;
 }
 
