@@ -1,6 +1,5 @@
 // Peak displacement and path length of the linear oscillator between events.
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <optional>
 
