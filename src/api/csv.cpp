@@ -162,7 +162,7 @@ auto is_number_by(char separator) {
 }
 
 bool has_number(const std::vector<Cell>& cells, char separator) {
-    return std::any_of(cells.begin(), cells.end(), is_number_by(separator));
+    return std::ranges::any_of(cells, is_number_by(separator));
 }
 
 /// The separator that splits the line into two or more numbers.
@@ -172,7 +172,7 @@ std::optional<char> separator_of_numbers(std::string_view line, std::optional<ch
     if (!declared) separators += by_blanks;
     for (const char separator : separators) {
         split_cells(line, separator, cells);
-        if (cells.size() > 1 && std::all_of(cells.begin(), cells.end(), is_number_by(separator)))
+        if (cells.size() > 1 && std::ranges::all_of(cells, is_number_by(separator)))
             return separator;
     }
     return std::nullopt;
@@ -199,8 +199,7 @@ public:
         };
         const auto are_units = [count](const std::vector<Cell>& cells) {
             return !cells.empty() && cells.size() <= count &&
-                   std::all_of(
-                       cells.begin(), cells.end(), [](const Cell& c) { return is_unit(c.text); });
+                   std::ranges::all_of(cells, is_unit, &Cell::text);
         };
         if (fits(before) && are_units(last)) return named(before, last);
         if (fits(comment) && !are_units(comment) && are_units(last)) return named(comment, last);
@@ -354,9 +353,7 @@ std::string unit_spelling(std::string_view text) {
     std::erase_if(spelling, [](char c) {
         return std::string_view(" ^*()[]").find(c) != std::string_view::npos;
     });
-    std::transform(spelling.begin(), spelling.end(), spelling.begin(), [](unsigned char c) {
-        return std::tolower(c);
-    });
+    for (char& c : spelling) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
     return spelling;
 }
 

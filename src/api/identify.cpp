@@ -125,8 +125,7 @@ Json describe_measured(
     add_warnings(e.longest(), true, odd);
     for (const Warning& w : odd) {
         const std::string text = text_of(w, any_size);
-        if (std::find(warnings.begin(), warnings.end(), text) == warnings.end())
-            warnings.push_back(text);
+        if (std::ranges::count(warnings, text) == 0) warnings.push_back(text);
     }
     Json longest = describe_window(e.longest());
     add_estimators(

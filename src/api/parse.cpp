@@ -271,8 +271,7 @@ bool convert(std::string_view bytes, const char* encoding, std::string* text) {
 
 /// A fast test: most texts are ASCII.
 bool is_ascii(std::string_view bytes) {
-    return std::all_of(
-        bytes.begin(), bytes.end(), [](char c) { return static_cast<unsigned char>(c) < 0x80; });
+    return std::ranges::all_of(bytes, [](char c) { return static_cast<unsigned char>(c) < 0x80; });
 }
 
 const char* encoding_of(std::string_view bytes) {

@@ -54,8 +54,7 @@ std::optional<Suffix> suffix_of(const Channel& q, const std::string& name) {
     }
     if (last == std::string::npos) return {};
     const std::string text = name.substr(last + 1);
-    const bool number =
-        std::all_of(text.begin(), text.end(), [](unsigned char c) { return std::isdigit(c); });
+    const bool number = std::ranges::all_of(text, [](unsigned char c) { return std::isdigit(c); });
     return number ? std::nullopt : std::optional(Suffix{text, false});
 }
 
@@ -124,9 +123,7 @@ std::vector<std::string> names_of(const std::vector<CsvColumn>& columns) {
 RecordColumn find_column(
     const std::vector<CsvColumn>& columns, const Json& fields, const Channel& q) {
     const auto found = [&](auto fits) {
-        const auto it = std::find_if(columns.begin(), columns.end(), [&](const CsvColumn& c) {
-            return fits(std::string_view(c.name));
-        });
+        const auto it = std::ranges::find_if(columns, fits, &CsvColumn::name);
         return it == columns.end() ? RecordColumn{nullptr, 1}
                                    : RecordColumn{&*it, unit_factor(q, fields, *it)};
     };

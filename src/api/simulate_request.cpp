@@ -110,10 +110,8 @@ FieldError error_of(
     const std::string detail = "the perturbed start is invalid: " + fault.message;
     if (given.contains("size")) return {at_perturbation + "size", given["size"], nullptr, detail};
     const bool by_x = fault.field == "y0" && !given.contains("y");
-    const Component& c = *std::find_if(
-        std::begin(perturbed_components), std::end(perturbed_components), [&](const Component& of) {
-            return by_x ? of.value == &State::x : of.of_start == fault.field;
-        });
+    const Component& c =
+        *std::ranges::find(perturbed_components, by_x ? "x0" : fault.field, &Component::of_start);
     const double from = start.*c.value, low = by_x ? perturbed.y - p.b : fault.minimum,
                  high = by_x ? perturbed.y + p.b : fault.maximum;
     return {

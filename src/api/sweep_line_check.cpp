@@ -17,8 +17,7 @@ Json read_back(Json line) { return Json::parse(json_text(std::move(line))); }
 /// Adds a line unless it is there already.
 void add(std::vector<Json>& samples, Json line) {
     line = read_back(std::move(line));
-    if (std::find(samples.begin(), samples.end(), line) == samples.end())
-        samples.push_back(std::move(line));
+    if (std::ranges::count(samples, line) == 0) samples.push_back(std::move(line));
 }
 
 /// One motion of each kind, with arbitrary numbers.

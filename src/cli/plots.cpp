@@ -40,10 +40,8 @@ bool has(const Json& object, const std::vector<const char*>& names) {
         return object.contains(name) && object[name].is_array() && !object[name].empty() &&
                object[name].size() == object[names[0]].size();
     };
-    return std::all_of(names.begin(), names.end(), is_list) &&
-           std::all_of(object[names[0]].begin(), object[names[0]].end(), [](const Json& entry) {
-               return entry.is_number();
-           });
+    return std::ranges::all_of(names, is_list) &&
+           std::ranges::all_of(object[names[0]], &Json::is_number);
 }
 
 /// lambda1 with its standard error, if known; empty if lambda1 is missing.
@@ -83,9 +81,7 @@ Plot relative_displacement(const Json& answer) {
             if (at[n] >= tau.front() && at[n] <= tau.back())
                 points.emplace_back(at[n], -side[n] * b);
     }
-    std::stable_sort(points.begin(), points.end(), [](const auto& a, const auto& c) {
-        return a.first < c.first;
-    });
+    std::ranges::stable_sort(points, {}, &std::pair<double, double>::first);
     Curve curve;
     for (const auto& [at, gap] : points) curve.add(at, gap);
     Plot p{.x_label = "tau", .y_label = "y - x (mm)", .curves = {std::move(curve)}};

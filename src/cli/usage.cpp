@@ -185,7 +185,7 @@ std::string italic(const std::string& text) { return "\\fI" + roff(text) + "\\fR
 char capital(char c) { return static_cast<char>(std::toupper(static_cast<unsigned char>(c))); }
 
 std::string capitals(std::string text) {
-    std::transform(text.begin(), text.end(), text.begin(), capital);
+    std::ranges::transform(text, text.begin(), capital);
     return text;
 }
 

@@ -71,8 +71,7 @@ public:
     /// The first entry whose client may(client); nothing if there is none.
     template <class May = bool (*)(const std::string&)>
     std::optional<T> pop(const May& may = any_client) {
-        const auto found = std::find_if(
-            entries_.begin(), entries_.end(), [&may](const Entry& e) { return may(e.client); });
+        const auto found = std::ranges::find_if(entries_, may, &Entry::client);
         if (found == entries_.end()) return std::nullopt;
         if (found->turn > now_) {
             now_ = found->turn;
@@ -84,9 +83,7 @@ public:
         return value;
     }
     void remove(const T& value) {
-        const auto found = std::find_if(entries_.begin(), entries_.end(), [&value](const Entry& e) {
-            return e.value == value;
-        });
+        const auto found = std::ranges::find(entries_, value, &Entry::value);
         if (found != entries_.end()) take(found);
     }
     /// Calls visit(value) for each entry.

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <iterator>
+#include <set>
 
 namespace vines::plot {
 
@@ -151,12 +152,10 @@ private:
                 if (c.y[k] < c.y[low]) low = k;
                 if (c.y[k] > c.y[high]) high = k;
             }
-            std::size_t wanted[] = {i, std::min(low, high), std::max(low, high), last};
-            const auto end = std::unique(std::begin(wanted), std::end(wanted));
-            for (auto k = std::begin(wanted); k != end; ++k)
+            for (const std::size_t k : std::set{i, low, high, last})
                 fmt::format_to(
-                    std::back_inserter(points), "{:.1f},{:.1f} ", px(c.x[*k]),
-                    std::clamp(py(value(c.y[*k])), -far, far));
+                    std::back_inserter(points), "{:.1f},{:.1f} ", px(c.x[k]),
+                    std::clamp(py(value(c.y[k])), -far, far));
             i = last + 1;
         }
         polyline(c, points);

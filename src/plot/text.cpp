@@ -49,7 +49,7 @@ int terminal_colour(const std::string& hex) {
 /// Length of a UTF-8 text in characters.
 int length(const std::string& text) {
     return static_cast<int>(
-        std::count_if(text.begin(), text.end(), [](char c) { return (c & '\xC0') != '\x80'; }));
+        std::ranges::count_if(text, [](char c) { return (c & '\xC0') != '\x80'; }));
 }
 
 int lines_of(const Terminal& terminal) { return std::max(terminal.height, min_height); }

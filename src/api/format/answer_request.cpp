@@ -33,8 +33,7 @@ struct Selection {
 bool has(const Json& value, std::span<const std::string> path) {
     if (path.empty() || value.is_null()) return true;
     if (value.is_array())
-        return std::any_of(
-            value.begin(), value.end(), [path](const Json& entry) { return has(entry, path); });
+        return std::ranges::any_of(value, [path](const Json& entry) { return has(entry, path); });
     return value.is_object() && value.contains(path[0]) && has(value[path[0]], path.subspan(1));
 }
 
@@ -75,7 +74,7 @@ std::vector<FieldError> check_fields(const Json& fields) {
 Json included(const std::vector<std::string>& fields, const Field& include) {
     Json parts = Json::array();
     const auto names = [&fields](const std::string& part) {
-        return std::any_of(fields.begin(), fields.end(), [&part](const std::string& field) {
+        return std::ranges::any_of(fields, [&part](const std::string& field) {
             return field == part || field.starts_with(part + ".");
         });
     };

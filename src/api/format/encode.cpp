@@ -75,8 +75,8 @@ struct AnswerList {
 std::optional<AnswerList> list_of(const Json& value) {
     AnswerList list;
     const auto all_are = [&value](auto... is) {
-        return std::all_of(
-            value.begin(), value.end(), [=](const Json& entry) { return ((entry.*is)() || ...); });
+        return std::ranges::all_of(
+            value, [=](const Json& entry) { return ((entry.*is)() || ...); });
     };
     if (value.is_binary()) {
         list.packed = list_in_memory(value);

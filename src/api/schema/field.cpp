@@ -81,9 +81,8 @@ Json numbers_of(const std::string& text) {
 
 std::string did_you_mean(std::span<const std::string> names, const std::string& name) {
     if (name.size() > max_compared_length) return "";
-    const auto nearest = std::min_element(
-        names.begin(), names.end(),
-        [&](const auto& a, const auto& b) { return distance(name, a) < distance(name, b); });
+    const auto nearest = std::ranges::min_element(
+        names, {}, [&name](const std::string& known) { return distance(name, known); });
     // Allows one typing error per three letters, at least one.
     const std::size_t errors = std::max<std::size_t>(1, name.size() / 3);
     return distance(name, *nearest) <= errors ? "; did you mean " + *nearest + "?" : "";
