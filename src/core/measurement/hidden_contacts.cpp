@@ -57,7 +57,7 @@ double IdentifiedSystem::start_of(double tau) const {
 }
 
 Outcome IdentifiedSystem::run(
-    double tau, const State& s, Limits limits, std::span<Observer* const> observers) const {
+    double tau, const State& s, Limits limits, std::initializer_list<Observer*> observers) const {
     limits.tau_start = start_of(tau);
     limits.tau_end = limits.tau_start + faster * (limits.tau_end - tau);
     return simulate(own, {s.x_dot / faster, s.x, s.y_dot / faster, s.y}, limits, observers);
@@ -240,11 +240,10 @@ struct HiddenContactSearch {
         const IdentifiedImpact& first = impacts[from];
         if (!(end > first.tau)) return std::nullopt;
         RunContacts run(system, first.tau);
-        Observer* const observers[] = {&run};
         const double y = first.x - first.side * system.own.b;
         system.run(
             first.tau, {after.x_dot, first.x, after.y_dot, y},
-            {.tau_end = end, .max_impacts = most_impacts}, observers);
+            {.tau_end = end, .max_impacts = most_impacts}, {&run});
         HiddenContacts hidden{from, from, after.y_dot, nan, run.release};
         std::optional<HiddenContacts> found;
         std::size_t shown = from + 1;

@@ -3,8 +3,8 @@
 // identified system from the first impact reaches the second, it has the hidden contacts.
 #pragma once
 
+#include <initializer_list>
 #include <optional>
-#include <span>
 #include <vector>
 
 #include "core/measurement/identified_impact.hpp"
@@ -25,7 +25,8 @@ struct IdentifiedSystem {
     /// Runs from `tau` on; `state` and `limits` in the measurement's units. Observers see the run's
     /// own time, which starts at start_of(tau) and runs `faster`.
     Outcome run(
-        double tau, const State& state, Limits limits, std::span<Observer* const> observers) const;
+        double tau, const State& state, Limits limits,
+        std::initializer_list<Observer*> observers) const;
     double start_of(double tau) const;
 
     /// Motion of the oscillator at `tau` while the mass flies between two walls, from a state.

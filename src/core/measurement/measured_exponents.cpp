@@ -119,10 +119,9 @@ std::optional<std::vector<Leg>> legs_between(
     Impact first{};
     first.tau = system.start_of(leaves.tau);
     flight.on_impact(first);
-    Observer* const observers[] = {&flight};
     system.run(
         leaves.tau, {leaves.x_dot, leaves.x, y_dot, y},
-        {.tau_end = to.tau + same_impact, .max_impacts = 1}, observers);
+        {.tau_end = to.tau + same_impact, .max_impacts = 1}, {&flight});
     if (!flight.end || flight.end->side != to.side ||
         std::abs(system.measured_time(flight.end->tau, leaves.tau) - to.tau) > same_impact)
         return std::nullopt;

@@ -212,12 +212,11 @@ std::optional<ForwardRun> forward_run(
     const IdentifiedImpact& first = *known;
     ImpactRecord impacts;
     Lyapunov lyapunov(system.own, {0, infinity}, qr_alone);
-    Observer* const observers[] = {&impacts, &lyapunov};
     system.run(
         first.tau,
         {first.x_dot_after, first.x, first.y_dot_after, first.x - first.side * system.own.b},
         {.tau_end = tau_end, .max_impacts = most_forward_impacts, .stop = progress.stop()},
-        observers);
+        {&impacts, &lyapunov});
     progress.look();
     for (Impact& i : impacts.entries) i = system.measured(i, first.tau);
     Exponents lambda = lyapunov.product().qr();
