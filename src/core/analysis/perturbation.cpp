@@ -260,9 +260,8 @@ void find_linear_stretch(
 
 /// Cuts a series to the times it shares with the reference: rounding can shift the last one.
 void keep_common(Series& s, const Series& reference) {
-    const auto common =
-        std::mismatch(s.tau.begin(), s.tau.end(), reference.tau.begin(), reference.tau.end());
-    const auto size = static_cast<std::size_t>(common.first - s.tau.begin());
+    const auto common = std::ranges::mismatch(s.tau, reference.tau);
+    const auto size = static_cast<std::size_t>(common.in1 - s.tau.begin());
     for (auto* column : s.columns()) column->resize(size);
 }
 

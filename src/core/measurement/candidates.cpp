@@ -100,9 +100,8 @@ std::vector<std::size_t> standing_out(
     std::vector<std::size_t> order;
     for (std::size_t k = 0; k < signal.value.size(); ++k)
         if (!bad[k] && std::abs(signal.value[k]) > threshold) order.push_back(k);
-    std::ranges::sort(order, [&](std::size_t a, std::size_t b) {
-        return std::abs(signal.value[a]) > std::abs(signal.value[b]);
-    });
+    std::ranges::sort(
+        order, std::greater(), [&](std::size_t k) { return std::abs(signal.value[k]); });
     return order;
 }
 

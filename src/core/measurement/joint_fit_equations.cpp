@@ -240,9 +240,8 @@ void add_mass_flights(JointFitState& state, const std::vector<FittedBorder>& bor
                 return borders[r.impact].side == side ? speed(r) : nan;
             });
             const double usual = median(at_wall);
-            std::vector<double> off;
-            for (const double v : at_wall) off.push_back(v / usual - 1);
-            if (const double scatter = robust_deviation(std::move(off)); scatter > 0)
+            const auto off = [usual](double v) { return v / usual - 1; };
+            if (const double scatter = robust_deviation(values_of(at_wall, off)); scatter > 0)
                 state.effects->speed_scatter = std::max(state.effects->speed_scatter, scatter);
         }
     }

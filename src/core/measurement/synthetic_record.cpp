@@ -74,9 +74,8 @@ TrueMotion true_motion(
 
     std::erase_if(impacts.entries, [&](const Impact& i) { return i.tau <= begin; });
     std::erase_if(sticks.entries, [&](const StickingPhase& s) { return s.tau_end <= begin; });
-    const auto first = std::find_if(
-        stretches.all.begin() + 1, stretches.all.end(),
-        [&](const TrueStretch& s) { return s.tau > begin; });
+    const auto first = std::ranges::upper_bound(
+        stretches.all.begin() + 1, stretches.all.end(), begin, {}, &TrueStretch::tau);
     stretches.all.erase(stretches.all.begin(), first - 1);
     return {
         p,
