@@ -149,13 +149,12 @@ public:
         if (!has_slot) throw_without();
         listed_ = Clock::now();
     }
-    /// Gives back what the lists have, and waits for memory for a stream, which is reserved.
+    /// Gives back what the lists have, and waits for memory for a stream.
     void wait_for_stream(std::size_t bytes) {
         lists_permit_.reset();
         request_.reserve_memory({});
         permit_.wait_without_slot([&] {
             wait_for_memory({bytes, bytes}, Clock::now());
-            request_.reserve_memory({bytes, bytes});
             return false;
         });
     }

@@ -55,9 +55,8 @@ public:
         if (!holds_little(client, more)) return false;
         const Clock::time_point now = Clock::now(), own = due(client, more, since);
         std::erase_if(claims_, [&](const auto& claim) { return claim.second.until < now; });
-        if (more.for_long == 0)
-            if (Claim& claim = claims_[client]; claim.bytes <= more.all)
-                claim = {more.all, own, now + std::chrono::seconds(3)};
+        if (more.for_long == 0 && claims_[client].bytes <= more.all)
+            claims_[client] = {more.all, own, now + std::chrono::seconds(3)};
         return is_lacking(client, more, own);
     }
     /// Counts these bytes instead of what was counted, unless what they add is_full_for() it.
@@ -67,8 +66,7 @@ public:
         const Bytes more{
             bytes.all - std::min(bytes.all, all),
             bytes.for_long - std::min(bytes.for_long, for_long)};
-        const bool is_less = more.all == 0 && more.for_long == 0;
-        if (!is_less && is_refused(client, more)) return false;
+        if ((more.all > 0 || more.for_long > 0) && is_refused(client, more)) return false;
         change(counted, client, bytes);
         return true;
     }
