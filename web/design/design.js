@@ -1,12 +1,12 @@
 // The design tab: the best absorber over a band, beside none and a tuned mass damper of its mass.
 import {linesOf} from "../shared/api.js";
-import {$, cards, countUp, keyOf, setTexts, tableOf} from "../shared/dom.js";
+import {$, cards, keyOf, setTexts, tableOf} from "../shared/dom.js";
 import {Form} from "../shared/form.js";
 import {makeAccessible} from "../shared/gestures.js";
 import {RequestTab} from "../shared/job.js";
 import {dots, line} from "../shared/marks.js";
 import {percent, shortTo} from "../shared/numbers.js";
-import {LinePlot, ScatterPlot} from "../shared/plot.js";
+import {PlotGroup} from "../shared/plot.js";
 
 const inMm = {unit: "mm", factor: 1000};
 /** What the design makes small: name and unit. */
@@ -43,9 +43,14 @@ export class DesignTab extends RequestTab {
     };
     this.form = new Form($("design-fields"), fields, {prefix: "design-", grouped});
     $("design-fields").oninput = () => this.markStale();
-    this.response = new LinePlot($("figure-design-response"));
-    this.map = new ScatterPlot($("figure-design-map"));
-    for (const plot of ["response", "map"]) this[plot].about = () => this.about(plot);
+    this.plots = new PlotGroup(this.results, undefined, {
+      prefix: "figure-design-",
+      about: (name) => ({
+        summary: this.done?.sentence ?? "",
+        caption: this.asked,
+        name: `design-${name}`,
+      }),
+    });
     $("design-simulate").onclick = () => simulate(this.worstCase());
   }
 
@@ -78,18 +83,9 @@ export class DesignTab extends RequestTab {
     }
   }
 
-  show() {
-    this.say("");
-    countUp(this.results);
-  }
-
   busy(is, cancelled) {
     super.busy(is, cancelled);
     $("design-bar").hidden = !is;
-  }
-
-  redraw() {
-    if (this.points.length) this.draw();
   }
 
   draw() {
@@ -123,7 +119,7 @@ export class DesignTab extends RequestTab {
     const of = (y, colour, label, dash) =>
       line({x: f, y: y.map((v) => v && v * factor), colour, label, dash, width: 1.6});
     const label = `${title} (${unit})`;
-    this.response.draw({
+    this.plots.draw("response", {
       x: {label: "f (Hz)", factor: 1},
       y: {label},
       span: [f[0], f.at(-1)],
@@ -135,7 +131,7 @@ export class DesignTab extends RequestTab {
         of(damper, "c4", "tuned mass damper"),
       ],
     });
-    makeAccessible({node: this.response.canvas}, `${label} over the frequency`);
+    makeAccessible(this.plots.all.response, `${label} over the frequency`);
   }
 
   /** The worst case over b, with a colour for each R; the best is ringed. */
@@ -150,14 +146,14 @@ export class DesignTab extends RequestTab {
     });
     const keys = marks.map(({colour, label}) => keyOf("●", colour, label));
     $("design-restitutions").replaceChildren(...keys);
-    this.map.draw({
+    this.plots.draw("map", {
       marks,
       x: {label: "b (mm)"},
       y: {label: `worst ${title} (${unit})`},
       empty: "no absorber tried yet",
     });
     const {best} = this.done ?? {};
-    if (best) this.map.light(1000 * best.b, best[name] * factor);
+    if (best) this.plots.all.map.light(1000 * best.b, best[name] * factor);
   }
 
   /** The best absorber and how far each of its values can be off. */
@@ -201,14 +197,5 @@ export class DesignTab extends RequestTab {
     const {f0} = this.host;
     const start = {x_dot0: velocity / (2 * Math.PI * f0)};
     return {...absorber, F: 0, f: f0, ...start, cycles: cyclesOfDecay};
-  }
-
-  about(plot) {
-    return {
-      title: {response: "Response over the band", map: "Worst case over b"}[plot],
-      summary: this.done?.sentence ?? "",
-      caption: this.asked,
-      name: `design-${plot}`,
-    };
   }
 }

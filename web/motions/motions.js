@@ -1,6 +1,6 @@
 // The motions tab: motions that the system settles on, and continuations of periodic orbits.
 import {linesOf} from "../shared/api.js";
-import {$, button, countUp, element, setTexts, tableOf} from "../shared/dom.js";
+import {$, button, element, setTexts, tableOf} from "../shared/dom.js";
 import {BaseForm, defaultSet} from "../shared/form.js";
 import {makeAccessible} from "../shared/gestures.js";
 import {RequestTab} from "../shared/job.js";
@@ -124,16 +124,6 @@ export class MotionsTab extends RequestTab {
     }
   }
 
-  show() {
-    this.say("");
-    this.draw();
-    countUp(this.results);
-  }
-
-  redraw() {
-    if (this.motions) this.draw();
-  }
-
   draw() {
     const {branches, attractors, specials} = this.motions;
     this.plot.draw({quantity: this.quantity.value});
@@ -142,7 +132,7 @@ export class MotionsTab extends RequestTab {
     const text = joined([runs, found, count(specials.length, "special point")]);
     setTexts({"motions-count": text});
     const {title} = quantities[this.quantity.value];
-    makeAccessible({node: this.plot.canvas}, `${title} of all motions: ${text}`);
+    makeAccessible(this.plot, `${title} of all motions: ${text}`);
     this.listSpecials();
     this.place(this.plot.marked);
   }

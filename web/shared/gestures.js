@@ -190,7 +190,8 @@ function followKeys(node, viewport, impacts) {
 }
 
 /** Names a plot for screen readers; with a `viewport` it is a slider with keys. */
-export function makeAccessible({node}, name, moments, viewport) {
+export function makeAccessible(plot, name, moments, viewport) {
+  const node = viewport ? plot.node : plot.canvas;
   attributes(node, {"aria-label": name, role: viewport ? "slider" : "img"});
   if (!viewport) return;
   node.tabIndex = 0;

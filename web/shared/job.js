@@ -1,6 +1,6 @@
 // Runs one computation at a time, that of the newest request; older ones are aborted.
 import {TemporaryError} from "./api.js";
-import {$, attributes, sayIn} from "./dom.js";
+import {$, attributes, countUp, sayIn} from "./dom.js";
 import {queryOf, unknownText} from "./form.js";
 
 const lateAfter = 120; // ms after which a computation is reported as busy
@@ -91,11 +91,11 @@ export class Job {
 }
 
 /**
- * A tab of the page. Subclasses have ask() and show() of a Job, and
+ * A tab of the page. Subclasses have ask() of a Job, and
  * form: its showErrors(errors) shows errors at their fields and returns those without a field;
  * request(): what the form holds, {base, ...}, by default the parts `base` and `own` of its fields;
  * open(query): shows the request of a query;
- * draw(): draws the results so far, if it uses drawSoon(); redraw(): draws in other colours.
+ * draw(): draws the results so far.
  */
 export class RequestTab extends Job {
   asked = null; // query in the address, of the results shown or computed; null before the first
@@ -160,6 +160,17 @@ export class RequestTab extends Job {
   submit() {
     this.send();
     this.scrollToResults();
+  }
+
+  show() {
+    this.say("");
+    this.redraw();
+    countUp(this.results);
+  }
+
+  /** Draws complete results, or draws in other colours. */
+  redraw() {
+    if (this.asked !== null) this.draw();
   }
 
   busy(is, cancelled) {

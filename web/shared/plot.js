@@ -304,7 +304,10 @@ function sameScale(axes, {width, height}) {
 
 /** The plots in the figures of an element by name: planes, and lines over time. */
 export class PlotGroup {
-  /** about(name): summary, caption and file name of an export; moments(): times of the impacts. */
+  /**
+   * viewport: shared by all, if any; about(name): summary, caption and file name of an export;
+   * moments(): times of the impacts.
+   */
   constructor(container, viewport, {prefix = "figure-", about, moments}) {
     this.all = {};
     for (const figure of container.querySelectorAll("[data-plot]")) {

@@ -254,10 +254,9 @@ export class SweepTab extends RequestTab {
   }
 
   show() {
+    super.show();
     this.say(remarksOn(this.data));
-    this.redraw();
     this.refiner.schedule();
-    dom.countUp(this.results);
   }
 
   fail(error) {
