@@ -1,10 +1,11 @@
 // Plots of the details: lines over the time axis of the first screen, and sections.
 import {reveal} from "../shared/dom.js";
 import {exponentRange} from "../shared/exponents.js";
+import {rangeOf} from "../shared/frame.js";
 import {beads, curve, dots, levels, line, lines} from "../shared/marks.js";
 import {digits, mm} from "../shared/numbers.js";
 import {exponentLines, halves, picked} from "./plot_options.js";
-import {alongRun, inUnits, largestMagnitude, logRange, positive, run} from "./run.js";
+import {alongRun, inUnits, largestMagnitude, positive, run} from "./run.js";
 
 const estimators = ["qr", "eigenvalues", "raw_product"];
 const matrices = ["J", "M", "T"];
@@ -42,7 +43,7 @@ function matrixPlot(name, eigenvalues) {
   const [x, ...padded] = alongRun(eigenvalues.tau, drawn);
   const modulus = (y, k) =>
     beads({label: `|μ${"₁₂₃₄"[k]}|`, colour: `c${k + 1}`, size: (5.4 - k) / 2, x, y});
-  const range = log ? logRange(columns) : [least - 0.08, 1.06];
+  const range = log ? rangeOf([[1], ...drawn], true) : [least - 0.08, 1.06];
   return {marks: [one, ...padded.map(modulus)], y: {log, range, label: `|μ| of ${name}`}};
 }
 

@@ -1,11 +1,12 @@
 // Plots of the first screen. They share a cursor, and ring the impact nearest to it.
 import {$, attributes, reveal, setTexts} from "../shared/dom.js";
 import {exponentRange} from "../shared/exponents.js";
+import {rangeOf} from "../shared/frame.js";
 import {beads, curve, dots, levels, line, symbols} from "../shared/marks.js";
 import {firstFrom, inMm, lastUpTo, mm, nearest, short} from "../shared/numbers.js";
 import {unitsOf} from "../shared/units.js";
 import {commonOptions, exponentLines, halves, picked} from "./plot_options.js";
-import {alongRun, inUnits, largestMagnitude, logRange, positive, run, viewport} from "./run.js";
+import {alongRun, inUnits, largestMagnitude, positive, run, viewport} from "./run.js";
 import {plotsIn} from "./words.js";
 
 const mostSamples = 100000; // samples in an exported table
@@ -156,7 +157,7 @@ function largest() {
       line({label: "|μ₁|", colour: "c3", width: 0.8, x, y}),
       beads({colour: "c3", size: 2, x, y}),
     ],
-    y: {label: "|μ| of T", log: true, range: logRange([moduli])},
+    y: {label: "|μ| of T", log: true, range: rangeOf([[1], moduli], true)},
     points: {x: tau, y: moduli},
   };
 }

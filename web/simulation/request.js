@@ -78,14 +78,9 @@ export class Request {
 
   /** Fills the form from a query; an empty one selects fig3. Returns the unknown names. */
   read(query) {
-    const isJson = (text) => text.startsWith("{");
-    const spaced = ([name, text]) => [
-      name,
-      isJson(text) ? text : text.replace(/[,;](?=\S)/g, "$& "),
-    ];
-    const given = Object.fromEntries([...new URLSearchParams(query)].map(spaced));
-    const {preset: named = Object.keys(given).length ? "" : "fig3", ...fields} = given;
-    this.choose(named, fields);
+    const {preset: given, ...fields} = Object.fromEntries(new URLSearchParams(query));
+    const named = given ?? (Object.keys(fields).length ? "" : "fig3");
+    this.choose(named, this.form.parse(fields));
     const unknown = this.form.unknown(fields);
     return named && !this.name ? [`preset=${named}`, ...unknown] : unknown;
   }

@@ -23,25 +23,13 @@ export const largestMagnitude = (values) =>
 /** Columns over tau without repeated times, extended to the whole run so that plots align. */
 export function alongRun(tau, columns) {
   const {end} = run.motion;
-  let last = -Infinity;
-  const keep = tau.map((t) => {
-    const later = t > last;
-    last = Math.max(last, t);
-    return later;
-  });
+  const isLater = (_, i) => !(tau[i] <= tau[i - 1]);
   const before = !(tau[0] <= 0);
-  const after = !(last >= end);
+  const after = !(tau.at(-1) >= end);
   const padded = (column, first, final) => [
     ...(before ? [first] : []),
-    ...column.filter((_, i) => keep[i]),
+    ...column.filter(isLater),
     ...(after ? [final] : []),
   ];
   return [padded(tau, 0, end), ...columns.map((column) => padded(column, null, null))];
-}
-
-/** A range of a logarithmic axis that holds 1 and all positive values. */
-export function logRange(columns) {
-  const values = [1, ...columns.flat().filter((v) => v > 0)];
-  const extreme = (of) => values.reduce((a, v) => of(a, v));
-  return [extreme(Math.min) / 1.6, extreme(Math.max) * 1.6];
 }

@@ -66,8 +66,6 @@ export const plotsIn = (part) =>
     moments: () => run?.answer.impacts.tau ?? [],
   });
 
-const summaries = {}; // of the figures, by name
-
 /** Describes the figures of the first screen; `system`: the parameters in brief. */
 export function describe(answer, system) {
   const caption = parameterLine(answer.parameters);
@@ -77,7 +75,6 @@ export function describe(answer, system) {
     const params = figure.querySelector(".params");
     Object.assign(params, {textContent: system, title: caption});
     params.dataset.all = system === caption ? "" : `: ${caption}`;
-    summaries[name] ??= aboutFigure(name).summary;
-    attributes($(`plot-${name}`), {"aria-label": `${summaries[name]}. ${caption}`});
+    attributes($(`plot-${name}`), {"aria-label": `${aboutFigure(name).summary}. ${caption}`});
   }
 }
