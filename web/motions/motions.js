@@ -14,14 +14,7 @@ const ownFields = ["parameter", ...ends, "switch"];
 const cycles = {cycles: 300, transient_cycles: 200}; // of each start
 const mostBranches = 12; // continuations in addition to that of the base
 const cyclesOfOrbit = 100; // for the simulation of an orbit
-const countField = {
-  name: "count",
-  type: "integer",
-  description: "values of the parameter at which the system settles from several starts",
-  default: 61,
-  minimum: 2,
-  maximum: 1000,
-};
+const standardCount = 61; // values of the parameter at which the system settles
 
 /** Names of the kinds of special points. */
 const kinds = {
@@ -55,7 +48,11 @@ export class MotionsTab extends RequestTab {
   makeForm(tables) {
     this.presets = tables.presets;
     const grouped = {motions: ["Parameter", true]};
-    const own = [...tables.continue_fields.filter((f) => ownFields.includes(f.name)), countField];
+    const ofCount = tables.axis_fields.find(({name}) => name === "count");
+    const own = [
+      ...tables.continue_fields.filter((f) => ownFields.includes(f.name)),
+      {...ofCount, default: standardCount},
+    ];
     this.form = new BaseForm($("motions-fields"), tables, "motions-", grouped, (choices) =>
       own.map((f) => ({
         ...f,
@@ -102,7 +99,7 @@ export class MotionsTab extends RequestTab {
 
   /** Collects the motions that the system settles on. */
   async settle(signal) {
-    const {count: given = countField.default, switch: _, base, ...axis} = this.motions.request;
+    const {count: given = standardCount, switch: _, base, ...axis} = this.motions.request;
     const {[axis.parameter]: swept, ...others} = base;
     const axes = [{...axis, count: given}];
     const sweep = {base: others, axes, starts: defaultSet, ...cycles};

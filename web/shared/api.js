@@ -22,21 +22,16 @@ async function read(response) {
 
 // The key is kept until the browser tab is closed.
 const keyName = "vines-api-key";
-let openPrompt = null; // one dialog for all waiting requests
 
 const currentKey = () => sessionStorage.getItem(keyName);
 
 export const hasKey = () => currentKey() !== null;
 
-/** Prompts for a key after a 401 response. Resolves to whether one was entered. */
-function askForKey() {
-  openPrompt ??= enteredKey().finally(() => {
-    openPrompt = null;
-  });
-  return openPrompt;
-}
-
-async function enteredKey() {
+/**
+ * Prompts for a key after a 401 response, in one dialog for all waiting requests. Resolves to
+ * whether one was entered.
+ */
+async function askForKey() {
   const dialog = $("key");
   $("key-rejected").hidden = !hasKey();
   dialog.returnValue = "";

@@ -139,19 +139,13 @@ export function rangeOf(columns, log = false) {
 }
 
 /** The size of a node, cached since reading it forces a layout; draw() is called when it changes. */
-export class Size {
-  constructor(node, draw) {
-    this.node = node;
-    this.measure();
-    new ResizeObserver(() => this.measure() && draw()).observe(node);
-  }
-
-  /** Returns whether the size has changed. */
-  measure() {
-    const {width, height} = this;
-    Object.assign(this, {width: this.node.clientWidth, height: this.node.clientHeight});
-    return this.width !== width || this.height !== height;
-  }
+export function sizeOf(node, draw) {
+  const size = {width: 0, height: 0};
+  new ResizeObserver(() => {
+    Object.assign(size, {width: node.clientWidth, height: node.clientHeight});
+    draw();
+  }).observe(node);
+  return size;
 }
 
 /** Clears a canvas, after resizing it to the given CSS pixels if necessary; returns its context. */

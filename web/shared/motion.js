@@ -305,26 +305,19 @@ function relativeToBase(answer, load) {
 
 /** Columns {tau, x, x_dot, y, y_dot} of the samples and of the impacts, each before and after. */
 function knotsOf({series, impacts, parameters: {b}}) {
-  const knots = {tau: [], x: [], x_dot: [], y: [], y_dot: []};
-  const add = (tau, x, xDot, y, yDot) => {
-    const values = Object.entries({tau, x, x_dot: xDot, y, y_dot: yDot});
-    for (const [name, value] of values) knots[name].push(value);
-  };
-  let n = 0;
-  const addUpTo = (end) => {
-    for (; series.tau[n] < end; ++n)
-      add(series.tau[n], series.x[n], series.x_dot[n], series.y[n], series.y_dot[n]);
-  };
   const {tau, x, side} = impacts;
-  for (let i = 0; i < tau.length; ++i) {
-    addUpTo(tau[i]);
-    while (series.tau[n] === tau[i]) ++n;
-    const y = x[i] - side[i] * b;
-    add(tau[i], x[i], impacts.x_dot_before[i], y, impacts.y_dot_before[i]);
-    add(tau[i], x[i], impacts.x_dot_after[i], y, impacts.y_dot_after[i]);
-  }
-  addUpTo(Infinity);
-  return knots;
+  const atImpacts = new Set(tau);
+  const names = ["tau", "x", "x_dot", "y", "y_dot"];
+  const samples = series.tau.map((_, n) => names.map((name) => series[name][n]));
+  const ends = tau.flatMap((t, i) =>
+    ["before", "after"].map((when) => {
+      const [xDot, yDot] = [impacts[`x_dot_${when}`][i], impacts[`y_dot_${when}`][i]];
+      return [t, x[i], xDot, x[i] - side[i] * b, yDot];
+    }),
+  );
+  const knots = [...samples.filter(([t]) => !atImpacts.has(t)), ...ends];
+  knots.sort(([t], [other]) => t - other);
+  return Object.fromEntries(names.map((name, k) => [name, knots.map((knot) => knot[k])]));
 }
 
 /** [value, first, second derivative] at tau of the cubic between knots i and i + 1. */

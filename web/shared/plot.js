@@ -1,7 +1,7 @@
 // All plots: a canvas that is redrawn when its size changes, and a ring around one point.
 import {element, keyOf, on} from "./dom.js";
 import {addExportButton, captionOf} from "./export.js";
-import {blank, Frame, font, rangeOf, Size} from "./frame.js";
+import {blank, Frame, font, rangeOf, sizeOf} from "./frame.js";
 import {listen, makeAccessible} from "./gestures.js";
 import {drawText, ink} from "./ink.js";
 import {names} from "./marks.js";
@@ -40,7 +40,7 @@ export class Plot {
     this.plane = element("div", {className: "plane"}, this.canvas, this.ring);
     this.viewport = viewport;
     container.append(this.plane);
-    this.size = new Size(this.plane, () => this.refresh());
+    this.size = sizeOf(this.plane, () => this.refresh());
     const figure = container.closest("figure");
     if (figure) addExportButton(figure, this);
     viewport?.onCursor(() => this.point());
@@ -228,7 +228,6 @@ export class LinePlot extends ZoomablePlot {
       keyOf(dash ? "╍╍" : "━━", colour, label, " ", this.values[i]),
     );
     this.legend.replaceChildren(...(keys.length > 1 ? keys : []));
-    this.size.measure();
   }
 }
 

@@ -1,7 +1,7 @@
 // The machine at the cursor, to scale, with and without the absorber; ball and walls are dragged.
 import {$, on, setTexts} from "../shared/dom.js";
 import {lawsInSi} from "../shared/form.js";
-import {blank, font, Size} from "../shared/frame.js";
+import {blank, font, sizeOf} from "../shared/frame.js";
 import {drawText, ink} from "../shared/ink.js";
 import {clamp, inMm, percent, shortTo} from "../shared/numbers.js";
 import {run, viewport} from "./run.js";
@@ -175,7 +175,7 @@ function drawWithout(canvas, size, cursor) {
 const machines = [
   [$("machine"), drawWith],
   [$("machine-without"), drawWithout],
-].map(([canvas, draw]) => ({canvas, draw, size: new Size(canvas, redraw)}));
+].map(([canvas, draw]) => ({canvas, draw, size: sizeOf(canvas, redraw)}));
 
 export function redraw() {
   const {cursor} = viewport;

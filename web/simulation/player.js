@@ -1,12 +1,11 @@
 // The player: moves the cursor through the visible range in a loop, with a knock at each impact.
-import {$, attributes, fillMenu, save, setTexts} from "../shared/dom.js";
+import {$, attributes, save, setTexts} from "../shared/dom.js";
 import {count, shortTo} from "../shared/numbers.js";
 import * as machine from "./machine.js";
 import {run, viewport} from "./run.js";
 
 const holdTime = 150; // ms of pause after an edit
 const filmTime = 5000; // ms of a video
-const speeds = [0.1, 0.25, 0.5, 1, 2, 5, 20]; // cycles per second
 
 let frame = 0;
 let held = 0;
@@ -25,8 +24,6 @@ function knock(strength) {
 }
 
 export function start() {
-  const entries = speeds.map((v) => [v, `${count(v, "cycle")}/s`]);
-  fillMenu($("speed"), entries, 1);
   $("play").onclick = () => (frame ? pause() : play());
   $("restart").onclick = () => restart();
   $("sound").onclick = toggleSound;

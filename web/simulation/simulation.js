@@ -127,8 +127,6 @@ export class SimulationTab extends RequestTab {
     dom.onFile($("panel-simulation"), $("load"), (file) => this.readLoad(file));
     $("measure-this").onclick = () => run && measure(run.answer);
     const texts = formsOf("v1/simulate", () => request.fields());
-    const forms = Object.keys(texts).map((form) => [form]);
-    dom.fillMenu($("copies"), [["", "copy as …"], ...forms]);
     $("copies").onchange = ({target}) => {
       dom.copy(texts[target.value](), this.say);
       target.value = "";
