@@ -72,9 +72,8 @@ function valueAt({t}, column, moment) {
 /** Marks impacts and sticking phases on the record; answer: null before identification. */
 export function mark(record, rows, answer) {
   const {t, a, x} = record;
-  const seconds = secondsOf(answer);
-  const {tau_start: from, tau_end: to} = answer?.sticking ?? {tau_start: []};
-  const stuck = from.map((tau, i) => seconds([tau, to[i]]));
+  const {time_start_s: from, time_end_s: to} = answer?.sticking ?? {time_start_s: []};
+  const stuck = from.map((start, i) => [start, to[i]]);
   const step = (t.at(-1) - t[0]) / (t.length - 1);
   const reach = (answer ? answer.signal.pulse_s / 2 : step) + step;
   const points = answer && {x: answer.impacts.time_s, y: mm(answer.impacts.x)};
@@ -86,17 +85,14 @@ export function mark(record, rows, answer) {
   if (a) under("a", marksOf(rows, spikeOf, "cross", 4));
   if (!x) return;
   const rings = marksOf(rows, (row) => valueAt(record, x, row.t), "ring", 3.5);
-  under("x", [...forwardMarks(answer, seconds), ...rings], {points});
+  under("x", [...forwardMarks(answer), ...rings], {points});
 }
 
-/** Returns a function that converts tau to s. */
-const secondsOf = (answer) => (taus) => taus.map((tau) => tau / answer.parameters.derived.omega0);
-
 /** Impacts of the identified system, run forward from the first known state. */
-function forwardMarks(answer, seconds) {
+function forwardMarks(answer) {
   if (!answer?.forward) return [];
-  const {tau, x} = answer.forward.impacts;
-  return [symbols({x: seconds(tau), y: mm(x), colour: "soft", shape: "dot", size: 1.4})];
+  const {time_s: t, x} = answer.forward.impacts;
+  return [symbols({x: t, y: mm(x), colour: "soft", shape: "dot", size: 1.4})];
 }
 
 /** Draws the record alone; click: handler of clicks on the acceleration. */
@@ -118,11 +114,10 @@ function drawExponents(answer) {
   const range = [Math.min(least, ...shown), Math.max(most, ...shown)];
   $("figure-measured-raw").hidden = !exponents.raw_product;
   const known = [layer({from, to, colour: "interval"}), levels({y, colour: "before"})];
-  const seconds = secondsOf(answer);
   const draw = (name, estimator, under = []) =>
     plots.draw(name, {
       under: [...under, levels({y: 0, colour: "soft"})],
-      marks: historyOf(estimator, seconds),
+      marks: historyOf(estimator),
       y: {label: "λ", range},
     });
   draw("qr", exponents.qr, y == null ? [] : known);
@@ -130,12 +125,12 @@ function drawExponents(answer) {
 }
 
 /** Exponents of an estimator over time; rings mark the final values. */
-function historyOf(estimator, seconds) {
+function historyOf(estimator) {
   const {history, final: y} = estimator ?? {};
   if (!history?.tau.length) return [];
-  const [end] = seconds(history.tau.slice(-1));
-  const ends = symbols({x: y.map(() => end), y, colour: "text", shape: "ring", size: 3.5});
-  return [...exponentMarks({history}, (tau, columns) => [seconds(tau), ...columns]), ends];
+  const {time_s: t} = history;
+  const ends = symbols({x: y.map(() => t.at(-1)), y, colour: "text", shape: "ring", size: 3.5});
+  return [...exponentMarks({history}, (_, columns) => [t, ...columns]), ends];
 }
 
 /** R of each impact. Inconsistent values lie at their place or at the edge of the plot. */
@@ -171,11 +166,10 @@ function drawSteps({impacts: {tau, time_s: t}, parameters}) {
   });
 }
 
-function drawSections({impacts, parameters}) {
+function drawSections({impacts}) {
   const x = mm(impacts.x);
-  const inSeconds = 1000 * parameters.derived.omega0; // mm/s per m per unit of tau
-  const points = (velocity) => ({x, y: velocity.map((v) => v * inSeconds)});
-  const after = points(impacts.x_dot_after);
+  const points = (velocity) => ({x, y: mm(velocity)});
+  const after = points(impacts.x_velocity_after);
   const t = impacts.time_s;
   const draw = (name, label, marks) =>
     plots.draw(name, {
@@ -184,7 +178,7 @@ function drawSections({impacts, parameters}) {
       x: {label: "x (mm)"},
       y: {label},
     });
-  const before = points(impacts.x_dot_before);
+  const before = points(impacts.x_velocity_before);
   draw("portrait", "x′ (mm/s)", [
     dots({...before, colour: "before", shape: "ring", size: 3.4, alpha: 0.75}),
     dots({...after, colour: "after", shape: "cross", size: 2.8, alpha: 0.75}),
