@@ -1,5 +1,5 @@
 // The main parameters, each with a slider, a number and a unit. They set fields of the form.
-import {$, attributes, element} from "../shared/dom.js";
+import {$, attributes} from "../shared/dom.js";
 import {lawsInSi} from "../shared/form.js";
 import {inMm, short, shortTo, toNumber} from "../shared/numbers.js";
 import {symbolOf} from "../shared/quantities.js";
@@ -7,25 +7,17 @@ import {symbolOf} from "../shared/quantities.js";
 const factors = {mm: 1000, "°": 180 / Math.PI};
 
 /**
- * A slider and its row on the page; title: a word and a letter. It has of(parameters): value in the
- * field's unit; fields(value, parameters): fields to set, null to clear one; usualRange(parameters):
- * in the slider's unit; aboutOf, textOf(parameters): description and value as text, where they depend
- * on the system; isShown(parameters): false where the system does without; such a slider is hidden
- * before the first run. span: the range shown.
+ * A slider, whose row is in the page. It has of(parameters): value in the field's unit;
+ * fields(value, parameters): fields to set, null to clear one; usualRange(parameters): in the
+ * slider's unit; aboutOf, textOf(parameters): description and value as text, where they depend on
+ * the system; isShown(parameters): false where the system does without. span: the range shown.
  */
-function slider(name, title, unit, about, more) {
-  const [label, letter = ""] = title.split(" ");
-  const id = `slider-${name}`;
-  const heading = element("label", {htmlFor: id}, `${label} `, element("i", {}, letter));
-  if ($(`term-${name}`)) heading.dataset.term = name;
-  else heading.title = about;
-  const number = element("input", {type: "text", id, inputMode: "decimal"});
-  const ofUnit = element("span", {className: "unit"}, unit);
-  const range = element("input", {type: "range", ariaLabel: title});
-  const note = element("small", {}, about);
-  const parts = [heading, number, ofUnit, range, note];
-  const node = element("div", {className: "slider grid", hidden: more.isShown}, ...parts);
-  $("sliders").append(node);
+function slider(name, more) {
+  const number = $(`slider-${name}`);
+  const node = number.parentNode;
+  const [heading, , ofUnit, range, note] = node.children;
+  const [label] = heading.textContent.split(" ");
+  const [unit, about] = [ofUnit.textContent, note.textContent];
   return {
     ...{name, unit, node, number, range, note, label, about},
     symbol: symbolOf(name),
@@ -36,10 +28,8 @@ function slider(name, title, unit, about, more) {
   };
 }
 
-const clearance = slider("b", "Clearance b", "mm", "half-width of the cavity", {
-  usualRange: () => [1, 45],
-});
-const restitution = slider("R", "Restitution R", "", "of both walls", {
+const clearance = slider("b", {usualRange: () => [1, 45]});
+const restitution = slider("R", {
   usualRange: () => [0, 1],
   of: ({R_plus: plus, R_minus: minus}) => (plus + minus) / 2,
   fields: (value) => ({R: value, R_plus: null, R_minus: null}),
@@ -54,11 +44,9 @@ const isGiven = (name) => (p) => p[name] !== 0 || p.origin[name] === "given";
 const reduced = [
   clearance,
   restitution,
-  slider("G", "Forcing G", "mm", "amplitude of the base divided by ε", {usualRange: () => [0, 40]}),
-  slider("Omega", "Frequency Ω", "", "relative to the natural frequency", {
-    usualRange: () => [0.9, 1.1],
-  }),
-  slider("zeta", "Damping ζ", "", "damping ratio of the oscillator", {
+  slider("G", {usualRange: () => [0, 40]}),
+  slider("Omega", {usualRange: () => [0.9, 1.1]}),
+  slider("zeta", {
     usualRange: () => [0, 0.04],
     of: ({derived}) => derived.zeta,
     // The law, eq. (3) or closed form, is given too: a changed lambda would leave the preset's.
@@ -67,11 +55,11 @@ const reduced = [
       damping,
     }),
   }),
-  slider("gravity", "Gravity", "mm", "of the ball along its track, g sin(inclination)/ω₀²", {
+  slider("gravity", {
     isShown: isGiven("gravity"),
     usualRange: ({gravity}) => [-1, 1].map((sign) => sign * (2000 * Math.abs(gravity) || 10)),
   }),
-  slider("friction", "Friction", "mm", "deceleration of the sliding ball over ω₀²", {
+  slider("friction", {
     isShown: isGiven("friction"),
     usualRange: ({friction}) => [0, 2000 * friction || 10],
   }),
@@ -80,33 +68,31 @@ const isHarmonic = ({forcing}) => !forcing;
 const si = [
   clearance,
   restitution,
-  slider("F", "Forcing F", "mm", "amplitude of the base", {
+  slider("F", {
     isShown: isHarmonic,
     usualRange: ({si: {F}}) => [0, 2500 * F || 1],
   }),
-  slider("f", "Frequency f", "Hz", "of the base", {
+  slider("f", {
     isShown: isHarmonic,
     usualRange: ({derived: {f0}}) => [0.9 * f0, 1.1 * f0],
   }),
-  slider("c1", "Damping c₁", "N s/m", "of the oscillator", {
-    isShown: () => true,
+  slider("c1", {
     usualRange: ({si: {c1}}) => [0, 3 * c1 || 1],
     fields: (value) => ({c1: value, damping_ratio: null}),
   }),
-  slider("inclination", "Inclination", "°", "of the track; at 90° the ball falls along +x", {
+  slider("inclination", {
     isShown: isGiven("gravity"),
     usualRange: () => [-90, 90],
     of: (p) => lawsInSi(p).inclination ?? 0,
     fields: (value) => ({inclination: value, gravity: null}),
   }),
-  slider("mu", "Friction μ", "", "friction coefficient of the ball", {
+  slider("mu", {
     isShown: isGiven("friction"),
     usualRange: (p) => [0, Math.max(1, 2 * lawsInSi(p).mu)],
     of: (p) => lawsInSi(p).mu ?? 0,
     fields: (value) => ({mu: value, friction: null}),
   }),
 ];
-clearance.node.classList.add("last");
 const all = new Set([...reduced, ...si]);
 const slidersOf = (parameters) =>
   (parameters.si ? si : reduced).filter(({isShown}) => isShown?.(parameters) ?? true);
