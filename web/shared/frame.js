@@ -77,12 +77,11 @@ export class Frame {
     return x >= left && x <= right && y >= top && y <= bottom;
   }
 
-  /** Clips drawing to the plot, extended by `around` px, until the context is restored. */
-  clip(c, around = 0) {
-    const {left, top} = this.box;
+  /** Clips drawing to the plot until the context is restored. */
+  clip(c) {
     c.save();
     c.beginPath();
-    c.rect(left - around, top - around, this.width + 2 * around, this.height + 2 * around);
+    c.rect(this.box.left, this.box.top, this.width, this.height);
     c.clip();
   }
 

@@ -31,6 +31,7 @@ export const line = kind((c, frame, {x, y, colour, width = 1, dash, dense}) => {
   const {add, end} = dense || to - from > 4 * frame.width ? envelope(c) : path(c);
   for (let i = from; i < to; ++i) add(frame.px(x[i]), isThere(y[i]) ? frame.py(y[i]) : null);
   end();
+  c.stroke();
 });
 
 /** Lines over common x; styles: further options of each. */
@@ -42,7 +43,7 @@ function path(c) {
     if (py !== null) c[broken ? "moveTo" : "lineTo"](px, py);
     broken = py === null;
   };
-  return {add, end: () => c.stroke()};
+  return {add, end() {}};
 }
 
 /** Joins minimum and maximum of each pixel, up to those of the previous one: spikes stay. */
@@ -64,11 +65,7 @@ function envelope(c) {
     ends = at === column ? [Math.min(ends[0], py), Math.max(ends[1], py)] : [py, py];
     column = at;
   };
-  const end = () => {
-    flush();
-    c.stroke();
-  };
-  return {add, end};
+  return {add, end: flush};
 }
 
 /** A line through points in any order. */

@@ -76,9 +76,10 @@ export class Motion {
     return this.free.after(this.pieces[0].state, tau)[0];
   }
 
-  /** The largest |x| in the first trace over the whole run. */
+  /** The largest |x|. */
   get reach() {
-    if (!this.farthest) this.trace(0, this.end, 400);
+    const largest = (most, x) => Math.max(most, Math.abs(x) || 0);
+    this.farthest ??= this.trace(0, this.end, 400).x.reduce(largest, 0);
     return this.farthest;
   }
 
@@ -104,8 +105,6 @@ export class Motion {
         lines.x[k] = x;
         lines.gap[k] = gap;
       });
-    if (from <= 0 && to >= this.end)
-      this.farthest ??= lines.x.reduce((most, x) => Math.max(most, Math.abs(x) || 0), 0);
     return lines;
   }
 

@@ -126,13 +126,13 @@ export class ZoomablePlot extends Plot {
   }
 }
 
-const columnsOf = (width) => Math.max(width - 60, 10);
-
 /** The marks with a label; they share x. */
 const seriesOf = (marks) => marks.filter(({label}) => label);
 
 /** Lines over a shared axis, drawn where visible; their legend shows the values at the cursor. */
-export class LinePlot extends ZoomablePlot {
+class LinePlot extends ZoomablePlot {
+  values = []; // elements of the legend
+
   /** viewport: shared with other plots over the same time. */
   constructor(figure, viewport) {
     super(figure, viewport);
@@ -158,28 +158,14 @@ export class LinePlot extends ZoomablePlot {
     this.last?.click?.(...where);
   }
 
-  /** Number of min-max columns of a dense line. */
-  get columns() {
-    return columnsOf(this.size.width);
-  }
-
-  refresh() {
-    if (this.last) this.writeLegend(seriesOf(this.marks(this.size.width)));
-    super.refresh();
-  }
-
-  /** The marks of the visible range. */
-  marks(width) {
-    return this.last.marks ?? this.last.trace(...this.viewport.range, columnsOf(width));
-  }
-
-  /** alone: for export, with the names of the series. */
+  /** alone: for export, with the names of the series in place of the legend. */
   prepare(width, height, alone = false) {
     if (!this.last) return null;
-    const {x, y, under = []} = this.last;
+    const {x, y, under = [], trace} = this.last;
     const {range} = this.viewport;
-    const marks = this.marks(width);
+    const marks = this.last.marks ?? trace(...range, Math.max(width - 60, 10));
     const series = seriesOf(marks);
+    if (!alone) this.writeLegend(series);
     const columns = series.map((one) => one.y);
     const ofY = {range: rangeOf(columns, y.log) ?? [0, 1], ...y};
     const bare = height < small && !x.aligned;
@@ -210,7 +196,8 @@ export class LinePlot extends ZoomablePlot {
       const within = t > x[i] ? i + 1 : i; // a line has no value after its end
       const value = y[within] === null ? null : (y[i] ?? null);
       const shown = text(value, y.findLastIndex((v) => v !== null) < within);
-      if (this.values[k].textContent !== shown) this.values[k].textContent = shown;
+      const node = this.values[k];
+      if (node && node.textContent !== shown) node.textContent = shown;
     });
   }
 
@@ -220,9 +207,6 @@ export class LinePlot extends ZoomablePlot {
 
   /** The legend; empty for a single series. */
   writeLegend(series) {
-    const written = JSON.stringify(series.map(({label, colour, dash}) => [label, colour, dash]));
-    if (this.written === written) return;
-    this.written = written;
     this.values = series.map(() => element("b"));
     const keys = series.map(({label, colour, dash}, i) =>
       keyOf(dash ? "╍╍" : "━━", colour, label, " ", this.values[i]),
@@ -234,7 +218,7 @@ export class LinePlot extends ZoomablePlot {
 const reach = 14; // px within which a point is picked
 
 /** Plots of points and curves in a plane. Points can be picked with the pointer. */
-export class ScatterPlot extends Plot {
+class ScatterPlot extends Plot {
   /** viewport: whose cursor the ring follows. */
   constructor(figure, viewport) {
     super(figure, viewport);

@@ -125,7 +125,6 @@ function load() {
 
 /** The range does not change with the zoom. */
 function displacement() {
-  inView(0, run.motion.end, plots.all.x.columns); // also sets motion.reach
   const reach = 1080 * Math.max(run.motion.reach, pinned?.motion.reach ?? 0) || 1;
   return {
     ...partOf("x", "x", mm(run.motion.impacts.x)),
@@ -252,13 +251,10 @@ export function manifold() {
   }
   if (free)
     marks.push(levels({y: free * 1000, colour: "wall", text: "amplitude without absorber"}));
-  const reach = (values, ...others) => [
-    0,
-    Math.max(largestMagnitude(values), ...others) * 1.15 || 0.001,
-  ];
+  const reach = (values) => [0, 1.15 * largestMagnitude(values) || 0.001];
   const extent = place({
-    V: reach(points.V, 1.4 * (fold?.V ?? 0)),
-    C: reach(points.C, 1.6 * (fold?.C ?? 0), free ?? 0),
+    V: reach([...points.V, 1.4 * fold?.V]),
+    C: reach([...points.C, 1.6 * fold?.C, free]),
   });
   return {
     marks,
