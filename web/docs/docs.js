@@ -12,7 +12,7 @@ async function start() {
   $("docs-fold").onclick = () => setAll(false);
   setTexts({"docs-address": absoluteUrl("./")});
   startExamples();
-  $("docs-contents").open = matchMedia("(min-width: 1001px)").matches;
+  $("docs-contents").open = matchMedia("(width >= 62rem)").matches;
   const {commit, compiler} = await get("version");
   const known = commit ? element("code", {}, commit) : "unknown";
   $("docs-commit").replaceChildren(known, `, ${compiler}`);

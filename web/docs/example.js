@@ -3,7 +3,7 @@ import {asCurl, hasKey, post, sendRequest} from "../shared/api.js";
 import {button, copy, element} from "../shared/dom.js";
 import {count} from "../shared/numbers.js";
 
-const maxBytes = 1 << 20; // of a response that is shown completely
+const longest = 1 << 20; // characters of a response that is shown completely
 const maxLines = 60;
 const maxCharacters = 6000;
 
@@ -15,23 +15,23 @@ export const commandOf = (request, flags = "") =>
 export const pretty = (value) =>
   JSON.stringify(value, null, 2).replace(/\[[^[\]{}]*\]/g, (list) => list.replace(/\s+/g, " "));
 
-/** Reads until the body ends or exceeds maxBytes: {text, bytes, complete: the body ended}. */
+/** Reads until the body ends or exceeds longest: {text, complete: the body ended}. */
 async function read(response) {
-  const reader = response.body?.getReader();
-  const decoder = new TextDecoder();
+  const reader = response.body?.pipeThrough(new TextDecoderStream()).getReader();
   let text = "";
-  let bytes = 0;
-  while (reader && bytes <= maxBytes) {
+  while (reader && text.length <= longest) {
     const {done, value} = await reader.read();
-    if (done) return {text, bytes, complete: true};
-    bytes += value.length;
-    text += decoder.decode(value, {stream: true});
+    if (done) return {text, complete: true};
+    text += value;
   }
   reader?.cancel().catch(() => {}); // the rest is not needed
-  return {text, bytes, complete: !reader};
+  return {text, complete: !reader};
 }
 
-const size = (bytes) => (bytes < 1000 ? `${bytes} bytes` : `${(bytes / 1000).toFixed(1)} kB`);
+function sizeOf(text) {
+  const bytes = new Blob([text]).size;
+  return bytes < 1000 ? `${bytes} bytes` : `${(bytes / 1000).toFixed(1)} kB`;
+}
 
 /** Sends a request: {ok, status, text}, summary and beginning of the response, JSON indented. */
 async function send({path, type, body}, signal) {
@@ -39,7 +39,7 @@ async function send({path, type, body}, signal) {
   const response = await (body
     ? post(path, JSON.stringify(body), signal, type)
     : sendRequest(path, {signal}));
-  const {text, bytes, complete} = await read(response);
+  const {text, complete} = await read(response);
   const took = Math.round(performance.now() - began);
   const isJson = /[/+]json\b/.test(response.headers.get("Content-Type") ?? "");
   const shown = isJson && complete && text ? pretty(JSON.parse(text)) : text;
@@ -47,7 +47,7 @@ async function send({path, type, body}, signal) {
   const first = lines.slice(0, maxLines).join("\n");
   const cut = lines.length > maxLines || first.length > maxCharacters;
   const status = [`${response.status} ${response.statusText}`.trim(), `${took} ms`];
-  status.push(complete ? size(bytes) : `more than ${size(bytes)}, truncated`);
+  status.push(complete ? sizeOf(text) : `more than ${sizeOf(text)}, truncated`);
   if (cut) status.push(complete ? `beginning of ${count(lines.length, "line")}` : "beginning");
   const beginning = first.slice(0, maxCharacters) + (cut ? " …" : "");
   return {ok: response.ok, status: status.join(" · "), text: beginning};
