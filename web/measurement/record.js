@@ -139,15 +139,6 @@ function find(names, wanted, [exact, ...prefixes]) {
   return places.find((at) => at >= 0) ?? -1;
 }
 
-/** Index of the column of each quantity, or -1. */
-const columnsOf = (names, fields) =>
-  Object.fromEntries(
-    Object.entries(quantities).map(([quantity, usual]) => [
-      quantity,
-      find(names, fields[`${quantity}_column`], usual),
-    ]),
-  );
-
 /** Factors from the service's units to those of the plots: s, mm, m/s^2; N. */
 const scales = new Map([
   ["s", 1],
@@ -190,13 +181,13 @@ function unitIn(name) {
 
 /** Columns found: {name, values, unit: by the column's name, the row of units or the field}. */
 function partsOf({names, units, columns}, fields) {
-  const found = Object.entries(columnsOf(names, fields)).filter(([, k]) => k >= 0);
-  const part = (quantity, k) => ({
-    name: names[k],
-    values: columns[k],
-    unit: unitIn(names[k]) ?? unitAmong(units[k] ?? "") ?? fields[`${quantity}_unit`],
+  const found = Object.entries(quantities).flatMap(([quantity, usual]) => {
+    const k = find(names, fields[`${quantity}_column`], usual);
+    if (k < 0) return [];
+    const unit = unitIn(names[k]) ?? unitAmong(units[k] ?? "") ?? fields[`${quantity}_unit`];
+    return [[quantity, {name: names[k], values: columns[k], unit}]];
   });
-  return Object.fromEntries(found.map(([quantity, k]) => [quantity, part(quantity, k)]));
+  return Object.fromEntries(found);
 }
 
 /** The record of the fields: {t (s), x (mm), a (m/s^2)}, at ascending times; null if missing. */

@@ -1,5 +1,5 @@
 // Quantities of sweep points, for menus, axes, colours and tooltips. Lengths are shown in mm.
-import {count, inMm, short, withError} from "./numbers.js";
+import {count, inMm, percent, short, withError} from "./numbers.js";
 
 export const regimes = {
   VI: "dense, irregular",
@@ -238,8 +238,6 @@ function verdictText({verdict, periodic, lambda, standard_error: errors}) {
   return verdict === "chaotic" ? "chaotic over the measured cycles" : verdicts[verdict];
 }
 
-const wholePercent = (share) => `${(share * 100).toFixed(0)} %`;
-
 /** Describes a point: [term, value]. */
 export function describe(p, where) {
   if (p.error) return [["failed", p.error]];
@@ -252,10 +250,10 @@ export function describe(p, where) {
     ["z", short(p.z)],
     ["λ₁", p.lambda && exponentText(p)],
     ["", verdictText(p)],
-    ["rms of x", ratio == null ? inMm(p.x_rms, 5) : `${wholePercent(ratio)} of that without`],
+    ["rms of x", ratio == null ? inMm(p.x_rms, 5) : `${percent(ratio)} of that without`],
     ["largest |x|", peakOf(p, where)],
     ["without absorber", p.x_free != null && inMm(p.x_free)],
-    ["by impacts", share != null && `${wholePercent(share)} of the dissipation`],
+    ["by impacts", share != null && `${percent(share)} of the dissipation`],
     ["sticks", p.sticks && String(p.sticks)],
   ];
   return [...rows.filter(([, value]) => value), ...describeStarts(p, where)];

@@ -5,16 +5,7 @@ const key = "vines-units";
 const tau = "τ";
 const seconds = "s, mm/s";
 
-/** Accesses localStorage; without it the choice is lost with the page. */
-function remembered(f) {
-  try {
-    return f(localStorage);
-  } catch {
-    return null;
-  }
-}
-
-let chosen = remembered((store) => store.getItem(key)) === tau ? tau : seconds;
+let chosen = localStorage.getItem(key) === tau ? tau : seconds;
 const listeners = [];
 
 /** True when seconds are chosen; they apply to systems in SI only. */
@@ -23,17 +14,14 @@ export const inSeconds = () => chosen === seconds;
 /** f() is called when the choice changes. */
 export const onUnits = (f) => listeners.push(f);
 
-function choose(units) {
-  if (units === chosen) return;
-  chosen = units;
-  remembered((store) => store.setItem(key, units));
-  for (const f of listeners) f();
-}
-
 /** Makes a menu the switch of the units. */
 export function unitsSwitch(menu) {
   fillMenu(menu, [[seconds], [tau]], chosen);
-  menu.onchange = () => choose(menu.value);
+  menu.onchange = () => {
+    chosen = menu.value;
+    localStorage.setItem(key, chosen);
+    for (const f of listeners) f();
+  };
   onUnits(() => {
     menu.value = chosen;
   });
