@@ -1,7 +1,11 @@
 // Guided stories, in `stories` of the page: each step opens a request and says what to look at.
-import {$, button, element} from "./shared/dom.js";
+import {$} from "./shared/dom.js";
 
 const guide = $("guide");
+const [title, text, back, next, leave] = guide.children;
+leave.onclick = () => {
+  guide.hidden = true;
+};
 
 /** open(query) opens the request of a step. Returns false for an unknown story. */
 export function start(name, open) {
@@ -13,16 +17,10 @@ export function start(name, open) {
 function show(story, step, open) {
   const {children, dataset} = story;
   const to = (other) => () => show(story, other, open);
-  const leave = () => {
-    guide.hidden = true;
-  };
   guide.hidden = false;
-  guide.replaceChildren(
-    element("b", {}, `${dataset.title}, ${step + 1} of ${children.length}`),
-    element("p", {innerHTML: children[step].innerHTML, role: "status"}),
-    button("Back", to(step - 1), {disabled: step === 0}),
-    step + 1 < children.length ? button("Next", to(step + 1), {className: "go"}) : "",
-    button("Leave", leave),
-  );
+  title.textContent = `${dataset.title}, ${step + 1} of ${children.length}`;
+  text.innerHTML = children[step].innerHTML;
+  Object.assign(back, {onclick: to(step - 1), disabled: step === 0});
+  Object.assign(next, {onclick: to(step + 1), hidden: step + 1 === children.length});
   open(children[step].dataset.query);
 }

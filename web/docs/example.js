@@ -53,11 +53,8 @@ async function send({path, type, body}, signal) {
   return {ok: response.ok, status: status.join(" · "), text: beginning};
 }
 
-/** A "Try it" button, and the nodes that show the response. */
-function trial(request) {
-  const status = element("p", {className: "message", role: "status"});
-  const own = {className: "answer", tabIndex: 0, hidden: true, role: "group"};
-  const answer = element("pre", {...own, ariaLabel: "Response"});
+/** A "Try it" button, which shows the response in the example. */
+function trial(request, status, answer) {
   let running = null;
   const start = button("Try it", async () => {
     if (running) return running.abort();
@@ -76,7 +73,7 @@ function trial(request) {
     start.textContent = "Try it";
     running = null;
   });
-  return [start, status, answer];
+  return start;
 }
 
 const examples = () => document.querySelectorAll(".example");
@@ -98,9 +95,9 @@ function addActions(view) {
     copy(view.querySelector("code").textContent, (text) => {
       said.textContent = text === "copied" ? text : "the browser does not allow copying";
     });
-  const [start = "", ...response] = request.file ? [] : trial(request);
+  const shown = [".message", ".answer"].map((name) => view.querySelector(name));
+  const start = request.file ? "" : trial(request, ...shown);
   view.querySelector(".actions").append(button("Copy curl", copyCommand), start, said);
-  view.append(...response);
 }
 
 export function startExamples() {

@@ -139,7 +139,12 @@ function requestsOf({method, path, parameters, requestBody, security, responses}
 function exampleView({summary, ...request}) {
   const said = summary ? html`<p>${summary}</p>` : "";
   const command = html`<pre><code>${commandOf(request)}</code></pre><p class="actions"></p>`;
-  return html`<div class="example" data-request="${JSON.stringify(request)}">${said}${command}</div>`;
+  const status = html`<p class="message" role="status"></p>`;
+  const answer = html`<pre class="answer" tabindex="0" role="group" aria-label="Response" hidden></pre>`;
+  return [
+    html`<div class="example" data-request="${JSON.stringify(request)}">${said}${command}`,
+    html`${status}${answer}</div>`,
+  ];
 }
 
 function inside(operation) {

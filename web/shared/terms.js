@@ -1,7 +1,7 @@
 // Terms that explain themselves: the element `term-NAME` of the page, on hover, focus and touch.
-import {$, attributes, element, on} from "./dom.js";
+import {$, attributes, on} from "./dom.js";
 
-const box = element("div", {className: "tip term", id: "term", role: "tooltip", hidden: true});
+const box = $("term");
 
 function show({target}) {
   if (box.contains(target)) return; // on the way to its link
@@ -17,7 +17,6 @@ function show({target}) {
   box.style.top = `${fits ? bottom : top - height}px`;
 }
 
-document.body.append(box);
 on(document, {
   pointerover: show,
   focusin: show,
