@@ -37,18 +37,13 @@ export class MapView extends SweepView {
       }
   }
 
-  /** The layers of the visible slice, the coarsest first. */
-  over() {
-    return this.layers.over(this.choice.slice);
-  }
-
   places() {
-    return this.over().flatMap((data) => [...this.cells(data)]);
+    return this.layers.over(this.choice.slice).flatMap((data) => [...this.cells(data)]);
   }
 
   /** The finest cell at a place, preferably one with a point. */
   nearest({at}) {
-    const cells = this.over().flatMap((data) => {
+    const cells = this.layers.over(this.choice.slice).flatMap((data) => {
       const [k, l] = at.map((place, i) => positionAt(data.axes[i], place));
       return k < 0 || l < 0 ? [] : [this.cell(data, k, l)];
     });
@@ -135,7 +130,7 @@ class MapPlot extends SweepPlot {
   /** Sets the pixels of all layers; those without a regime are hatched. */
   fill(pixels, width, height, scale) {
     const [none, line] = ["regime-none", "panel"].map((name) => pixel(rgb(name)));
-    for (const data of this.view.over()) {
+    for (const data of this.view.layers.over(this.view.choice.slice)) {
       const [first, second] = data.axes;
       const columns = positions(first, this.viewport.range, width);
       const rows = positions(second, this.across.range, height).reverse();
@@ -233,31 +228,18 @@ function between(list, t) {
   return list[i].map((v, k) => Math.round(v + (list[i + 1][k] - v) * part));
 }
 
-/** The next round number away from 0. */
-function rounded(v) {
-  if (v === 0) return 0;
-  const power = 10 ** Math.floor(Math.log10(Math.abs(v)));
-  const steps = [1, 1.2, 1.5, 2, 2.5, 3, 4, 5, 6, 8, 10];
-  const step = steps.find((s) => s * power >= Math.abs(v) * (1 - 1e-9));
-  return Number((Math.sign(v) * step * power).toPrecision(3));
-}
-
 const spare = 0.02; // fraction of the values at either end that can lie beyond the scale
 
 /** Round ends of the colour scale, beyond which a few outliers can lie. */
 function endsOf({diverging, from0}, values) {
   const sorted = Float64Array.from(values).sort();
-  const n = sorted.length;
-  if (!n) return [0, 1];
-  const [low, high] = [spare, 1 - spare].map((q) => sorted[Math.round(q * (n - 1))]);
-  if (diverging) {
-    const ends = [rounded(Math.min(low, 0)), rounded(Math.max(high, 0))];
-    return ends[0] < ends[1] ? ends : [-1, 1];
-  }
-  if (from0) return [0, rounded(high) || 1];
-  const step = rounded((high - low) / 10 || Math.abs(low) / 10 || 0.1);
-  const ends = [Math.floor(low / step + 1e-9) * step, Math.ceil(high / step - 1e-9) * step];
-  return ends[0] < ends[1] ? ends : [ends[0], ends[0] + step];
+  const [least, most] = [spare, 1 - spare].map((q) => sorted[Math.round(q * (sorted.length - 1))]);
+  const known = [least ?? 0, most ?? 0, ...(diverging || from0 ? [0] : [])];
+  const low = Math.min(...known);
+  const high = Math.max(...known) === low ? low + (Math.abs(low) || 1) : Math.max(...known);
+  const [first, second] = ticks(low, high, 10);
+  const step = second - first;
+  return [Math.floor(low / step + 1e-9) * step, Math.ceil(high / step - 1e-9) * step];
 }
 
 /** {at(value): colour as bytes, ends, beyond: whether at() got values below and above the ends}. */
