@@ -1,7 +1,7 @@
 // The page: its tabs, and the address, which names the tab and holds its request.
 
 import {get} from "./shared/api.js";
-import {$, element, sayIn, setTexts} from "./shared/dom.js";
+import {$, sayIn, setTexts} from "./shared/dom.js";
 import {onColours} from "./shared/ink.js";
 import {joined} from "./shared/numbers.js";
 import "./shared/terms.js";
@@ -144,8 +144,6 @@ function fail(text) {
 }
 
 async function start() {
-  for (const figure of document.querySelectorAll("[data-plot]"))
-    figure.append(element("figcaption", {}, ...figure.childNodes));
   // Keys and bars have the colour that they name.
   for (const {style, dataset} of document.querySelectorAll("[data-colour]"))
     style.setProperty("--key", `var(--${dataset.colour})`);

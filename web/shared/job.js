@@ -29,10 +29,6 @@ export class Job {
     Object.assign(this, parts);
   }
 
-  busy() {}
-
-  later() {}
-
   /** Starts a request, which aborts an older one unless `dragging`; an equal one runs on. */
   start(request, {dragging = false} = {}) {
     const running = this.#running;
@@ -59,7 +55,7 @@ export class Job {
     const {signal} = abort;
     const running = {newest: request, abort, answers: true, text: JSON.stringify(request)};
     this.#running = running;
-    const late = setTimeout(() => this.busy(true), lateAfter);
+    const late = setTimeout(() => this.busy?.(true), lateAfter);
     const began = performance.now();
     let cancelled = false;
     try {
@@ -72,7 +68,7 @@ export class Job {
       clearTimeout(late);
       this.#running = null;
       if (this.#next) this.#compute();
-      else this.busy(false, cancelled);
+      else this.busy?.(false, cancelled);
     }
   }
 
@@ -84,7 +80,7 @@ export class Job {
       } catch (error) {
         if (signal.aborted || !isTemporary(error)) throw error;
         this.#running.answers = false;
-        this.later(`${error.message}; retrying every ${retryInterval} s`);
+        this.later?.(`${error.message}; retrying every ${retryInterval} s`);
         await sleep(retryInterval, signal);
       }
   }

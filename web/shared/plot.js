@@ -97,7 +97,7 @@ export class Plot {
 
 /** A plot over a viewport. Plots that share a viewport zoom together and show one cursor. */
 export class ZoomablePlot extends Plot {
-  /** across: of y. Subclasses have cursorText(cursor) and click(at, reach, {top, y, touch}). */
+  /** across: of y. Subclasses have click(at, reach, {top, y, touch}) and, if any, cursorText(cursor). */
   constructor(figure, viewport = new Viewport(), across = null) {
     const className = figure.dataset.plot.replace("lines", "plot");
     const node = element("div", {className, id: plotId(figure)});
@@ -122,7 +122,7 @@ export class ZoomablePlot extends Plot {
     this.cursor.hidden = share < 0 || share > 1;
     if (this.cursor.hidden) return;
     this.cursor.style.transform = `translateX(${Math.round(share * width)}px)`;
-    this.cursor.dataset.at = this.cursorText(cursor);
+    this.cursor.dataset.at = this.cursorText?.(cursor) ?? "";
   }
 }
 

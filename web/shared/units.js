@@ -1,6 +1,4 @@
 // Units of the results: SI (s, mm/s, m/s², N s, J) or, by choice or without SI, of tau = omega0 t.
-import {fillMenu} from "./dom.js";
-
 const key = "vines-units";
 const tau = "τ";
 const seconds = "s, mm/s";
@@ -14,9 +12,9 @@ export const inSeconds = () => chosen === seconds;
 /** f() is called when the choice changes. */
 export const onUnits = (f) => listeners.push(f);
 
-/** Makes a menu the switch of the units. */
+/** Makes a menu with the entries `seconds` and `tau` the switch of the units. */
 export function unitsSwitch(menu) {
-  fillMenu(menu, [[seconds], [tau]], chosen);
+  menu.value = chosen;
   menu.onchange = () => {
     chosen = menu.value;
     localStorage.setItem(key, chosen);

@@ -95,7 +95,6 @@ const chips = document.querySelectorAll("#chips button");
 /** choose(name) gets a preset's name, or "" for none; read(query) the query of a machine. */
 export function start(presets, choose, read) {
   const menu = $("preset");
-  menu.append(new Option("user-defined parameters", ""));
   for (const {name, source, title} of presets) menu.append(new Option(`${source}: ${title}`, name));
   menu.onchange = () => choose(menu.value);
   for (const chip of chips) {

@@ -53,7 +53,6 @@ function remark({exponents: {verdict, verdict_reason: why}, regime, warnings}, m
 const lightParts = {m2: undefined, mass_ratio: 1e-9, include: ["impacts", "series"]};
 
 export class SimulationTab extends RequestTab {
-  asked = null; // query of the request in the address
   mistyped = false; // true while a slider's number differs from the request
   wantedView = null; // of the next run, from the address
   lastMoved = "b"; // name of the slider moved last

@@ -52,10 +52,6 @@ export class SweepPlot extends ZoomablePlot {
     if (current?.plot === this && !current.act) this.view.showTip(current);
   }
 
-  cursorText() {
-    return "";
-  }
-
   /** Rows of a point in the exported table. */
   rows(p) {
     return [Object.values(this.columns()).map((of) => of(p))];
