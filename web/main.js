@@ -1,5 +1,4 @@
 // The page: its tabs, and the address, which names the tab and holds its request.
-
 import {get} from "./shared/api.js";
 import {$, sayIn, setTexts} from "./shared/dom.js";
 import {onColours} from "./shared/ink.js";

@@ -177,7 +177,8 @@ export class SweepTab extends RequestTab {
   listen() {
     this.results.onchange = () => this.menuChanged();
     $("sweep-resume").onclick = () => this.complete(this.data);
-    $("sweep-download").onclick = () => {
+    $("sweep-download").onclick = (event) => {
+      event.preventDefault();
       const names = this.data.request.axes.map((a) => a.parameter).join("-");
       dom.save(this.data.file(), `sweep-${names}.ndjson`);
     };
