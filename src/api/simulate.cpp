@@ -82,7 +82,7 @@ std::size_t expected_bytes(const SimulateRequest& r) {
     double bytes = size.point * std::min(samples, static_cast<double>(w.most_points));
     const auto impacts = std::min(impacts_expected(w), w.most_listed);
     if (w.parts.impacts && impacts <= w.most_kept)
-        bytes += size.impact * static_cast<double>(impacts);
+        bytes += size.impact * static_cast<double>(impacts) / 2;  // two per cycle are usual
     return static_cast<std::size_t>(bytes);
 }
 

@@ -131,28 +131,31 @@ public:
     bool renew() { return permit_.renew(); }  ///< see Permit
     /// To be called once the body is read, or, since its record is kept, once it is identified.
     void release_body() { body_permit_.reset(); }
-    /// Waits for the permit to hold lists with a text of these bytes, unless it has one; before
-    /// it, if given, for memory for the answer, which is reserved with it.
+    /// Waits for the permit to hold lists with a text of these bytes, unless they are few or it has
+    /// one; before it, if given, for memory for the answer, which is reserved with it.
     void wait_for_lists(std::size_t bytes, std::size_t answer = 0) {
-        if (bytes <= immediate_lists || lists_permit_) return;
-        const bool has_slot = permit_.wait_without_slot([&] {
-            const Clock::time_point since = Clock::now();
+        const bool needs_permit = bytes > immediate_lists && !lists_permit_;
+        const Clock::time_point since = Clock::now();
+        const auto wait = [&] {
             do {
                 lists_permit_.reset();
                 wait_for_memory({answer}, since);
-                lists_permit_ = service_.admission.acquire_lists(
-                    request_.sender.client(), bytes, [this] { return is_unwanted(); });
-            } while (lists_permit_ && lacks_memory({answer}, since));
-            if (answer > 0) request_.reserve_memory({answer});
-            return lists_permit_ != nullptr;
-        });
-        if (!has_slot) throw_without();
-        listed_ = Clock::now();
+                if (needs_permit)
+                    lists_permit_ = service_.admission.acquire_lists(
+                        request_.sender.client(), bytes, [this] { return is_unwanted(); });
+            } while (lacks_memory({answer}, since));
+            if (answer > 0) request_.reserve_memory({answer}, since);
+            return needs_permit ? lists_permit_ != nullptr : !is_unwanted();
+        };
+        if (needs_permit || lacks_memory({answer}, since)) {
+            if (!permit_.wait_without_slot(wait)) throw_without();
+            listed_ = Clock::now();
+        } else if (answer > 0) request_.reserve_memory({answer}, since);
     }
     /// Gives back what the lists have, and waits for memory for a stream.
     void wait_for_stream(std::size_t bytes) {
         lists_permit_.reset();
-        request_.reserve_memory({});
+        request_.reserve_memory({}, Clock::now());
         permit_.wait_without_slot([&] {
             wait_for_memory({bytes, bytes}, Clock::now());
             return false;

@@ -109,8 +109,9 @@ public:
         memory_.count(held_, client, {bytes.all + bytes_.capacity(), bytes.for_long});
     }
     /// The same, see MemoryBudget.
-    bool reserve(const std::string& client, MemoryBudget::Bytes bytes) {
-        return memory_.reserve(held_, client, {bytes.all + bytes_.capacity(), bytes.for_long});
+    bool reserve(const std::string& client, MemoryBudget::Bytes bytes, Clock::time_point since) {
+        bytes.all += bytes_.capacity();
+        return memory_.reserve(held_, client, bytes, since);
     }
 
 private:

@@ -2,9 +2,8 @@
 // keeps.
 #pragma once
 
+#include <malloc.h>
 #include <unistd.h>
-
-#include <cstdlib>  // __GLIBC__
 
 #include <algorithm>
 #include <atomic>
@@ -15,10 +14,6 @@
 #include <mutex>
 #include <string>
 #include <utility>
-
-#ifdef __GLIBC__
-#include <malloc.h>
-#endif
 
 namespace vines::http {
 
@@ -38,35 +33,40 @@ public:
         std::string client;
         Bytes bytes;
     };
-    /// True if `more` bytes should not be accepted of a client: also if it would then hold more
-    /// than is left. One client so has half of the budget, a second one a quarter, and so on; but
-    /// more than a quarter alone, as long as it is not full. Bytes held for long have half of the
-    /// budget, divided likewise.
+    /// True if `more` bytes should not be accepted of a client. A client's share is the limit
+    /// divided by one more than the clients that wait or hold a 4096th of it. Within it, all that
+    /// is free can be had; beyond it a share, or as much as the client holds, stays free, and what
+    /// others wait for. More than a quarter of the limit counts as a quarter. Bytes held for long
+    /// have half of the budget, of which a client leaves as much free as it holds.
     bool is_full_for(const std::string& client, Bytes more) {
         const std::lock_guard lock(mutex_);
-        return is_refused(client, more);
+        return is_lacking(client, more, due(client, more, Clock::now()));
     }
     /// The same before the bytes are made, of a client that holds less than half of them and has
     /// waited since this time; false for any other. Unless they are for long, it then has a claim
-    /// for 3 s: clients that hold more get nothing that it needs, and others wait in the order of
-    /// time, later by 35 s times the part of the limit that they would hold.
+    /// for 3 s. Claims are due in the order of time, later by 35 s times the part of the limit that
+    /// the client would hold.
     bool must_wait(const std::string& client, Bytes more, Clock::time_point since) {
         const std::lock_guard lock(mutex_);
-        if (!holds_little(client, more)) return false;
+        if (2 * bytes_of(client).all >= more.all) return false;
         const Clock::time_point now = Clock::now(), own = due(client, more, since);
         std::erase_if(claims_, [&](const auto& claim) { return claim.second.until < now; });
         if (more.for_long == 0 && claims_[client].bytes <= more.all)
             claims_[client] = {more.all, own, now + std::chrono::seconds(3)};
         return is_lacking(client, more, own);
     }
-    /// Counts these bytes instead of what was counted, unless what they add is_full_for() it.
-    bool reserve(Counted& counted, const std::string& client, Bytes bytes) {
+    /// Counts these bytes instead of what was counted, unless what they add would have to wait, of
+    /// who has waited since this time.
+    bool reserve(
+        Counted& counted, const std::string& client, Bytes bytes, Clock::time_point since) {
         const std::lock_guard lock(mutex_);
         const auto [all, for_long] = counted.bytes;
         const Bytes more{
             bytes.all - std::min(bytes.all, all),
             bytes.for_long - std::min(bytes.for_long, for_long)};
-        if ((more.all > 0 || more.for_long > 0) && is_refused(client, more)) return false;
+        if ((more.all > 0 || more.for_long > 0) &&
+            is_lacking(client, more, due(client, more, since)))
+            return false;
         change(counted, client, bytes);
         return true;
     }
@@ -102,25 +102,23 @@ private:
         const std::chrono::duration<double> later(35 * all / static_cast<double>(limit_));
         return since + std::chrono::duration_cast<Clock::duration>(later);
     }
-    bool holds_little(const std::string& client, Bytes more) const {
-        return 2 * bytes_of(client).all < more.all;
-    }
-    /// Claims do not count against who holds little: its bytes are made.
-    bool is_refused(const std::string& client, Bytes more) {
-        const auto own = holds_little(client, more) ? Clock::time_point::min() : Clock::now();
-        return is_lacking(client, more, due(client, more, own));
-    }
-    /// due: claims of others that are due before it count.
     bool is_lacking(const std::string& client, Bytes more, Clock::time_point due) {
         const Bytes own = bytes_of(client);
-        std::size_t claimed = 0;
-        for (const auto& [other, its] : claims_)
-            if (more.for_long == 0 && other != client && its.due < due && its.until > Clock::now())
-                claimed += std::min(its.bytes, limit_ / 4);
+        std::size_t sharing = 2, claimed = 0;  // the client and one that could come
+        for (const auto& [other, its] : clients_)
+            sharing += other != client && its.all > limit_ / least_part;
+        for (const auto& [other, its] : claims_) {
+            if (other == client || its.until < Clock::now()) continue;
+            sharing += bytes_of(other).all <= limit_ / least_part;
+            if (its.due < due && more.for_long == 0) claimed += std::min(its.bytes, limit_ / 4);
+        }
+        const std::size_t needed = std::min(more.all, limit_ / 4), share = limit_ / sharing;
+        const bool is_within = own.all + needed <= share;
+        const std::size_t kept = is_within ? 0 : std::max(own.all, share) + claimed;
         const bool is_full_now =
-            own.all + std::min(more.all, limit_ / 4) + held_ + claimed >= limit_ ||
+            needed + held_ + kept >= limit_ ||
             (more.for_long > 0 && own.for_long + more.for_long + held_for_long_ > limit_ / 2);
-        if (is_full() || (is_full_now && holds_little(client, more))) last_full_ = Clock::now();
+        if (is_full() || (is_full_now && own.all < share)) last_full_ = Clock::now();
         return is_full_now;
     }
     void change(Counted& counted, const std::string& client, Bytes bytes) {
@@ -138,6 +136,8 @@ private:
         counted = {client, bytes};
     }
 
+    static constexpr std::size_t least_part = 4096;
+
     const std::size_t limit_;
     std::atomic<std::size_t> held_ = 0;
     mutable std::mutex mutex_;
@@ -152,12 +152,10 @@ private:
 /// it reserved and has not written. Below it each arena keeps enough for one answer
 /// of tens of thousands of numbers, because each page requested anew costs a microsecond. There are
 /// no more arenas than computing threads.
-inline void configure_malloc([[maybe_unused]] int computing) {
-#ifdef __GLIBC__
+inline void configure_malloc(int computing) {
     mallopt(M_MMAP_THRESHOLD, 1 << 20);
     mallopt(M_TRIM_THRESHOLD, 8 << 20);
     mallopt(M_ARENA_MAX, computing);
-#endif
 }
 
 /// Memory of this process, bytes; 0 where the system does not tell.
@@ -173,10 +171,6 @@ inline ProcessMemory process_memory() {
 }
 
 /// Returns free memory to the system, after large requests and answers.
-inline void trim_memory() {
-#ifdef __GLIBC__
-    malloc_trim(0);
-#endif
-}
+inline void trim_memory() { malloc_trim(0); }
 
 }  // namespace vines::http

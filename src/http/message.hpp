@@ -97,11 +97,10 @@ struct Request {
     /// Returns true while another client's request waits for a thread, of which this one has more;
     /// with true, also if this is its client's only one.
     std::function<bool(bool)> others_need_threads = [](bool) { return false; };
-    /// MemoryBudget::must_wait() for the client since a time.
-    std::function<bool(MemoryBudget::Bytes, MemoryBudget::Clock::time_point)> awaits_memory =
-        [](auto, auto) { return false; };
-    /// MemoryBudget::reserve() for the answer.
-    std::function<bool(MemoryBudget::Bytes)> reserve_memory = [](auto) { return true; };
+    /// MemoryBudget::must_wait() and reserve() for the answer.
+    std::function<bool(MemoryBudget::Bytes, MemoryBudget::Clock::time_point)>
+        awaits_memory = [](auto, auto) { return false; },
+        reserve_memory = [](auto, auto) { return true; };
     const Route* route = nullptr;                      ///< can be null if refused
     std::optional<Response> refused = {};              ///< its connection is then read no further
     std::chrono::steady_clock::time_point since = {};  ///< time at which the request was complete

@@ -92,8 +92,8 @@ Task Server::answer(Connection& connection, Request received) {
     request.awaits_memory = [this, &request](MemoryBudget::Bytes bytes, auto since) {
         return event_loop_.memory().must_wait(request.sender.client(), bytes, since);
     };
-    request.reserve_memory = [&](MemoryBudget::Bytes bytes) {
-        return connection.reserve(request.sender.client(), bytes);
+    request.reserve_memory = [&](MemoryBudget::Bytes bytes, auto since) {
+        return connection.reserve(request.sender.client(), bytes, since);
     };
     request.others_need_threads = [this, &request](bool even_last) {
         return event_loop_.others_need_threads(request.sender.client(), even_last);
@@ -150,7 +150,8 @@ Response Server::answer_to(Request& request) const {
 
 Response Server::completed(const Request& request, Response response) {
     const auto size = std::max(response.body.size(), response.uncompressed_size) + response.held;
-    if (size > small_answer && !request.reserve_memory({size, response.held}))
+    if (size > small_answer &&
+        !request.reserve_memory({size, response.held}, Stopwatch::Clock::now()))
         response = memory_refusal();
     std::ranges::move(
         cors_headers(request.head, options_.access), std::back_inserter(response.headers));

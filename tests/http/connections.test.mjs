@@ -719,7 +719,7 @@ test("the memory for requests is limited over all clients", async (t) => {
 });
 
 test("the memory for unread answers is limited; a client that holds more than is left gets no more", async (t) => {
-  const one = await serviceFor(t, ["--memory-limit", "50000000"]);
+  const one = await serviceFor(t, ["--memory-limit", "61500000"]);
   // Answers of 8 MB: two of each of two clients are held, a third one of the first is refused.
   const large =
     '{"damping": "closed_form", "tau_end": 2000, "max_points": 100000, "samples_per_cycle": 200}';

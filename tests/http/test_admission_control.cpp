@@ -575,7 +575,7 @@ TEST_CASE("what is held while more is computed leaves half of the memory to answ
     CHECK(budget.is_full_for(client, {65, 65}));
 }
 
-TEST_CASE("memory that a client waits for is not given to who would hold more") {
+TEST_CASE("memory that a client waits for is not given to who would exceed its share") {
     MemoryBudget budget(100);
     const auto since = MemoryBudget::Clock::now();
     MemoryBudget::Counted first, second, third;
@@ -593,23 +593,54 @@ TEST_CASE("memory that a client waits for is not given to who would hold more") 
     CHECK(!budget.must_wait(client, {24}, since));
     CHECK(budget.must_wait("third", {30}, since));  // the bytes are not yet made
     budget.count(third, client, {24});
-    CHECK(!budget.must_wait("third", {23}, since));
+    CHECK(!budget.must_wait("third", {20}, since));
+}
+
+TEST_CASE("what is within a client's share passes who waits for more, as long as it is free") {
+    MemoryBudget budget(96);
+    const auto earlier = MemoryBudget::Clock::now() - std::chrono::seconds(30);
+    std::list<MemoryBudget::Counted> held;
+    for (const char* owner : {"first", "second", "third"})
+        budget.count(held.emplace_back(), owner, {24});
+    CHECK(budget.must_wait("waiting", {48}, earlier));
+    CHECK(!budget.is_full_for(client, {16}));
+    MemoryBudget::Counted body;
+    budget.count(body, client, {8});
+    CHECK(!budget.is_full_for(client, {8}));  // of which it has received half
+    CHECK(budget.is_full_for(client, {9}));
+    budget.count(body, client, {});
+    budget.count(held.emplace_back(), "fourth", {10});
+    CHECK(budget.is_full_for(client, {16}));
+    CHECK(budget.must_wait(client, {16}, earlier));
+    for (auto& bytes : held) budget.count(bytes, bytes.client, {});
+}
+
+TEST_CASE("beyond its share a client leaves one for who comes") {
+    MemoryBudget budget(128);
+    std::list<MemoryBudget::Counted> held;
+    for (const char* owner : {"first", "second", "third", "fourth"})
+        if (!budget.is_full_for(owner, {31})) budget.count(held.emplace_back(), owner, {31});
+    CHECK(held.size() == 3);
+    CHECK(!budget.is_full_for("fourth", {25}));
+    for (auto& bytes : held) budget.count(bytes, bytes.client, {});
 }
 
 TEST_CASE("memory that is reserved is there for what needs no more") {
     MemoryBudget budget(100);
+    const auto now = MemoryBudget::Clock::now();
     MemoryBudget::Counted answer, other;
-    CHECK(budget.reserve(answer, client, {24}));
+    CHECK(budget.reserve(answer, client, {24}, now));
     budget.count(other, "other", {70});
     CHECK(budget.is_full_for(client, {24}));
-    CHECK(budget.reserve(answer, client, {20}));
+    CHECK(budget.reserve(answer, client, {20}, now));
     CHECK(budget.bytes() == 90);
-    CHECK(!budget.reserve(answer, client, {50}));
-    CHECK(!budget.reserve(answer, client, {20, 20}));  // of it, for long: nothing was reserved so
+    CHECK(!budget.reserve(answer, client, {50}, now));
+    CHECK(!budget.reserve(answer, client, {60, 60}, now));
     CHECK(budget.bytes() == 90);
+    CHECK(budget.reserve(answer, client, {20, 20}, now));
     budget.count(other, "other", {});
-    CHECK(budget.reserve(answer, client, {20, 20}));
-    CHECK(budget.reserve(answer, client, {}));
+    CHECK(budget.reserve(answer, client, {20, 20}, now));
+    CHECK(budget.reserve(answer, client, {}, now));
     CHECK(budget.bytes() == 0);
 }
 

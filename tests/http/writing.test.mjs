@@ -81,12 +81,10 @@ test("neither do pipelined small ones", async (t) => {
 });
 
 test("answers that are not read give their memory to others", async (t) => {
-  // Small enough not to wait for memory.
-  const smaller = {...large, tau_end: 1000};
-  const args = ["--memory-limit", "6000000"];
-  const {url, accepted} = await serviceWith(t, args, 6, "/v1/simulate", smaller);
-  assert.equal(accepted, 2);
-  await until(() => isAnswered(url, "/v1/simulate", smaller), soon);
+  const args = ["--memory-limit", "24000000"];
+  const {url, accepted} = await serviceWith(t, args, 6, "/v1/simulate", large);
+  assert.equal(accepted, 6); // each waits for the memory of those before it
+  await until(() => isAnswered(url, "/v1/simulate", large), soon);
 });
 
 test("a client that holds nothing waits for the memory of others", async (t) => {
@@ -99,7 +97,7 @@ test("a client that holds nothing waits for the memory of others", async (t) => 
 });
 
 test("an answer counts for the client that the proxy states", async (t) => {
-  const args = ["--memory-limit", "24000000"];
+  const args = ["--memory-limit", "40000000"];
   const {accepted} = await serviceWith(t, args, 3, "/v1/simulate", large, 1);
   assert.equal(accepted, 2);
 });

@@ -1072,12 +1072,20 @@ test("the skip link leads to the plots, and a frame for another page can be copi
   await page.close();
 });
 
-test("a page of an allowed origin can embed the plots; a page of another origin cannot", async () => {
+test("a page of an allowed origin can embed the plots, also without storage; another origin cannot", async () => {
   let address = "";
   const [allowed, other] = [await frameOf(() => address), await frameOf(() => address)];
   const own = await startService(["--embed-origin", allowed.origin]);
   address = `${own.url}/?embed=1&preset=fig11`;
   const page = await browser.context.newPage();
+  // A frame of another site can be forbidden to store anything.
+  await page.addInitScript(() => {
+    const get = () => {
+      throw new DOMException("storage is denied", "SecurityError");
+    };
+    for (const name of ["localStorage", "sessionStorage"])
+      Object.defineProperty(window, name, {get});
+  });
   await page.goto(allowed.origin);
   const frame = page.frames()[1];
   await frame.waitForFunction(() => document.getElementById("results")?.dataset.done);

@@ -1,5 +1,6 @@
 // Calls to the service. Routes are relative to the page, so they also work below a path prefix.
 import {$} from "./dom.js";
+import {textsIn} from "./store.js";
 
 /** A problem document (RFC 9457). errors: {pointer, value, range, detail} per invalid field. */
 class Problem extends Error {
@@ -22,8 +23,9 @@ async function read(response) {
 
 // The key is kept until the browser tab is closed.
 const keyName = "vines-api-key";
+const store = textsIn("sessionStorage");
 
-const currentKey = () => sessionStorage.getItem(keyName);
+const currentKey = () => store.getItem(keyName);
 
 export const hasKey = () => currentKey() !== null;
 
@@ -38,7 +40,7 @@ async function askForKey() {
   dialog.showModal();
   await new Promise((resolve) => dialog.addEventListener("close", resolve, {once: true}));
   const entered = dialog.returnValue !== ""; // the form was valid
-  if (entered) sessionStorage.setItem(keyName, $("key-text").value.trim());
+  if (entered) store.setItem(keyName, $("key-text").value.trim());
   return entered;
 }
 

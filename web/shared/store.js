@@ -1,5 +1,16 @@
-// Files and results that the browser keeps over reloads. Without permission to store, nothing is
-// kept: reading then resolves to undefined.
+// What the browser keeps over reloads: files, results and texts. Without permission to store, as in
+// a frame of another site, files and results are not kept, so that reading resolves to undefined,
+// and texts only until the page is left.
+
+/** The storage of texts of this name, localStorage or sessionStorage. */
+export function textsIn(name) {
+  try {
+    return window[name];
+  } catch {
+    const kept = new Map();
+    return {getItem: (key) => kept.get(key) ?? null, setItem: (key, text) => kept.set(key, text)};
+  }
+}
 
 const most = 50; // entries of a name, after which all of them are dropped
 

@@ -1,9 +1,12 @@
 // Units of the results: SI (s, mm/s, m/s², N s, J) or, by choice or without SI, of tau = omega0 t.
+import {textsIn} from "./store.js";
+
 const key = "vines-units";
 const tau = "τ";
 const seconds = "s, mm/s";
 
-let chosen = localStorage.getItem(key) === tau ? tau : seconds;
+const store = textsIn("localStorage");
+let chosen = store.getItem(key) === tau ? tau : seconds;
 const listeners = [];
 
 /** True when seconds are chosen; they apply to systems in SI only. */
@@ -17,7 +20,7 @@ export function unitsSwitch(menu) {
   menu.value = chosen;
   menu.onchange = () => {
     chosen = menu.value;
-    localStorage.setItem(key, chosen);
+    store.setItem(key, chosen);
     for (const f of listeners) f();
   };
   onUnits(() => {
