@@ -25,7 +25,7 @@ constexpr std::size_t large = 16 << 20;
 
 // The memory of a run's lists is at least this many times the size of a binary answer above 16 MiB,
 // and at least that of a text.
-constexpr std::size_t least_over_binary = 3;
+constexpr std::size_t over_binary = 3;
 
 // Largest body that is read in a small part of the grace period, bytes.
 constexpr std::size_t max_body_in_grace = 16 << 10;
@@ -403,14 +403,14 @@ Response answer(Request& r, const Service& service, Stopwatch& watch) {
     computing.lap("parse");
     const api::Stop stop = computing.stop();
     const bool is_binary = *format == api::Format::cbor || *format == api::Format::npz;
-    const std::size_t over_answer = is_binary ? least_over_binary : 1;
     api::Answer answer = api::compute_answer(
         std::move(request), {.stop = stop,
                              .most_bytes = options.answer_limit,
                              .most_kept = options.most_kept_impacts,
                              .most_fitted = most_fitted,
-                             .begins = [&](std::size_t bytes) {
-                                 computing.wait_for_lists(bytes, bytes / over_answer);
+                             .begins = [&](std::size_t text) {
+                                 computing.wait_for_lists(
+                                     text, text / (is_binary ? over_binary : 1));
                              }});
     const bool renewed = computing.renew();
     computing.lap("solve");

@@ -26,29 +26,30 @@ public:
     /// True if nothing large should be accepted.
     bool is_full() const { return held_ >= limit_; }
     struct Bytes {
-        std::size_t all = 0;
-        std::size_t for_long = 0;  ///< of these, held while more is computed
+        std::size_t all = 0, for_long = 0;  ///< for_long: of these, held while more is computed
     };
     struct Counted {
         std::string client;
         Bytes bytes;
     };
     /// True if `more` bytes should not be accepted of a client. A client's share is the limit
-    /// divided by one more than the clients that wait or hold a 4096th of it. Within it, all that
-    /// is free can be had; beyond it a share, or as much as the client holds, stays free, and what
-    /// others wait for. More than a quarter of the limit counts as a quarter. Bytes held for long
-    /// have half of the budget, of which a client leaves as much free as it holds.
+    /// divided by one more than the clients that wait or hold a 4096th of it. Within it an eighth
+    /// of the limit stays free, for those who hold up to a 32nd; beyond it also two shares, or as
+    /// much as the client holds, and what others wait for. More than a quarter of the limit counts
+    /// as a quarter. Bytes held for long have half of the budget, of which a client leaves as much
+    /// free as it holds.
     bool is_full_for(const std::string& client, Bytes more) {
         const std::lock_guard lock(mutex_);
         return is_lacking(client, more, due(client, more, Clock::now()));
     }
-    /// The same before the bytes are made, of a client that holds less than half of them and has
-    /// waited since this time; false for any other. Unless they are for long, it then has a claim
-    /// for 3 s. Claims are due in the order of time, later by 35 s times the part of the limit that
-    /// the client would hold.
+    /// The same before the bytes are made, of a client that holds less than half of them, or with
+    /// them up to a 32nd, and has waited since this time; false for any other. Unless they are for
+    /// long, it then has a claim for 3 s. Claims are due in the order of time, later by 35 s times
+    /// the part of the limit that the client would hold.
     bool must_wait(const std::string& client, Bytes more, Clock::time_point since) {
         const std::lock_guard lock(mutex_);
-        if (2 * bytes_of(client).all >= more.all) return false;
+        const std::size_t held = bytes_of(client).all;
+        if (2 * held >= more.all && held + more.all > limit_ / 32) return false;
         const Clock::time_point now = Clock::now(), own = due(client, more, since);
         std::erase_if(claims_, [&](const auto& claim) { return claim.second.until < now; });
         if (more.for_long == 0 && claims_[client].bytes <= more.all)
@@ -113,8 +114,9 @@ private:
             if (its.due < due && more.for_long == 0) claimed += std::min(its.bytes, limit_ / 4);
         }
         const std::size_t needed = std::min(more.all, limit_ / 4), share = limit_ / sharing;
-        const bool is_within = own.all + needed <= share;
-        const std::size_t kept = is_within ? 0 : std::max(own.all, share) + claimed;
+        const std::size_t total = own.all + needed, beyond = std::max(own.all, 2 * share) + claimed;
+        const std::size_t kept =
+            total <= limit_ / 32 ? 0 : limit_ / 8 + (total <= share ? 0 : beyond);
         const bool is_full_now =
             needed + held_ + kept >= limit_ ||
             (more.for_long > 0 && own.for_long + more.for_long + held_for_long_ > limit_ / 2);
