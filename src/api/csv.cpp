@@ -84,7 +84,7 @@ std::vector<Cell> cells_of(std::string_view line, char separator) {
 /// none; nullopt for other text.
 std::optional<double> seconds_of_stamp(std::string text) {
     std::tm time{};
-    time.tm_year = 120, time.tm_mday = 1;
+    time.tm_year = 120, time.tm_mday = 1, time.tm_hour = -1;  // stays with too many digits
     const bool is_dated =
         text.size() > 10 && text[4] == '-' && (text[10] == ' ' || text[10] == 'T');
     if (is_dated) text[10] = 'T';
@@ -95,7 +95,7 @@ std::optional<double> seconds_of_stamp(std::string text) {
     rest = std::from_chars(rest, end, time.tm_hour).ptr;  // 24 and more in elapsed time
     rest = ::strptime(rest, ":%M:%S", &time);
     double fraction = 0;
-    if (!rest) return std::nullopt;
+    if (!rest || time.tm_hour < 0) return std::nullopt;
     if (rest != end) {
         const auto [read, error] = std::from_chars(rest, end, fraction);
         if (*rest != '.' || error != std::errc() || read != end) return std::nullopt;

@@ -115,7 +115,10 @@ TEST_CASE("Fortran's exponents and time stamps are read as numbers") {
         const std::vector<double> times = parse_csv(text).columns[0].values;
         CHECK(times[1] - times[0] == 0.5);
     }
-    CHECK(problem("t,x\n0,1\n1,10:61\n") == "line 3, column x: \"10:61\" is not a number");
+    for (const std::string text : {"10:61", "99999999999:00:00", "-1:00:00"})
+        CHECK(
+            problem("t,x\n0,1\n1," + text + "\n") ==
+            "line 3, column x: \"" + text + "\" is not a number");
 }
 
 TEST_CASE("lines of text after the data are skipped, those between are refused") {

@@ -1,6 +1,6 @@
-// What the browser keeps over reloads: files, results and texts. Without permission to store, as in
-// a frame of another site, files and results are not kept, so that reading resolves to undefined,
-// and texts only until the page is left.
+// Files, results and texts that the browser keeps over reloads. Without permission to store, for
+// example in a frame of another site, it keeps no files and results, and reading them resolves to
+// undefined; texts are then kept until the page is left.
 
 /** The storage of texts of this name, localStorage or sessionStorage. */
 export function textsIn(name) {
