@@ -123,7 +123,7 @@ export class MotionsTab extends RequestTab {
 
   draw() {
     const {branches, attractors, specials} = this.motions;
-    this.plot.draw({quantity: this.quantity.value});
+    this.plot.draw(quantities[this.quantity.value]);
     const runs = `${count(attractors.length, "run")} from several starts`;
     const found = `${branches.length} ${branches.length === 1 ? "branch" : "branches"}`;
     const text = joined([runs, found, count(specials.length, "special point")]);

@@ -1,6 +1,5 @@
 // The diagram of all motions, with named special points and a marker of the parameter.
 import {on} from "../shared/dom.js";
-import {Frame, rangeOf} from "../shared/frame.js";
 import {Marker} from "../shared/marker.js";
 import {curve, dots, texts} from "../shared/marks.js";
 import {joined, short} from "../shared/numbers.js";
@@ -15,8 +14,8 @@ export const quantities = {
   z: {title: "z", unit: "", label: "impacts per cycle z", of: ({z}) => z ?? null},
 };
 
-const reach = 24; // px within which a motion is picked
 const names = {symmetry_breaking: "symmetry", end: ""};
+const stability = ({stable}) => `${stable ? "" : "un"}stable`;
 
 export class MotionsPlot extends ZoomablePlot {
   marked = null; // the marker's value
@@ -24,7 +23,7 @@ export class MotionsPlot extends ZoomablePlot {
   /** open(orbit): simulates a motion; place(value): called when the marker moves. */
   constructor(figure, {open, place}) {
     super(figure);
-    Object.assign(this, {open, place});
+    this.open = open;
     const move = (value) => {
       this.marked = value;
       place(value);
@@ -45,22 +44,18 @@ export class MotionsPlot extends ZoomablePlot {
     this.viewport.span(Math.min(from, to), Math.max(from, to));
   }
 
-  get value() {
-    return quantities[this.last.quantity].of;
-  }
-
-  prepare(width, height) {
-    if (!this.last || !(this.viewport.width > 0)) return null;
+  /** Draws the motions by a quantity. */
+  draw({label, of}) {
     const {attractors, branches, specials, request} = this.motions;
-    const of = this.value;
-    const y = [attractors, ...branches, specials].map((list) => list.map(of));
-    const {factor} = labels.of(request.parameter);
-    const ofX = {range: this.viewport.range, factor, label: labels.label(request.parameter)};
-    const ofY = {range: rangeOf(y) ?? [0, 1], label: quantities[this.last.quantity].label};
-    const place = (list) => ({x: list.map(({value}) => value), y: list.map(of)});
+    const place = (list) => ({list, x: list.map(({value}) => value), y: list.map(of)});
     const marked = specials.filter((orbit) => of(orbit) !== null);
-    return {
-      frame: new Frame(width, height, ofX, ofY, 14),
+    const all = [...specials, ...branches.flat(), ...attractors];
+    this.motionsDrawn = place(all.filter((orbit) => orbit.state && of(orbit) !== null));
+    super.draw({
+      x: {label: labels.label(request.parameter), factor: labels.of(request.parameter).factor},
+      y: {label},
+      beside: 14,
+      empty: "no motion yet",
       marks: [
         dots({...place(attractors), tints: attractors.map(verdictColour), shape: "dot", size: 2}),
         ...branches.flatMap((branch) =>
@@ -69,7 +64,7 @@ export class MotionsPlot extends ZoomablePlot {
         dots({...place(marked), colour: "wall", shape: "diamond", size: 4, above: true}),
         texts({...place(marked), text: marked.map(({kind}) => names[kind] ?? kind)}),
       ],
-    };
+    });
   }
 
   point() {
@@ -81,30 +76,19 @@ export class MotionsPlot extends ZoomablePlot {
     this.marker.show(this.frame, this.viewport.range, this.marked, text);
   }
 
-  cursorText(cursor) {
-    return labels.text(this.motions.request.parameter, cursor);
+  /** {motion, x, y} nearest to a place of the plot, px; undefined values if none is near. */
+  nearest(left, top) {
+    const {list, x, y} = this.motionsDrawn;
+    const {box} = this.frame;
+    const i = this.pick({x, y}, box.left + left, box.top + top);
+    return {motion: list[i], x: x[i], y: y[i]};
   }
 
-  /** The motion drawn nearest to a place of the plot; undefined if none is near. */
-  nearest({offsetX, offsetY}) {
-    const {attractors, branches, specials} = this.motions;
-    const {box, px, py} = this.frame;
-    let [best, found] = [reach, undefined];
-    for (const orbit of [...specials, ...branches.flat(), ...attractors]) {
-      const y = this.value(orbit);
-      if (y === null || !orbit.state) continue;
-      const [dx, dy] = [px(orbit.value) - box.left - offsetX, py(y) - box.top - offsetY];
-      const away = Math.hypot(dx, dy);
-      if (away < best) [best, found] = [away, orbit];
-    }
-    return found;
-  }
-
-  hover(event) {
-    if (!this.frame || event.target !== this.over) return;
-    const found = this.nearest(event);
-    this.light(found?.value, found && this.value(found));
-    this.over.title = found ? this.describe(found) : "";
+  hover({target, offsetX, offsetY}) {
+    if (!this.frame || target !== this.over) return;
+    const {motion, x, y} = this.nearest(offsetX, offsetY);
+    this.light(x, y);
+    this.over.title = motion ? this.describe(motion) : "";
   }
 
   describe({value, stable, verdict, kind, period_cycles: cycles, impacts, multipliers}) {
@@ -112,21 +96,20 @@ export class MotionsPlot extends ZoomablePlot {
     return joined([
       labels.fields({[parameter]: value}),
       kind?.replace("_", " "),
-      stable === undefined ? verdict?.replace("_", " ") : `${stable ? "" : "un"}stable`,
+      stable === undefined ? verdict?.replace("_", " ") : stability({stable}),
       cycles && `period ${cycles}, impacts ${impacts}`,
       multipliers && `|μ| ${short(multipliers.modulus[0])}`,
     ]);
   }
 
   click(x, _, {top}) {
-    const found = this.nearest({offsetX: this.frame.px(x) - this.frame.box.left, offsetY: top});
-    if (found) this.open(found);
+    const {motion} = this.nearest(this.frame.px(x) - this.frame.box.left, top);
+    if (motion) this.open(motion);
   }
 
   /** {names, rows} of all motions in view. */
   numbers() {
     const {attractors, branches, request} = this.motions;
-    const stability = ({stable}) => `${stable ? "" : "un"}stable`;
     const all = [
       ...branches.flatMap((list, k) => list.map((m) => [m, `branch ${k + 1}, ${stability(m)}`])),
       ...attractors.map((motion) => [motion, motion.verdict ?? "–"]),

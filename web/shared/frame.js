@@ -4,6 +4,7 @@ import {clamp, minus, shortTo} from "./numbers.js";
 
 export const font = "11px system-ui, sans-serif";
 const letter = 3.4; // px, half the width of a digit
+const small = 130; // px of height below which a plot has few labels
 
 function scaleOf({range, log}, from, to) {
   const at = log ? Math.log : (v) => v;
@@ -56,19 +57,34 @@ function labelsOf({range, log, factor = 1, labels}, most) {
 /** The pixel position at which a thin line is sharp. */
 const sharp = (px) => Math.round(px) + 0.5;
 
+/** Axes {x, y} extended so that a unit has the same length on both. */
+function sameScale({x, y}, width, height) {
+  const size = ({range: [min, max]}) => max - min;
+  const unit = Math.min(width / size(x), height / size(y)); // px
+  const extended = (axis, pixels) => {
+    const more = (pixels / unit - size(axis)) / 2;
+    return {...axis, range: [axis.range[0] - more, axis.range[1] + more]};
+  };
+  return {x: extended(x, width), y: extended(y, height)};
+}
+
 export class Frame {
   /**
-   * x, y: {range, log, label, factor, bare, labels}: visible range, logarithmic scale, name of the
-   * axis, factor of its numbers, numbers at the left only, and labels(min, max), which returns
-   * [{at, text}] in place of round numbers. beside, above: px at the right and at the top.
+   * x, y: {range, log, label, factor, aligned, labels}: visible range, logarithmic scale, name of the
+   * axis, factor of its numbers, numbers at the side even in small plots, and labels(min, max), which
+   * returns [{at, text}] in place of round numbers. beside, above: px at the right and at the top;
+   * equal: a unit has the same length on both axes.
    */
-  constructor(width, height, x, y, beside = 10, above = 5) {
-    const [left, top, right] = [x.bare ? 36 : 58, above, width - beside];
-    const below = x.bare ? 5 : 18 + (x.label ? 14 : 0);
-    const bottom = Math.max(height - below, 15);
-    const box = {left, top, right, bottom};
-    Object.assign(this, {x, y, box, beside, width: right - left, height: bottom - top});
-    Object.assign(this, {px: scaleOf(x, left, right), py: scaleOf(y, bottom, top)});
+  constructor({width: all, height: whole}, {x, y, beside = 10, above: top = 5, equal}) {
+    const bare = whole < small && !x.aligned; // without numbers of x
+    const [left, right] = [bare ? 36 : 58, all - beside];
+    const below = bare ? 5 : 18 + (x.label ? 14 : 0);
+    const bottom = Math.max(whole - below, 15);
+    const [width, height] = [right - left, bottom - top];
+    Object.assign(this, equal ? sameScale({x, y}, width, height) : {x, y});
+    Object.assign(this, {box: {left, top, right, bottom}, beside, bare, width, height});
+    this.px = scaleOf(this.x, left, right);
+    this.py = scaleOf(this.y, bottom, top);
   }
 
   /** True when a position in px lies in the plot. */
@@ -98,7 +114,7 @@ export class Frame {
   }
 
   draw(c) {
-    const {x, y, box, px, py} = this;
+    const {x, y, box, bare, px, py} = this;
     const {left, top, right, bottom} = box;
     c.font = font;
     ink(c, "grid");
@@ -106,7 +122,7 @@ export class Frame {
     const end = right + this.beside; // keeps the last label inside the canvas
     const below = (text, at, down) => {
       const half = letter * text.length;
-      if (!x.bare) drawText(c, text, Math.min(at, end - half), bottom + down, "center", "top");
+      if (!bare) drawText(c, text, Math.min(at, end - half), bottom + down, "center", "top");
     };
     for (const {at, text} of labelsOf(x, clamp(Math.floor(this.width / 70), 2, 10))) {
       this.upright(c, at);
@@ -117,7 +133,7 @@ export class Frame {
       this.across(c, at);
       drawText(c, text, left - 5, py(at), "right");
     }
-    if (!x.bare) drawTextUpwards(c, y.label ?? "", 8, (top + bottom) / 2);
+    if (!bare) drawTextUpwards(c, y.label ?? "", 8, (top + bottom) / 2);
   }
 }
 

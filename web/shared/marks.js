@@ -184,7 +184,11 @@ export const dots = kind((c, frame, options) => {
   const {top, bottom} = frame.box;
   const [min, max] = frame.x.range;
   const visible = [...x.keys()].filter((i) => x[i] >= min && x[i] <= max && isThere(y[i]));
-  if (!tints && visible.length > many) return pointDensity(c, frame, options, visible);
+  if (!tints && visible.length > many) {
+    const columns = visible.map((i) => ({from: x[i], to: x[i], values: [y[i]]}));
+    const {colour, alpha} = options;
+    return density({columns, colour, alpha, least: 2, thick: 2}).draw(c, frame);
+  }
   const room = fitted ? frame.width / (3 * visible.length) : 1;
   const r = Math.max(size * Math.min(Math.sqrt(room), 1), 0.75);
   const alpha = c.globalAlpha;
@@ -263,21 +267,30 @@ function drawPixels(c, {box, width, height}, paint) {
   c.drawImage(canvas, box.left, box.top, width, height);
 }
 
-/** Draws how often count(add, round) adds each device pixel, as add(left, top, right, bottom). */
-function drawDensity(c, frame, colour, count) {
+/**
+ * How often the values of columns [{from, to, values}] of x lie at a device pixel. A column is
+ * `least` to 4 px wide, a broader one is drawn in its middle; a value is `thick` px high.
+ */
+export const density = kind((c, frame, {columns, colour, least = 1, thick = 1.4}) => {
+  const [min, max] = frame.y.range;
+  const {left, top} = frame.box;
   const ratio = devicePixelRatio; // read once: reading it is slower than counting
+  const round = (px) => Math.round(px * ratio);
+  const [narrow, broad, high] = [least, 4, thick].map((v) => Math.max(1, round(v)));
   drawPixels(c, frame, (pixels, width, height) => {
     let most = 8;
-    const add = (left, top, right, bottom) => {
-      const [first, last] = [Math.max(left, 0), Math.min(right, width)];
-      const end = Math.min(bottom, height);
-      for (let j = Math.max(top, 0); j < end; ++j)
-        for (let i = first; i < last; ++i) {
-          const n = ++pixels[j * width + i];
-          if (n > most) most = n;
-        }
-    };
-    count(add, (px) => Math.round(px * ratio), height);
+    for (const {from, to, values} of columns) {
+      const [begin, end] = [from, to].map((x) => round(frame.px(x) - left));
+      const across = clamp(end - begin, narrow, broad);
+      const start = Math.round((begin + end - across) / 2);
+      const [first, last] = [Math.max(start, 0), Math.min(start + across, width)];
+      for (const v of values) {
+        if (!(v >= min && v <= max)) continue;
+        const row = Math.min(round(frame.py(v) - top), height - 1) - (high >> 1);
+        for (let j = Math.max(row, 0); j < Math.min(row + high, height); ++j)
+          for (let i = first; i < last; ++i) most = Math.max(most, ++pixels[j * width + i]);
+      }
+    }
     const own = rgb(colour);
     const scale = 0.58 / Math.log(most);
     const shades = []; // by number
@@ -286,39 +299,7 @@ function drawDensity(c, frame, colour, count) {
       if (n) pixels[i] = shades[n] ??= pixel(own, 255 * (0.42 + scale * Math.log(n)));
     }
   });
-}
-
-/** Density of columns [{from, to, values}] of x; a broad column is drawn in its middle. */
-export const density = kind((c, frame, {columns, colour}) => {
-  const [min, max] = frame.y.range;
-  const {left, top} = frame.box;
-  drawDensity(c, frame, colour, (add, round, height) => {
-    const [broad, thick] = [4, 1.4].map((v) => Math.max(1, round(v)));
-    for (const {from, to, values} of columns) {
-      const [begin, end] = [from, to].map((x) => round(frame.px(x) - left));
-      const across = clamp(end - begin, 1, broad);
-      const start = end - begin > broad ? Math.round((begin + end - broad) / 2) : begin;
-      for (const v of values) {
-        if (!(v >= min && v <= max)) continue;
-        const row = Math.min(round(frame.py(v) - top), height - 1) - (thick >> 1);
-        add(start, row, start + across, row + thick);
-      }
-    }
-  });
 });
-
-/** Density of the visible points, each 2 px wide. */
-function pointDensity(c, frame, {x, y, colour}, visible) {
-  const {left, top} = frame.box;
-  drawDensity(c, frame, colour, (add, round) => {
-    const size = Math.max(2, round(2));
-    for (const i of visible) {
-      const column = round(frame.px(x[i]) - left) - (size >> 1);
-      const row = round(frame.py(y[i]) - top) - (size >> 1);
-      add(column, row, column + size, row + size);
-    }
-  });
-}
 
 /** Pixels set by paint(pixels, width, height). */
 export const raster = kind((c, frame, {paint}) => drawPixels(c, frame, paint));

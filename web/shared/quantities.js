@@ -122,54 +122,62 @@ export const startNames = {
   next: "next point",
 };
 
-/** A coordinate shown in mm, from columns in m. */
-const length = (title, ...names) => ({
+/** A coordinate from a column in m, or in m/s. */
+const inMilli = (title, column, unit = "mm") => ({
   title,
-  label: `${title} (mm)`,
-  columns: (section) => names.map((name) => section[name]),
-  value: (v) => v * 1000,
+  label: `${title} (${unit})`,
+  values: (section) => section[column].map((v) => v * 1000),
 });
 
 /** A velocity, after impacts or at any time. */
-const velocity = (of, after = "") => ({
-  ...length(`${of}′${after && " after"}`, `${of}_dot${after}`),
-  title: `${of}′${after && " after the impact"}`,
-  seconds: {column: `${of}_velocity${after}`, label: `${of}′${after && " after"} (mm/s)`},
-});
+const velocity = (of, after = "") => {
+  const title = `${of}′${after && " after"}`;
+  const seconds = inMilli(title, `${of}_velocity${after}`, "mm/s");
+  return {...inMilli(title, `${of}_dot${after}`), seconds};
+};
 
 /**
- * Coordinates of a section. columns: the columns they are computed from; value(v, half, second):
- * the value, where half is half a forcing period; seconds: the column in m/s; least: the smallest
+ * Coordinates of a section. values(section, half): from its columns, where half is half a forcing
+ * period; seconds: what differs per second; turns: labels at quarter turns; least: the smallest
  * value drawn, since chatter tends to zero.
  */
 export const coordinates = {
   impact: {
     phase: {
-      ...length("phase of the forcing", "phase"),
+      title: "phase of the forcing",
       label: "phase (rad)",
-      value: (v) => v,
+      values: ({phase}) => phase,
       range: [0, 2 * Math.PI],
       turns: true,
     },
-    x: length("x", "x"),
+    x: inMilli("x", "x"),
     x_dot_after: velocity("x", "_after"),
     y_dot_after: velocity("y", "_after"),
     time_difference: {
-      ...length("time between impacts / half period", "time_difference"),
+      title: "time between impacts / half period",
       label: "half periods",
-      value: (v, half) => (v === null ? NaN : v / half),
+      values: ({time_difference: times}, half) => times.map((v) => v / half),
       log: true,
       least: 0.1,
       levels: [1],
     },
   },
   stroboscopic: {
-    x: length("x", "x"),
+    x: inMilli("x", "x"),
     x_dot: velocity("x"),
     y_dot: velocity("y"),
-    gap: {...length("x − y", "x", "y"), value: (x, _, y) => (x - y) * 1000},
+    gap: {
+      ...inMilli("x − y"),
+      values: ({x, y}) => x.map((v, i) => (v - y[i]) * 1000),
+    },
   },
 };
+
+/** The values of a coordinate at a point. */
+export const valuesOf =
+  ({values}) =>
+  ({section, half}) =>
+    section ? values(section, half) : [];
 
 const symbols = {
   damping_ratio: "damping ratio",

@@ -68,10 +68,14 @@ function traces(from, to, columns) {
   return pinned ? [{...trace(pinned.motion, rate()), tau: own.tau}, own] : [own];
 }
 
-/** The motions of the visible range; two plots use them. */
-function inView(...part) {
-  const key = part.join();
-  if (traced?.key !== key) traced = {key, lines: traces(...part)};
+/** Columns for a table of a range. */
+const finest = (from, to) =>
+  Math.min(Math.ceil((8 * (to - from)) / run.motion.shortest) + 200, mostSamples);
+
+/** The motions over a range; two plots use those of the visible one. */
+function tracesOf(from, to, columns = finest(from, to)) {
+  const key = [from, to, columns].join();
+  if (traced?.key !== key) traced = {key, lines: traces(from, to, columns)};
   return traced.lines;
 }
 
@@ -95,11 +99,7 @@ function partOf(name, label, heights) {
   };
   return {
     unit: "mm",
-    trace: (...part) => [...linesOf(inView(...part)), ...impacts],
-    samples(from, to) {
-      const columns = Math.ceil((8 * (to - from)) / run.motion.shortest) + 200;
-      return linesOf(traces(from, to, Math.min(columns, mostSamples)));
-    },
+    trace: (...part) => [...linesOf(tracesOf(...part)), ...impacts],
     points: {x: run.answer.impacts.tau, y: heights},
   };
 }

@@ -2,13 +2,13 @@
 // coarse to fine: the regimes, and lambda1, the largest |x| or x at the impacts. Its marker acts as
 // the slider.
 import {$, countUp, setTexts} from "../shared/dom.js";
-import {Frame, rangeOf} from "../shared/frame.js";
+import {rangeOf} from "../shared/frame.js";
 import {Job} from "../shared/job.js";
 import {Marker} from "../shared/marker.js";
 import {levels} from "../shared/marks.js";
 import {clamp, digits, joined, nearest, withError} from "../shared/numbers.js";
 import {Plot} from "../shared/plot.js";
-import {quantities, regimeText, verdictColour, verdicts} from "../shared/quantities.js";
+import * as q from "../shared/quantities.js";
 import {read, write} from "../shared/store.js";
 import {Layers, receive, SweepData} from "../sweep/data.js";
 import {dotsOf, lineOf, regimesOf, sectionOf} from "../sweep/points.js";
@@ -45,24 +45,26 @@ const drawn = {
     const range = usualRange(places);
     // Outliers lie at the edge of the range.
     const of = (p) => (lambdaOf(p) == null ? null : clamp(lambdaOf(p), ...range));
-    const style = {tint: verdictColour, error: errorOf, size: 1.5, above: true};
+    const style = {tint: q.verdictColour, error: errorOf, size: 1.5, above: true};
     return {label: "λ₁", range, marks: [levels({y: 0}), dotsOf(places, of, style)]};
   },
   x_max(places) {
-    const {of, free} = quantities.x_max;
+    const {of, free} = q.quantities.x_max;
     const values = [of, free].map((each) => places.map(({p}) => each(p)));
     return {
       label: "|x| (mm)",
       range: [0, rangeOf([[0], ...values])[1]],
       marks: [
         lineOf(places, free, "without", {width: 2, dash: [6, 4]}),
-        dotsOf(places, of, {tint: verdictColour, size: 1.5}),
+        dotsOf(places, of, {tint: q.verdictColour, size: 1.5}),
       ],
     };
   },
   section(places, axis) {
-    const range = rangeOf(places.map(({p}) => p.section?.x ?? [])) ?? [-1, 1];
-    return {label: "x (mm)", range, marks: axis ? [sectionOf(places, axis, "x", "c1")] : []};
+    const {x} = q.coordinates.impact;
+    const of = q.valuesOf(x);
+    const range = rangeOf(places.map(({p}) => of(p))) ?? [-1, 1];
+    return {label: x.label, range, marks: axis ? [sectionOf(places, axis, of, "c1")] : []};
   },
 };
 
@@ -191,17 +193,17 @@ export class Strip extends Plot {
     return data?.points[data.index(nearest(data.axes[0].values, this.toParameter(value)))];
   }
 
-  prepare(width, height) {
+  content() {
     if (!this.range) return null;
     const [from, to] = this.range.map((value) => this.toParameter(value));
     const all = this.layers?.places(0) ?? [];
     const axis = this.layers?.base.axes[0];
     const places = all.filter(({value}) => value >= from && value <= to);
-    const {marks, ...ofY} = drawn[menu.value](places, axis);
-    const ofX = {range: [from, to], factor: this.range[1] / to};
-    const frame = new Frame(width, height, ofX, ofY, 14, band + 5);
+    const {marks, ...y} = drawn[menu.value](places, axis);
+    const x = {range: [from, to], factor: this.range[1] / to, aligned: true};
     const regimes = {down: -band, height: band, texts: true, textDown: 2, above: true};
-    return {frame, marks: axis ? [...marks, regimesOf(all, axis, regimes)] : marks};
+    if (axis) marks.push(regimesOf(all, axis, regimes));
+    return {x, y, marks, beside: 14, above: band + 5};
   }
 
   /** Moves the marker and describes its point. */
@@ -228,7 +230,7 @@ export class Strip extends Plot {
     const own = [regime.type, regime.periodic ? "regular" : exponents.verdict];
     const there = [p.regime, p.periodic ? "regular" : p.verdict];
     if (own.join() === there.join()) return "";
-    const words = ([type, verdict]) => joined([type, verdicts[verdict]]);
+    const words = ([type, verdict]) => joined([type, q.verdicts[verdict]]);
     return `at the marker, after ${transient} cycles: ${words(there)}; the run above: ${words(own)}`;
   }
 
@@ -240,8 +242,8 @@ export class Strip extends Plot {
     if (!p?.regime) return where;
     const lambda = lambdaOf(p);
     const rest = joined([
-      regimeText(p.regime),
-      verdicts[p.verdict],
+      q.regimeText(p.regime),
+      q.verdicts[p.verdict],
       lambda != null && `λ₁ = ${withError(lambda, errorOf(p), 3)}`,
       p.z != null && `z = ${digits(p.z, 2)}`,
     ]);

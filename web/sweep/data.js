@@ -1,7 +1,6 @@
 // The points of a sweep: their axes, and receiving them as lines of JSON.
 import {linesOf, TemporaryError} from "../shared/api.js";
 import {defaultSet} from "../shared/form.js";
-import {coordinates} from "../shared/quantities.js";
 
 const same = (v) => v;
 
@@ -120,15 +119,9 @@ export class SweepData {
     if (!point.section) return point;
     const {section, ...rest} = point;
     if (this.axes.length > 1) return rest;
+    const floats = ([name, values]) => [name, Float32Array.from(values, (v) => v ?? NaN)];
     const half = halfPeriod(this.fields(point.index), this.parameters);
-    rest.section = {};
-    for (const [name, {columns, value, seconds}] of Object.entries(coordinates[this.section])) {
-      const [first, second] = columns(section);
-      rest.section[name] = Float32Array.from(first, (v, i) => value(v, half, second?.[i]));
-      if (seconds && section[seconds.column])
-        rest.section[`${name}_SI`] = Float32Array.from(section[seconds.column], (v) => v * 1000);
-    }
-    return rest;
+    return {...rest, half, section: Object.fromEntries(Object.entries(section).map(floats))};
   }
 
   /** Index of a point: the first axis varies fastest, then the starts, then the other axes. */

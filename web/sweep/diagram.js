@@ -30,60 +30,6 @@ export function countRegimes(points) {
   return Object.keys(q.regimes).map((regime) => [regime, count(regime)]);
 }
 
-/** A plot of a DiagramView. kind: its methods y() (as in Frame), marks(frame), and of a SweepPlot. */
-class Diagram extends SweepPlot {
-  constructor(view, name, kind) {
-    super(view, name);
-    Object.assign(this, kind);
-  }
-
-  prepare(width, height) {
-    if (!this.view.byStart) return null;
-    const frame = this.frameOf(width, height);
-    const strips = this.view.starts().map((s) => this.regimes(s, {down: 6 * s, height: 5}));
-    return {frame, marks: [...this.marks(frame), ...strips]};
-  }
-
-  /** Values of all points, a list of each, for the range. */
-  values(of) {
-    return this.view.places().map(({p}) => of(p));
-  }
-
-  /** Colour of a start; `alone` if there is only one. */
-  tint(start, alone) {
-    return this.view.several ? startStyle(start).colour : alone;
-  }
-
-  line(start, of, colour, more) {
-    return lineOf(this.view.byStart[start], of, colour, more);
-  }
-
-  /** Dots of a start, in the colours tint(point); smaller where there are many. */
-  dots(frame, start, of, more) {
-    const {data, several} = this.view;
-    const count = this.view.visiblePlaces().length / data.starts;
-    const size = clamp((0.62 * frame.width) / Math.max(count, 1), 1.3, 3.4) * (several ? 1.15 : 1);
-    const {shape} = startStyle(start);
-    return dotsOf(this.view.byStart[start], of, {shape, size, ...more});
-  }
-
-  /** The best motion of each point, or one from another start that differs, as rings on a line. */
-  rings(frame, of) {
-    if (this.view.several) return [];
-    const other = ofOtherMotion(of);
-    const ring = {tint: () => "best", shape: "ring", width: 1.5};
-    return [this.line(0, other, "best", {alpha: 0.6}), this.dots(frame, 0, other, ring)];
-  }
-
-  regimes(start, more) {
-    return regimesOf(this.view.byStart[start], this.view.data.axes[0], more);
-  }
-
-  get points() {
-    return this.view.byStart[0].map(({p}) => p);
-  }
-}
-
 const turns = ["0", "π/2", "π", "3π/2", "2π"];
 /** Labels of a phase axis at quarter turns. */
 const phaseLabels = (min, max) =>
@@ -91,125 +37,109 @@ const phaseLabels = (min, max) =>
     .map((text, i) => ({at: (i * Math.PI) / 2, text}))
     .filter(({at}) => at >= min - 1e-9 && at <= max + 1e-9);
 
-const sectionDiagram = {
-  drawn: () => null, // several values
-  /** The coordinate drawn and its column; velocities can be in mm/s. */
-  shown() {
-    const {data, choice} = this.view;
-    const name = choice.coordinate;
-    const own = q.coordinates[data.section]?.[name] ?? {label: "", title: ""};
-    const seconds = data.parameters.si && inSeconds() && own.seconds;
-    return {...own, ...(seconds ? {label: seconds.label, column: `${name}_SI`} : {column: name})};
-  },
-  y() {
-    const {column, range, log, least = -Infinity, turns: phase, label} = this.shown();
-    const large = (p) => p.section?.[column]?.filter((v) => !(v <= least)) ?? [];
-    const held = range ?? rangeOf(this.values(large), log) ?? (log ? [0.1, 10] : [-1, 1]);
-    return {range: held, log, label, labels: phase && phaseLabels};
-  },
-  marks() {
-    const {column, levels: y = []} = this.shown();
-    const [axis] = this.view.data.axes;
-    const ofStart = (s) => sectionOf(this.view.byStart[s], axis, column, this.tint(s, "c1"));
-    return [levels({y}), ...this.view.starts().map(ofStart)];
-  },
-  columns() {
-    return {[this.shown().label]: null};
-  },
-  rows(p) {
-    return Array.from(p.section?.[this.shown().column] ?? [], (v) => [v]);
-  },
-  words() {
-    const {title, label} = this.shown();
-    const summary = `${label} of the section at ${this.points.length} points`;
-    return {title: `Section: ${title}`, summary};
-  },
-};
+/** A coordinate of the section. */
+function section(view) {
+  const {data, choice} = view;
+  const own = q.coordinates[data.section]?.[choice.coordinate];
+  const chosen = {...own, ...(data.parameters.si && inSeconds() && own?.seconds)};
+  const {title, label, range, log, least = -Infinity, levels: y = []} = chosen;
+  const of = q.valuesOf(chosen);
+  const large = (p) => of(p).filter((v) => !(v <= least));
+  const held = range ?? rangeOf(view.values(large), log) ?? (log ? [0.1, 10] : [-1, 1]);
+  const ofStart = (places, s) => sectionOf(places, data.axes[0], of, view.tint(s, "c1"));
+  return {
+    title: `Section: ${title}`,
+    summary: `${label} of the section at ${view.points.length} points`,
+    y: {range: held, log, label, labels: chosen.turns && phaseLabels},
+    marks: [levels({y}), ...view.byStart.map(ofStart)],
+    height: () => null, // several values
+    columns: {[label]: null},
+    rows: (p) => Array.from(of(p), (v) => [v]),
+  };
+}
 
-const lambda = (i) => (p) => p.lambda?.[i] ?? null;
+const lambdaOf = (i) => (p) => p.lambda?.[i] ?? null;
+const [lambda1, lambda2] = [lambdaOf(0), lambdaOf(1)];
 const errorOf = (p) => p.standard_error?.[0] ?? null;
-const drawnLambda = (p) => (q.untouched(p) ? 0 : lambda(0)(p));
+const drawnLambda = (p) => (q.untouched(p) ? 0 : lambda1(p));
 
-const lambdaDiagram = {
-  drawn: ({p}) => drawnLambda(p),
-  y() {
-    const held = (p) => {
-      const [first, error] = [lambda(0)(p), errorOf(p)];
-      if (first === null) return [];
-      return [first - error, first + error, lambda(1)(p), ofOtherMotion(lambda(0))(p)];
-    };
-    return {range: rangeOf([[0], ...this.values(held)]), label: "λ"};
-  },
-  marks(frame) {
-    const alpha = this.view.several ? 0.5 : 1;
-    const ofStart = (s) => {
-      const tint = (p) => this.tint(s, q.verdictColour(p));
-      return [
-        this.line(s, lambda(1), this.tint(s, "second"), {alpha}),
-        this.dots(frame, s, drawnLambda, {tint, error: errorOf}),
-      ];
-    };
-    const zero = levels({y: 0, colour: "soft"});
-    return [zero, ...this.view.starts().flatMap(ofStart), ...this.rings(frame, lambda(0))];
-  },
-  columns: () => ({
-    "λ₁": lambda(0),
-    "standard error": errorOf,
-    "λ₂": lambda(1),
-    verdict: (p) => q.verdicts[p.verdict] ?? "–",
-  }),
-  words() {
-    const points = this.points.filter((p) => p.lambda);
-    const chaotic = points.filter((p) => p.verdict === "chaotic").length;
-    const values = points.map(lambda(0)).filter((v) => v !== null);
-    const [least, most] = [Math.min(...values), Math.max(...values)].map(short);
-    const ends = values.length ? `λ₁ from ${least} to ${most}; ` : "";
-    const summary = `${ends}chaotic over the measured cycles at ${chaotic} of ${points.length} points`;
-    return {title: "Largest exponent λ₁", summary};
-  },
-};
+function lambda(view) {
+  const held = (p) => {
+    const [first, error] = [lambda1(p), errorOf(p)];
+    if (first === null) return [];
+    return [first - error, first + error, lambda2(p), ofOtherMotion(lambda1)(p)];
+  };
+  const alpha = view.several ? 0.5 : 1;
+  const ofStart = (places, s) => {
+    const tint = (p) => view.tint(s, q.verdictColour(p));
+    return [
+      lineOf(places, lambda2, view.tint(s, "second"), {alpha}),
+      view.dots(s, drawnLambda, {tint, error: errorOf}),
+    ];
+  };
+  const points = view.points.filter((p) => p.lambda);
+  const chaotic = points.filter((p) => p.verdict === "chaotic").length;
+  const values = points.map(lambda1).filter((v) => v !== null);
+  const [least, most] = [Math.min(...values), Math.max(...values)].map(short);
+  const ends = values.length ? `λ₁ from ${least} to ${most}; ` : "";
+  return {
+    title: "Largest exponent λ₁",
+    summary: `${ends}chaotic over the measured cycles at ${chaotic} of ${points.length} points`,
+    y: {range: rangeOf([[0], ...view.values(held)]), label: "λ"},
+    marks: [
+      levels({y: 0, colour: "soft"}),
+      ...view.byStart.flatMap(ofStart),
+      ...view.rings(lambda1),
+    ],
+    height: ({p}) => drawnLambda(p),
+    columns: {
+      "λ₁": lambda1,
+      "standard error": errorOf,
+      "λ₂": lambda2,
+      verdict: (p) => q.verdicts[p.verdict] ?? "–",
+    },
+  };
+}
 
-const quantityDiagram = {
-  quantity() {
-    return q.quantityOf(this.view.choice.beside, this.view.data);
-  },
-  drawn({p}) {
-    return this.quantity().of(p);
-  },
-  y() {
-    const {of, levels = [], free = () => null, from0, label} = this.quantity();
-    const held = (p) => [of(p), free(p), ofOtherMotion(of)(p)];
-    const [min, max] = rangeOf([from0 ? [0] : [], ...this.values(held)]) ?? [-1, 1];
-    if (!from0) return {range: [min, max], label};
-    const most = Math.max(max, Math.min(levels[0] ?? 0, max * 1.5)) * 1.02;
-    return {range: [0, most], label};
-  },
-  marks(frame) {
-    const {of, levels: y = [], free} = this.quantity();
-    const ofStart = (s) => {
-      const name = this.tint(s, "text");
-      const dots = this.dots(frame, s, of, {tint: () => name});
-      const without = free ? [this.line(s, free, "wall", {width: 1.4, dash: [6, 4]})] : [];
-      return [this.line(s, of, name, {alpha: 0.35}), dots, ...without];
-    };
-    // Labelled bands of the regimes; omitted for several starts, whose regimes can differ.
-    const named = {alpha: 0.2, textDown: 12, size: 12, texts: true};
-    const bands = this.view.several ? [] : [this.regimes(0, named)];
-    const ofStarts = this.view.starts().flatMap(ofStart);
-    return [...bands, levels({y}), ...ofStarts, ...this.rings(frame, of)];
-  },
-  columns() {
-    const {label, of, free} = this.quantity();
-    const without = free && {"without the absorber": free};
-    return {[label]: of, ...without, regime: (p) => p.regime ?? "–"};
-  },
-  words() {
-    const texts = countRegimes(this.points)
-      .filter(([, n]) => n)
-      .map(([regime, n]) => `${regime === "none" ? q.regimes.none : regime}: ${n}`);
-    const summary = `points of each regime: ${texts.join(", ")}`;
-    return {title: `Regimes and ${this.quantity().title}`, summary};
-  },
+/** The range of a quantity that starts at 0, with its first level where that is near. */
+const from0Range = ([, max], level = 0) => [0, Math.max(max, Math.min(level, max * 1.5)) * 1.02];
+
+function quantity(view) {
+  const chosen = q.quantityOf(view.choice.beside, view.data);
+  const {of, levels: y = [], free, from0, label, title} = chosen;
+  const held = (p) => [of(p), free?.(p) ?? null, ofOtherMotion(of)(p)];
+  const range = rangeOf([from0 ? [0] : [], ...view.values(held)]) ?? [-1, 1];
+  const ofStart = (places, s) => {
+    const name = view.tint(s, "text");
+    const without = free ? [lineOf(places, free, "wall", {width: 1.4, dash: [6, 4]})] : [];
+    const dots = view.dots(s, of, {tint: () => name});
+    return [...without, lineOf(places, of, name, {alpha: 0.35}), dots];
+  };
+  // Labelled bands of the regimes; omitted for several starts, whose regimes can differ.
+  const named = {alpha: 0.2, textDown: 12, size: 12, texts: true};
+  const bands = view.several ? [] : [view.regimes(0, named)];
+  const counts = countRegimes(view.points)
+    .filter(([, n]) => n)
+    .map(([regime, n]) => `${regime === "none" ? q.regimes.none : regime}: ${n}`);
+  return {
+    title: `Regimes and ${title}`,
+    summary: `points of each regime: ${counts.join(", ")}`,
+    y: {range: from0 ? from0Range(range, y[0]) : range, label},
+    marks: [...bands, levels({y}), ...view.byStart.flatMap(ofStart), ...view.rings(of)],
+    height: ({p}) => of(p),
+    columns: {
+      [label]: of,
+      ...(free && {"without the absorber": free}),
+      regime: (p) => p.regime ?? "–",
+    },
+  };
+}
+
+/** A diagram with the regimes of each start along its upper edge. */
+const withRegimes = (kind) => (view) => {
+  const {marks, ...content} = kind(view);
+  const strips = view.byStart.map((_, s) => view.regimes(s, {down: 6 * s, height: 5}));
+  return {...content, marks: [...marks, ...strips]};
 };
 
 const steps = {
@@ -228,17 +158,15 @@ const closest = (places, away) =>
 export class DiagramView extends SweepView {
   constructor(root, ...rest) {
     super(root, [new Viewport()], ...rest);
-    const kinds = {section: sectionDiagram, lambda: lambdaDiagram, other: quantityDiagram};
-    this.plots = Object.entries(kinds).map(([name, kind]) => new Diagram(this, name, kind));
+    const kinds = {section, lambda, other: quantity};
+    this.plots = Object.entries(kinds).map(
+      ([name, kind]) => new SweepPlot(this, name, withRegimes(kind)),
+    );
   }
 
   refresh(choice) {
-    this.byStart = this.starts().map((s) => this.layers.places(s));
+    this.byStart = this.data.states.map((_, s) => this.layers.places(s));
     super.refresh(choice);
-  }
-
-  starts() {
-    return [...Array(this.data.starts).keys()];
   }
 
   get several() {
@@ -247,6 +175,39 @@ export class DiagramView extends SweepView {
 
   places() {
     return this.byStart.flat().filter(({p}) => !p.error);
+  }
+
+  /** The points of the first start. */
+  get points() {
+    return this.byStart[0].map(({p}) => p);
+  }
+
+  /** Values of all points, a list of each, for the range. */
+  values(of) {
+    return this.places().map(({p}) => of(p));
+  }
+
+  /** Colour of a start; `alone` if there is only one. */
+  tint(start, alone) {
+    return this.several ? startStyle(start).colour : alone;
+  }
+
+  /** Dots of a start, in the colours tint(point). */
+  dots(start, of, more) {
+    const {shape} = startStyle(start);
+    return dotsOf(this.byStart[start], of, {shape, size: 2, fitted: true, ...more});
+  }
+
+  /** The best motion of each point, or one from another start that differs, as rings on a line. */
+  rings(of) {
+    if (this.several) return [];
+    const other = ofOtherMotion(of);
+    const ring = {tint: () => "best", shape: "ring", width: 1.5};
+    return [lineOf(this.byStart[0], other, "best", {alpha: 0.6}), this.dots(0, other, ring)];
+  }
+
+  regimes(start, more) {
+    return regimesOf(this.byStart[start], this.data.axes[0], more);
   }
 
   /** The points of all starts at a place; undefined where one is missing. */
@@ -259,7 +220,7 @@ export class DiagramView extends SweepView {
     const place = closest(this.byStart[0], (other) => Math.abs(other.at[0] - at[0]));
     if (!place || top === undefined) return place;
     const away = (other) => {
-      const v = other.p.error ? null : plot.drawn(other);
+      const v = other.p.error ? null : plot.shown.height(other);
       return v == null ? Infinity : Math.abs(plot.frame.py(v) - plot.frame.box.top - top);
     };
     return closest(this.placesAt(place).filter(Boolean), away);

@@ -2,7 +2,7 @@
 import {font, ticks} from "../shared/frame.js";
 import {colour, drawText, drawTextUpwards, hex, ink, rgb} from "../shared/ink.js";
 import {kind, pixel, raster} from "../shared/marks.js";
-import {clamp, lastUpTo, short} from "../shared/numbers.js";
+import {clamp, joined, lastUpTo, short} from "../shared/numbers.js";
 import {bestMotion, describe, quantityOf, regimeColour} from "../shared/quantities.js";
 import {Viewport} from "../shared/viewport.js";
 import * as labels from "./axis_labels.js";
@@ -16,7 +16,7 @@ const firstPass = 1 / 40; // fraction of the points after which the colour scale
 export class MapView extends SweepView {
   constructor(root, ...rest) {
     super(root, [new Viewport(), new Viewport()], ...rest);
-    this.plots = [new MapPlot(this, "map")];
+    this.plots = [new SweepPlot(this, "map", map)];
   }
 
   /** The cell at positions of a layer; its point is null until it is received. */
@@ -68,20 +68,14 @@ export class MapView extends SweepView {
     this.goTo(...(next ?? from).at);
     return true;
   }
-}
-
-class MapPlot extends SweepPlot {
-  drawn({height}) {
-    return height;
-  }
 
   quantity() {
-    return quantityOf(this.view.choice.map, this.view.data);
+    return quantityOf(this.choice.map, this.data);
   }
 
   /** The motion shown: of several starts the worst or the best. */
   motion(p) {
-    return this.view.choice.best ? bestMotion(p) : p;
+    return this.choice.best ? bestMotion(p) : p;
   }
 
   /** The value drawn for a point; null if it has none. */
@@ -91,16 +85,16 @@ class MapPlot extends SweepPlot {
 
   /** The values of the visible slice. */
   values() {
-    const values = [...this.view.cells(this.view.data)].map(({p}) => this.valueOf(p));
+    const values = [...this.cells(this.data)].map(({p}) => this.valueOf(p));
     return values.filter((v) => v !== null);
   }
 
   /** Colour name of a category; that of an attractor does not change while points arrive. */
   colourOf(name) {
-    if (this.view.choice.map === "regime") return regimeColour(name);
+    if (this.choice.map === "regime") return regimeColour(name);
     if (name === "not_decided") return "nothing";
     if (name === "chaotic") return "chaotic";
-    const {coloured} = this.view.layers;
+    const {coloured} = this.layers;
     if (!coloured.has(name)) coloured.set(name, startStyle(coloured.size).colour);
     return coloured.get(name);
   }
@@ -109,7 +103,7 @@ class MapPlot extends SweepPlot {
   scale() {
     const quantity = this.quantity();
     if (quantity.categories) return null;
-    const {layers, data, choice} = this.view;
+    const {layers, data, choice} = this;
     const chosen = layers.ends[choice.map];
     if (chosen) return scaleOf(quantity, chosen);
     const values = this.values();
@@ -119,26 +113,31 @@ class MapPlot extends SweepPlot {
     return scaleOf(quantity, ends);
   }
 
-  prepare(width, height) {
-    if (!this.view.layers) return null;
-    const scale = this.scale();
-    const marks = [raster({paint: (...image) => this.fill(...image, scale)})];
-    if (scale) marks.push(bar({scale, title: this.quantity().label}));
-    return {marks, frame: this.frameOf(width, height, scale ? barWidth : 12)};
+  /** Slice and start shown, where there are several. */
+  get about() {
+    const {slice, start, best} = this.choice;
+    const {axes, defaultSet, starts} = this.data;
+    const third = axes[2];
+    return joined([
+      third && labels.fields({[third.parameter]: third.values[slice]}),
+      defaultSet && `${best ? "best" : "worst"} start`,
+      starts > 1 && `start ${start + 1}`,
+    ]);
   }
 
   /** Sets the pixels of all layers; those without a regime are hatched. */
   fill(pixels, width, height, scale) {
     const [none, line] = ["regime-none", "panel"].map((name) => pixel(rgb(name)));
-    for (const data of this.view.layers.over(this.view.choice.slice)) {
-      const [first, second] = data.axes;
-      const columns = positions(first, this.viewport.range, width);
-      const rows = positions(second, this.across.range, height).reverse();
+    for (const data of this.layers.over(this.choice.slice)) {
+      const [columns, rows] = [width, height].map((count, i) =>
+        positions(data.axes[i], this.viewports[i].range, count),
+      );
+      rows.reverse();
       const cells = this.pixels(data, scale);
       for (let j = 0; j < height; ++j)
         for (let i = 0; i < width; ++i) {
           const inside = rows[j] >= 0 && columns[i] >= 0;
-          const colour = inside && cells[rows[j] * first.at.length + columns[i]];
+          const colour = inside && cells[rows[j] * data.axes[0].at.length + columns[i]];
           const isLine = !scale && colour === none && (i + j) % 8 < 2;
           if (colour) pixels[j * width + i] = isLine ? line : colour;
         }
@@ -151,44 +150,37 @@ class MapPlot extends SweepPlot {
     const n = first.at.length;
     const pixels = new Uint32Array(n * second.at.length);
     const colourOf = scale ? scale.at : (v) => rgb(this.colourOf(v));
-    for (const {p, k, l} of this.view.cells(data)) {
+    for (const {p, k, l} of this.cells(data)) {
       const v = this.valueOf(p);
       pixels[l * n + k] = pixel(v === null ? rgb("nothing") : colourOf(v));
     }
     // Only the base layer is filled: below a finer layer the coarser one shows through.
-    if (!data.complete && data === this.view.data) fillGaps(pixels, first.order, second.order);
+    if (!data.complete && data === this.data) fillGaps(pixels, first.order, second.order);
     return pixels;
   }
+}
 
-  columns() {
-    return {
-      [this.quantity().label || this.quantity().title]: (p) => this.valueOf(p),
-      regime: (p) => this.motion(p).regime ?? "–",
-    };
-  }
-
-  /** Slice and start shown, where there are several. */
-  shown() {
-    const {slice, start, best} = this.view.choice;
-    const {axes, defaultSet, starts} = this.view.data;
-    const third = axes[2];
-    const of = [
-      third && labels.fields({[third.parameter]: third.values[slice]}),
-      defaultSet && `${best ? "best" : "worst"} start`,
-      starts > 1 && `start ${start + 1}`,
-    ];
-    return of.map((text) => (text ? `, ${text}` : "")).join("");
-  }
-
-  words() {
-    const {title} = this.quantity();
-    const scale = this.scale();
-    const of = this.shown();
-    const [first, second] = this.view.data.axes.map((a) => labels.label(a.parameter));
-    const colours = scale ? `, colours from ${scale.ends.map(short).join(" to ")}` : "";
-    const summary = `${title} over ${first} and ${second}${of}${colours}`;
-    return {title: `Map of ${title}${of}`, summary};
-  }
+/** The content of the map: an image and, except for categories, its colour scale. */
+function map(view) {
+  const {label, title} = view.quantity();
+  const scale = view.scale();
+  const of = view.about && `, ${view.about}`;
+  const [first, second] = view.data.axes.map(({parameter}) => labels.label(parameter));
+  const colours = scale ? `, colours from ${scale.ends.map(short).join(" to ")}` : "";
+  return {
+    title: `Map of ${title}${of}`,
+    summary: `${title} over ${first} and ${second}${of}${colours}`,
+    beside: scale ? barWidth : 12,
+    marks: [
+      raster({paint: (...image) => view.fill(...image, scale)}),
+      ...(scale ? [bar({scale, title: label})] : []),
+    ],
+    height: ({height}) => height,
+    columns: {
+      [label || title]: (p) => view.valueOf(p),
+      regime: (p) => view.motion(p).regime ?? "–",
+    },
+  };
 }
 
 /** Index of the cell at a place; -1 outside the axis. */

@@ -20,13 +20,13 @@ export const dotsOf = (places, of, {tint, error, ...more}) =>
     ...more,
   });
 
-/** Density of a column of the section: periodic orbits are a few opaque dots, chaos is a cloud. */
-export const sectionOf = (places, {from}, column, colour) =>
+/** Density of the values of(p): periodic orbits are a few opaque dots, chaos is a cloud. */
+export const sectionOf = (places, {from}, of, colour) =>
   density({
     columns: places.map(({p, low, high}) => ({
       from: from(low),
       to: from(high),
-      values: p.section?.[column] ?? [],
+      values: of(p),
     })),
     colour,
   });

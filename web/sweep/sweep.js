@@ -82,8 +82,8 @@ function legendEntry(text, {mark, colour}, ...more) {
 }
 
 /** Shows the legend of a map of attractors, the most frequent first; empty for other plots. */
-function showAttractors({choice, plots: [map]}) {
-  const names = choice.map === "attractor" ? map.values() : [];
+function showAttractors(map) {
+  const names = map.choice.map === "attractor" ? map.values() : [];
   const items = [...Map.groupBy(names, (name) => name)]
     .sort(([, one], [, other]) => other.length - one.length)
     .map(([name, {length}]) => {

@@ -1,6 +1,5 @@
 // Base of the views of a sweep: its plots share viewports, choices and a tooltip.
 import {$, button, element} from "../shared/dom.js";
-import {Frame} from "../shared/frame.js";
 import {makeAccessible} from "../shared/gestures.js";
 import {clamp, roundedRange} from "../shared/numbers.js";
 import {ZoomablePlot} from "../shared/plot.js";
@@ -11,12 +10,16 @@ const zooms = {"+": 1.5, "=": 1.5, "-": 1 / 1.5};
 
 export const missingPoint = [["", "not computed yet"]];
 
-/** Subclasses have words(): {title, summary}, drawn(place): y or null, columns(): {name: of(p)}. */
+/**
+ * A plot of a view. kind(view) returns its content: title and summary; y, by default the second
+ * axis; marks; height(place): where y shows a place, or null; columns: {name: of(p)} of the exported
+ * table; rows(p): of a point in it, by default one.
+ */
 export class SweepPlot extends ZoomablePlot {
   /** name: in the id of its figure. */
-  constructor(view, name) {
+  constructor(view, name, kind) {
     super($(`figure-sweep-${name}`), ...view.viewports);
-    Object.assign(this, {view, name: `sweep-${name}`});
+    Object.assign(this, {view, kind, name: `sweep-${name}`});
     this.over.addEventListener("pointermove", ({pointerType, buttons}) => {
       if (pointerType !== "mouse" || this.viewport.cursor === null) return;
       if (buttons) view.hideTip();
@@ -24,19 +27,20 @@ export class SweepPlot extends ZoomablePlot {
     });
   }
 
-  about() {
-    const {base, axes, ...run} = this.view.data.request; // the caption shows the shared fields
-    return {...this.words(), caption: labels.fields({...base, ...run}), name: this.name};
-  }
-
-  /** beside: px reserved at the right, for example for a colour bar. */
-  frameOf(width, height, beside) {
-    const [x, y = this.y()] = this.view.viewports.map(({range}, i) => {
+  content() {
+    if (!this.view.choice) return null;
+    const [x, y] = this.view.viewports.map(({range}, i) => {
       const {parameter, log, from} = this.view.data.axes[i];
       const {factor} = labels.of(parameter);
       return {range: range.map(from), log, label: labels.label(parameter), factor};
     });
-    return new Frame(width, height, x, y, beside);
+    this.shown = this.kind(this.view);
+    return {x, y, ...this.shown};
+  }
+
+  about() {
+    const {base, axes, ...run} = this.view.data.request; // the caption shows the shared fields
+    return {...this.content(), caption: labels.fields({...base, ...run}), name: this.name};
   }
 
   click(x, _, {y, top, touch}) {
@@ -52,22 +56,17 @@ export class SweepPlot extends ZoomablePlot {
     if (current?.plot === this && !current.act) this.view.showTip(current);
   }
 
-  /** Rows of a point in the exported table. */
-  rows(p) {
-    return [Object.values(this.columns()).map((of) => of(p))];
-  }
-
   /** {names, rows} of the visible points. */
   numbers() {
     const {data, viewports, several} = this.view;
-    const shown = data.axes.slice(0, viewports.length).map(({parameter}) => parameter);
+    const {columns, rows = (p) => [Object.values(columns).map((of) => of(p))]} = this.content();
+    const axes = data.axes.slice(0, viewports.length).map(({parameter}) => parameter);
     const starts = several ? ["start"] : [];
-    const names = [...shown.map(labels.label), ...starts, ...Object.keys(this.columns())];
-    const rows = this.view.visiblePlaces().flatMap(({p, value, height, start}) => {
-      const at = shown.map((parameter, i) => labels.number(parameter, i ? height : value));
-      return this.rows(p).map((row) => [...at, ...starts.map(() => start + 1), ...row]);
+    const numbers = this.view.visiblePlaces().flatMap(({p, value, height, start}) => {
+      const at = axes.map((parameter, i) => labels.number(parameter, i ? height : value));
+      return rows(p).map((row) => [...at, ...starts.map(() => start + 1), ...row]);
     });
-    return {names, rows};
+    return {names: [...axes.map(labels.label), ...starts, ...Object.keys(columns)], rows: numbers};
   }
 }
 
@@ -127,7 +126,7 @@ export class SweepView {
   /** Describes the plots for screen readers. */
   describe() {
     for (const plot of this.plots) {
-      const {title, summary} = plot.words();
+      const {title, summary} = plot.content();
       makeAccessible(plot, `${title}: ${summary}`);
     }
   }
@@ -181,7 +180,7 @@ export class SweepView {
     const place = this.nearest(current);
     if (!place || !plot.frame) return;
     this.current = current;
-    for (const each of this.plots) each.light(place.value, each.drawn(place));
+    for (const each of this.plots) each.light(place.value, each.shown?.height(place));
     const entry = ([term, value]) => [element("dt", {}, term), element("dd", {}, value)];
     // Pressing the button must not move the focus, which would hide the tooltip before the click.
     const onmousedown = (event) => event.preventDefault();
