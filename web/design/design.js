@@ -95,8 +95,7 @@ export class DesignTab extends RequestTab {
     setTexts({"design-sentence": this.done.sentence});
     this.showCards();
     const banded = this.asking.f !== undefined;
-    $("figure-design-response").hidden = !banded;
-    if (banded) this.drawResponse();
+    this.plots.draw("response", banded && this.response());
     this.showTolerances();
   }
 
@@ -113,16 +112,18 @@ export class DesignTab extends RequestTab {
   }
 
   /** The objective over f for each alternative. */
-  drawResponse() {
+  response() {
     const {f, without, tuned_mass_damper: damper, ...response} = this.done.response;
     const {name, factor, unit, title} = this.objective;
     const of = (y, colour, label, dash) =>
       line({x: f, y: y.map((v) => v && v * factor), colour, label, dash, width: 1.6});
     const label = `${title} (${unit})`;
-    this.plots.draw("response", {
+    const {response: plot} = this.plots.all;
+    makeAccessible(plot, `${label} over the frequency`);
+    plot.viewport.span(f[0], f.at(-1));
+    return {
       x: {label: "f (Hz)", factor: 1},
       y: {label},
-      span: [f[0], f.at(-1)],
       unit,
       marks: [
         of(without, "soft", "without", [5, 4]),
@@ -130,8 +131,7 @@ export class DesignTab extends RequestTab {
         of(response[`${name}_worst_start`], "c1", "worst start"),
         of(damper, "c4", "tuned mass damper"),
       ],
-    });
-    makeAccessible(this.plots.all.response, `${label} over the frequency`);
+    };
   }
 
   /** The worst case over b, with a colour for each R; the best is ringed. */

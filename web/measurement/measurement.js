@@ -4,6 +4,7 @@ import * as dom from "../shared/dom.js";
 import {$} from "../shared/dom.js";
 import {Form} from "../shared/form.js";
 import {RequestTab} from "../shared/job.js";
+import {joined} from "../shared/numbers.js";
 import {ImpactList} from "./impact_list.js";
 import {summariseMeasurement} from "./measurement_summary.js";
 import * as views from "./measurement_views.js";
@@ -37,6 +38,9 @@ const asQuery = (fields) => String(new URLSearchParams(fields)).replaceAll("%2C"
 
 const pick = (fields, isWanted) => Object.fromEntries(Object.entries(fields).filter(isWanted));
 
+/** The record of a simulated run as a file. */
+const fileOf = (run, name) => new File([records.recordOfRun(run)], name, {type: "text/csv"});
+
 const presetMenu = $("measure-preset");
 
 export class MeasurementTab extends RequestTab {
@@ -64,14 +68,15 @@ export class MeasurementTab extends RequestTab {
   }
 
   listen() {
-    dom.onFile($("panel-measurement"), $("measure-drop"), (file) => this.readFile(file));
+    dom.onFile($("panel-measurement"), $("measure-drop"), (file) => file && this.read(() => file));
     presetMenu.onchange = () => this.choosePreset(presetMenu.value, this.ofColumns());
     $("measure-fields").onchange = ({target}) => {
       this.remember();
       if (this.parsed && target.list) this.useColumns();
       else if (this.parsed && !this.answer) this.drawFile(this.form.values());
     };
-    $("measure-samples").onclick = ({target}) => target.value && this.readSample(target.value);
+    $("measure-samples").onclick = ({target: {value}}) =>
+      value && this.read(() => this.sample(value));
     $("measure-again").onclick = () => this.run({impact_times_s: this.list.times()});
     $("measure-reset").onclick = () => this.list.reset();
     $("measure-add-at").onclick = ({currentTarget}) => {
@@ -93,17 +98,13 @@ export class MeasurementTab extends RequestTab {
     if (asQuery(fields) === this.asked) return;
     const {preset = given.size ? "" : firstSample, ...rest} = fields;
     this.choosePreset(preset, rest);
-    if (!this.opened) this.readFirst(given.size === 0);
+    if (!this.opened) this.read(() => this.first(given.size === 0));
     this.opened = true;
   }
 
-  /** Reads the record of before a reload or, if wanted, a sample. */
-  async readFirst(sample) {
-    const isNewest = this.beginRecord();
-    const file = await records.afterReload();
-    if (!isNewest()) return;
-    if (file) this.readFile(file);
-    else if (sample) this.readSample(firstSample);
+  /** The record of before a reload or, if wanted, a sample. */
+  async first(sample) {
+    return (await records.afterReload()) ?? (sample ? this.sample(firstSample) : null);
   }
 
   /** Selects an oscillator; more: further fields. */
@@ -235,17 +236,27 @@ export class MeasurementTab extends RequestTab {
     dom.reveal({"measure-lines": lines.length});
   }
 
-  /** Gives up the previous record. Returns isNewest(), which is false after the next call. */
-  beginRecord() {
+  /** Gives up the previous record for the file to which source() resolves, if any. */
+  async read(source) {
     this.cancel();
+    if (!this.parsed) this.file = null;
     const mine = ++this.records;
-    return () => this.records === mine;
+    const isNewest = () => this.records === mine;
+    try {
+      const file = await source();
+      if (file && isNewest()) await this.readFile(file, isNewest);
+    } catch ({message}) {
+      if (!isNewest()) return;
+      const unread = !this.parsed && this.file;
+      this.say(joined([unread && `${unread.name} cannot be read`, message], ": "), true);
+      if (!unread) return;
+      this.file = null;
+      this.drawFile();
+    }
   }
 
-  /** Reads a chosen file, draws it and, if its columns are known, identifies it. */
-  async readFile(file) {
-    if (!file) return;
-    const isNewest = this.beginRecord();
+  /** Reads a file, draws it and, if its columns are known, identifies it. */
+  async readFile(file, isNewest) {
     const input = $("measure-file");
     if (input.files[0] !== file) input.value = ""; // allows choosing the same file again
     Object.assign(this, {file, parsed: null});
@@ -254,26 +265,19 @@ export class MeasurementTab extends RequestTab {
     dom.setTexts({"measure-about": about});
     this.quoteLine();
     this.say("reading …");
-    try {
-      const parsed = await records.parse(file, (share) => {
-        if (isNewest()) this.say(`reading … ${(100 * share).toFixed(0)} %`);
-      });
-      if (!isNewest()) return;
-      this.parsed = parsed;
-      records.keep(file);
-      const {names, columns} = parsed;
-      $("measure-columns").replaceChildren(...names.map((value) => dom.element("option", {value})));
-      dom.setTexts({"measure-about": `${about}, ${columns[0]?.length ?? 0} samples`});
-      // Clears chosen columns that the file does not have.
-      for (const [name, value] of Object.entries(this.ofColumns()))
-        if (isColumn(name) && names.length && !names.includes(value)) this.form.replace(name, "");
-      this.useColumns();
-    } catch (error) {
-      if (!isNewest()) return;
-      this.file = null;
-      this.drawFile();
-      this.say(`${file.name} cannot be read: ${error.message}`, true);
-    }
+    const parsed = await records.parse(file, (share) => {
+      if (isNewest()) this.say(`reading … ${(100 * share).toFixed(0)} %`);
+    });
+    if (!isNewest()) return;
+    this.parsed = parsed;
+    records.keep(file);
+    const {names, columns} = parsed;
+    $("measure-columns").replaceChildren(...names.map((value) => dom.element("option", {value})));
+    dom.setTexts({"measure-about": `${about}, ${columns[0]?.length ?? 0} samples`});
+    // Clears chosen columns that the file does not have.
+    for (const [name, value] of Object.entries(this.ofColumns()))
+      if (isColumn(name) && names.length && !names.includes(value)) this.form.replace(name, "");
+    this.useColumns();
   }
 
   /** Draws the record and, if its columns are known, identifies it. */
@@ -285,30 +289,20 @@ export class MeasurementTab extends RequestTab {
     this.say("choose which column is the time, and which the displacement or acceleration", true);
   }
 
-  readRun(run, name) {
-    return this.readFile(new File([records.recordOfRun(run)], name, {type: "text/csv"}));
-  }
-
   /** Identifies the record of a simulated run {parameters, impacts, sticking, status}. */
   measure(run) {
     const {parameters} = run;
     this.choosePreset("", records.oscillatorOf(parameters));
-    return this.readRun(run, `run-b${parameters.b * 1000}mm.csv`);
+    return this.read(() => fileOf(run, `run-b${parameters.b * 1000}mm.csv`));
   }
 
-  /** Identifies a simulated record of one of the experiments. */
-  async readSample(name) {
-    const isNewest = this.beginRecord();
+  /** A simulated record of one of the experiments, whose oscillator it selects. */
+  async sample(name) {
     this.choosePreset(name, this.ofColumns());
     this.say("simulating …");
     const {parameters} = this.presets[name];
     const fields = {...parameters, cycles: sampleCycles, include: ["impacts", "regime"]};
-    try {
-      const run = await simulate(fields);
-      if (isNewest()) await this.readRun(run, `sample-${name}.csv`);
-    } catch (error) {
-      if (isNewest()) this.say(error.message, true);
-    }
+    return fileOf(await simulate(fields), `sample-${name}.csv`);
   }
 
   redraw() {

@@ -98,101 +98,94 @@ function forwardMarks(answer) {
 /** Draws the record alone; click: handler of clicks on the acceleration. */
 export function drawRecord({t, a, x}, click) {
   const draw = (name, y, series, label, more) => {
-    $(`figure-measured-${name}`).hidden = !y;
     const marks = [line({label: series, colour: "trace", x: t, y})];
-    if (y) plots.draw(name, {marks, y: {label}, span: [t[0], t.at(-1)], ...more});
+    plots.draw(name, y && {marks, y: {label}, ...more});
   };
+  viewport.span(t[0], t.at(-1));
   draw("a", a, "x″", "acceleration (m/s²)", {click});
   draw("x", x, "x", "x (mm)");
 }
 
-function drawExponents(answer) {
-  const {exponents, slope} = answer;
-  const {lambda1: y, low: from, high: to} = slope;
-  const shown = [y, from, to].filter((v) => v != null);
-  const [least, most] = exponentRange([exponents.qr?.history, exponents.raw_product?.history]);
-  const range = [Math.min(least, ...shown), Math.max(most, ...shown)];
-  $("figure-measured-raw").hidden = !exponents.raw_product;
-  const known = [layer({from, to, colour: "interval"}), levels({y, colour: "before"})];
-  const draw = (name, estimator, under = []) =>
-    plots.draw(name, {
-      under: [...under, levels({y: 0, colour: "soft"})],
-      marks: historyOf(estimator),
-      y: {label: "λ", range},
-    });
-  draw("qr", exponents.qr, y == null ? [] : known);
-  draw("raw", exponents.raw_product);
+/** Exponents by qr with the slope, and by the raw product; rings mark the final values. */
+function exponents({exponents: {qr, raw_product: raw}, slope: {lambda1, low: from, high: to}}) {
+  const shown = [lambda1, from, to].filter((v) => v != null);
+  const [least, most] = exponentRange([qr?.history, raw?.history]);
+  const y = {label: "λ", range: [Math.min(least, ...shown), Math.max(most, ...shown)]};
+  const slope = [layer({from, to, colour: "interval"}), levels({y: lambda1, colour: "before"})];
+  const zero = levels({y: 0, colour: "soft"});
+  return {
+    qr: {y, marks: historyOf(qr), under: [...(lambda1 == null ? [] : slope), zero]},
+    raw: raw && {y, marks: historyOf(raw), under: [zero]},
+  };
 }
 
-/** Exponents of an estimator over time; rings mark the final values. */
-function historyOf(estimator) {
-  const {history, final: y} = estimator ?? {};
+function historyOf({history, final: y} = {}) {
   if (!history?.tau.length) return [];
   const {time_s: t} = history;
   const ends = symbols({x: y.map(() => t.at(-1)), y, colour: "text", shape: "ring", size: 3.5});
-  return [...exponentMarks({history}, (_, columns) => [t, ...columns]), ends];
+  return [...exponentMarks({history}, t), ends];
 }
+
+const signs = {plus: 1, minus: -1}; // of the impacts at each wall
 
 /** R of each impact. Inconsistent values lie at their place or at the edge of the plot. */
-function drawRestitution({impacts, restitution}) {
-  const {time_s: t, R, side, status} = impacts;
-  const of = (sign) => R.map((v, i) => (side[i] === sign && status[i] === "ok" ? v : null));
-  const columns = [of(1), of(-1)];
-  const around = columns.flat().flatMap((v) => (v === null ? [] : [v - 0.004, v + 0.004]));
-  const left = [...R.keys()].filter((i) => isLeftOut(status[i]) && R[i] != null);
-  const crosses = {x: left.map((i) => t[i]), y: left.map((i) => R[i]), colour: "wall"};
-  const walls = ["plus", "minus"];
-  const fitted = walls.filter((wall) => restitution[wall].R != null);
-  plots.draw("R", {
+function coefficients({impacts, restitution}) {
+  const {time_s: x, R, side, status} = impacts;
+  const only = (isWanted) => R.map((v, i) => (isWanted(i) ? v : null));
+  const used = only((i) => status[i] === "ok").filter((v) => v !== null);
+  const atWall = ([colour, sign]) => {
+    const y = only((i) => side[i] === sign && status[i] === "ok");
+    return beads({label: `R at ${sign > 0 ? "+" : "−"}b`, colour, size: 2.25, x, y});
+  };
+  const fitted = Object.keys(signs).filter((wall) => restitution[wall].R != null);
+  const leftOut = {x, y: only((i) => isLeftOut(status[i])), colour: "wall"};
+  return {
     marks: [
-      ...fitted.map((wall) => levels({y: restitution[wall].R, colour: wall})),
-      ...walls.map((colour, k) =>
-        beads({label: `R at ${"+−"[k]}b`, colour, size: 2.25, x: t, y: columns[k]}),
-      ),
-      symbols({...crosses, shape: "cross", size: 5, width: 2}),
+      ...fitted.map((colour) => levels({y: restitution[colour].R, colour})),
+      ...Object.entries(signs).map(atWall),
+      symbols({...leftOut, shape: "cross", size: 5, width: 2}),
     ],
-    y: {range: rangeOf([around]) ?? [0, 1], label: "R"},
-    points: {x: t, y: R},
-  });
+    y: {range: rangeOf([used.flatMap((v) => [v - 0.004, v + 0.004])]) ?? [0, 1], label: "R"},
+    points: {x, y: R},
+  };
 }
 
-function drawSteps({impacts: {tau, time_s: t}, parameters}) {
+function steps({impacts: {tau, time_s: x}, parameters}) {
   const half = Math.PI / parameters.Omega;
   const y = tau.map((v, i) => (v - tau[i - 1]) / half || null); // none before the first
   const label = "time since the previous impact";
-  plots.draw("steps", {
-    marks: [levels({y: 1, colour: "soft"}), beads({label, colour: "c1", size: 2, x: t, y})],
+  return {
+    marks: [levels({y: 1, colour: "soft"}), beads({label, colour: "c1", size: 2, x, y})],
     y: {log: true, range: rangeOf([y, [0.5, 2]], true), label: "half periods"},
-  });
+  };
 }
 
-function drawSections({impacts}) {
-  const x = mm(impacts.x);
-  const points = (velocity) => ({x, y: mm(velocity)});
-  const after = points(impacts.x_velocity_after);
-  const t = impacts.time_s;
-  const draw = (name, label, marks) =>
-    plots.draw(name, {
-      points: {...after, t, use: (i) => viewport.point(t[i])},
-      marks,
-      x: {label: "x (mm)"},
-      y: {label},
-    });
-  const before = points(impacts.x_velocity_before);
-  draw("portrait", "x′ (mm/s)", [
-    dots({...before, colour: "before", shape: "ring", size: 3.4, alpha: 0.75}),
-    dots({...after, colour: "after", shape: "cross", size: 2.8, alpha: 0.75}),
-  ]);
-  const atWall = (sign, colour) => {
-    const of = (column) => column.filter((_, i) => impacts.side[i] === sign);
-    return dots({x: of(x), y: of(after.y), colour, size: 1.8});
+function sections({impacts}) {
+  const {time_s: t, side} = impacts;
+  const points = (velocity) => ({x: mm(impacts.x), y: mm(velocity)});
+  const [before, after] = ["before", "after"].map((when) => points(impacts[`x_velocity_${when}`]));
+  const plane = (label, ...marks) => ({
+    marks,
+    x: {label: "x (mm)"},
+    y: {label},
+    points: {...after, t, use: (i) => viewport.point(t[i])},
+  });
+  const atWall = ([colour, sign]) => {
+    const of = (column) => column.filter((_, i) => side[i] === sign);
+    return dots({x: of(after.x), y: of(after.y), colour, size: 1.8});
   };
-  draw("section", "x′ after (mm/s)", [atWall(1, "plus"), atWall(-1, "minus")]);
+  return {
+    portrait: plane(
+      "x′ (mm/s)",
+      dots({...before, colour: "before", shape: "ring", size: 3.4, alpha: 0.75}),
+      dots({...after, colour: "after", shape: "cross", size: 2.8, alpha: 0.75}),
+    ),
+    section: plane("x′ after (mm/s)", ...Object.entries(signs).map(atWall)),
+  };
 }
 
 export function draw(answer) {
-  drawExponents(answer);
-  drawRestitution(answer);
-  drawSteps(answer);
-  drawSections(answer);
+  const all = {...exponents(answer), R: coefficients(answer), steps: steps(answer)};
+  for (const [name, options] of Object.entries({...all, ...sections(answer)}))
+    plots.draw(name, options);
 }

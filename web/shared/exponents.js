@@ -1,5 +1,5 @@
 // Lyapunov exponents of an estimator as lines of a plot.
-import {lines} from "./marks.js";
+import {line} from "./marks.js";
 import {shortTo} from "./numbers.js";
 
 const names = ["lambda1", "lambda2", "lambda3", "lambda4"];
@@ -8,22 +8,22 @@ const styles = [{width: 2}, {}, {dash: [7, 3]}, {dash: [2, 3]}];
 
 const absent = (status, ended) => (ended && status === "minus_infinity" ? "−∞" : "");
 
-/** Exponents and rounding floor of an estimator as lines; along(tau, columns): time first. */
-export function exponentMarks({history, status = []} = {}, along) {
-  const series = styles.map((style, k) => ({
-    colour: `c${k + 1}`,
-    width: 1.3,
-    ...style,
-    label: `λ${"₁₂₃₄"[k]}`,
-    text: (v, ended) => (v === null ? absent(status[k], ended) : shortTo(4, v)),
-  }));
-  const columns = names.map((name) => history?.[name] ?? []);
-  if (history?.rounding_floor) {
-    series.push({label: "rounding floor", colour: "soft", dash: [5, 4]});
-    columns.push(history.rounding_floor);
-  }
-  const [time, ...values] = along(history?.tau ?? [], columns);
-  return lines(time, values, series);
+/** Exponents and rounding floor of an estimator as lines. */
+export function exponentMarks({history, status = []} = {}, x = history?.tau ?? []) {
+  const exponents = styles.map((style, k) =>
+    line({
+      x,
+      y: history?.[names[k]] ?? [],
+      colour: `c${k + 1}`,
+      width: 1.3,
+      ...style,
+      label: `λ${"₁₂₃₄"[k]}`,
+      text: (v, ended) => (v === null ? absent(status[k], ended) : shortTo(4, v)),
+    }),
+  );
+  const y = history?.rounding_floor;
+  const floor = y && line({x, y, label: "rounding floor", colour: "soft", dash: [5, 4]});
+  return floor ? [...exponents, floor] : exponents;
 }
 
 /** A common range of several histories, for the settled values (the last three quarters). */

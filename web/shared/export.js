@@ -1,5 +1,5 @@
 // Export of a plot: a dialog with its numbers as a table and CSV, its picture as PNG and SVG.
-import {$, attributes, button, element, save, setTexts, tableOf} from "./dom.js";
+import {$, attributes, button, save, setTexts, tableOf} from "./dom.js";
 import {font} from "./frame.js";
 import {drawText, ink} from "./ink.js";
 import {joined, short} from "./numbers.js";
@@ -23,19 +23,18 @@ function drawPicture(c, plot, {title, caption}) {
   plot.paintAll(c, size.width, size.height - heading);
 }
 
-function asSvg(plot, about) {
-  const pen = new SvgPen();
-  drawPicture(pen, plot, about);
-  return pen.text();
-}
-
 function asPng(plot, about) {
-  const [width, height] = [size.width, size.height].map((v) => v * sharpness);
-  const canvas = element("canvas", {width, height});
+  const canvas = new OffscreenCanvas(size.width * sharpness, size.height * sharpness);
   const c = canvas.getContext("2d");
   c.scale(sharpness, sharpness);
   drawPicture(c, plot, about);
-  return new Promise((resolve) => canvas.toBlob(resolve));
+  return canvas.convertToBlob();
+}
+
+function asSvg(plot, about) {
+  const pen = new SvgPen();
+  drawPicture(pen, plot, about);
+  return new Blob([pen.text()], {type: "image/svg+xml"});
 }
 
 const quoted = (text) => (/[",\n]/.test(text) ? `"${text.replaceAll('"', '""')}"` : text);
@@ -54,7 +53,7 @@ function show(plot) {
   const csv = () => [names.map(quoted), ...rows].map((row) => `${row.join(",")}\n`);
   const files = {
     csv: () => new Blob(csv(), {type: "text/csv"}),
-    svg: () => new Blob([asSvg(plot, about)], {type: "image/svg+xml"}),
+    svg: () => asSvg(plot, about),
     png: () => asPng(plot, about),
   };
   $("data").onclick = async ({target: {value}}) => {

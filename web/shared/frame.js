@@ -41,7 +41,7 @@ function logTicks(min, max) {
 
 /** Labels {at, text}, at most `most`, with enough digits to distinguish neighbours. */
 function labelsOf({range, log, factor = 1, labels}, most) {
-  if (labels) return labels(...range);
+  if (labels) return labels.filter(({at}) => at >= range[0] - 1e-9 && at <= range[1] + 1e-9);
   const [min, max] = range.map((v) => v * factor);
   const powers = log ? logTicks(min, max) : [];
   const round = powers.length < 2; // fewer than two powers of ten in range
@@ -71,8 +71,8 @@ function sameScale({x, y}, width, height) {
 export class Frame {
   /**
    * x, y: {range, log, label, factor, aligned, labels}: visible range, logarithmic scale, name of the
-   * axis, factor of its numbers, numbers at the side even in small plots, and labels(min, max), which
-   * returns [{at, text}] in place of round numbers. beside, above: px at the right and at the top;
+   * axis, factor of its numbers, numbers at the side even in small plots, and labels [{at, text}] in
+   * place of round numbers. beside, above: px at the right and at the top;
    * equal: a unit has the same length on both axes.
    */
   constructor({width: all, height: whole}, {x, y, beside = 10, above: top = 5, equal}) {

@@ -26,47 +26,27 @@ export const line = kind((c, frame, {x, y, colour, width = 1, dash, dense}) => {
   // Visible points and one more on either side.
   const from = Math.max(firstFrom(x, min) - 1, 0);
   const to = Math.min(firstFrom(x, max) + 1, x.length);
+  const ends = []; // of each pixel column: spikes stay
+  const widen = (column, py) => {
+    const last = ends.at(-1);
+    if (last?.column !== column) ends.push({column, low: py, high: py});
+    else Object.assign(last, {low: Math.min(last.low, py), high: Math.max(last.high, py)});
+  };
+  const thinned = dense || to - from > 4 * frame.width;
+  let broken = true;
   ink(c, colour, width, dash);
   c.beginPath();
-  const {add, end} = dense || to - from > 4 * frame.width ? envelope(c) : path(c);
-  for (let i = from; i < to; ++i) add(frame.px(x[i]), isThere(y[i]) ? frame.py(y[i]) : null);
-  end();
+  for (let i = from; i < to; ++i) {
+    const there = isThere(y[i]);
+    const [px, py] = [frame.px(x[i]), frame.py(y[i])];
+    if (there && thinned) widen(Math.floor(px), py);
+    else if (there) c[broken ? "moveTo" : "lineTo"](px, py);
+    broken = !there;
+  }
+  for (const {column, low, high} of ends)
+    for (const py of [low - 0.5, high + 0.5]) c.lineTo(column + 0.5, py);
   c.stroke();
 });
-
-/** Lines over common x; styles: further options of each. */
-export const lines = (x, columns, styles) => columns.map((y, k) => line({x, y, ...styles[k]}));
-
-function path(c) {
-  let broken = true;
-  const add = (px, py) => {
-    if (py !== null) c[broken ? "moveTo" : "lineTo"](px, py);
-    broken = py === null;
-  };
-  return {add, end() {}};
-}
-
-/** Joins minimum and maximum of each pixel, up to those of the previous one: spikes stay. */
-function envelope(c) {
-  let column = null;
-  let ends = null; // [minimum, maximum], px
-  let before = null;
-  const flush = () => {
-    if (!ends) return;
-    const [[low, high], [from, to]] = [ends, before ?? ends];
-    c.moveTo(column + 0.5, Math.min(low, to) - 0.5);
-    c.lineTo(column + 0.5, Math.max(high, from) + 0.5);
-    before = ends;
-  };
-  const add = (px, py) => {
-    if (py === null) return;
-    const at = Math.floor(px);
-    if (at !== column) flush();
-    ends = at === column ? [Math.min(ends[0], py), Math.max(ends[1], py)] : [py, py];
-    column = at;
-  };
-  return {add, end: flush};
-}
 
 /** A line through points in any order. */
 export const curve = kind((c, {px, py}, {x, y, colour, width = 1.6, dash}) => {

@@ -223,10 +223,8 @@ class Flow {
 
   /** The map over 2^k cells. */
   doubled(k) {
-    for (let n = this.maps.length; n <= k; ++n) {
-      const half = this.maps[n - 1];
-      this.maps.push(mapOf((state) => (half ? half(half(state)) : this.near(state, this.cell))));
-    }
+    const half = k && this.doubled(k - 1);
+    this.maps[k] ??= mapOf((state) => (half ? half(half(state)) : this.near(state, this.cell)));
     return this.maps[k];
   }
 }

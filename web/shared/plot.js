@@ -155,24 +155,17 @@ export class ZoomablePlot extends Plot {
     listen(over, viewport, (...where) => this.click(...where), across);
   }
 
-  /**
-   * x: {label, factor, aligned}, as in Frame; span: [from, to] of the full axis, if this plot sets
-   * it; unit: of the series; click: see click(); points: as in Plot.
-   *
-   * marks: the labelled ones are series, whose text(value, ended) is their value in the legend; or
-   * trace(from, to, columns), which returns the marks of a range, by default those for the table.
-   */
-  draw(options) {
-    if (options.span) this.viewport.span(...options.span);
-    super.draw(options);
-  }
-
   /** reach: 6 px in units of x; where: {top, y, touch}. */
   click(x, reach, where) {
     this.last?.click?.(x, reach, where);
   }
 
-  /** alone: for export, with the names of the series in place of the legend. */
+  /**
+   * Options of draw() in addition to those of a Plot: unit: of the series; click: see click(). marks:
+   * the labelled ones are series, whose text(value, ended) is their value in the legend; or
+   * trace(from, to, columns), which returns the marks of a range, by default those for the table.
+   * alone: for export, with the names of the series in place of the legend.
+   */
   content(width, alone = false) {
     if (!this.last) return null;
     const {range} = this.viewport;
@@ -216,7 +209,7 @@ export class ZoomablePlot extends Plot {
     seriesOf(this.last?.marks ?? []).forEach(({x, y, text = plain}, k) => {
       const i = cursor === null ? -1 : lastUpTo(x, cursor);
       const within = cursor > x[i] ? i + 1 : i; // a line has no value after its end
-      const value = y[within] === null ? null : (y[i] ?? null);
+      const value = y[within] == null ? null : (y[i] ?? null);
       const shown = text(value, y.findLastIndex((v) => v !== null) < within);
       const node = this.values[k];
       if (node && node.textContent !== shown) node.textContent = shown;
@@ -279,9 +272,11 @@ export class PlotGroup {
     }
   }
 
-  /** common: options of all plots over time, such as x. */
+  /** Hides the figure without options. common: options of all plots over time, such as x. */
   draw(name, options) {
     const plot = this.all[name];
+    plot.canvas.closest("figure").hidden = !options;
+    if (!options) return;
     plot.draw({...(plot instanceof ZoomablePlot && this.common), ...options});
   }
 

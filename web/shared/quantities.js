@@ -20,6 +20,9 @@ export const verdictColour = ({verdict, z}) => {
   return verdict === "chaotic" || verdict === "regular" ? verdict : "undecided";
 };
 
+export const lambda1 = (p) => p.lambda?.[0] ?? null;
+export const errorOf = (p) => p.standard_error?.[0] ?? null;
+
 const mm = (metres) => (metres == null ? null : metres * 1000);
 
 /**
@@ -31,7 +34,7 @@ export const quantities = {
   lambda1: {
     label: "λ₁",
     title: "largest exponent λ₁",
-    of: (p) => p.lambda?.[0] ?? null,
+    of: lambda1,
     diverging: true,
   },
   z: {label: "z", title: "impacts per cycle z", levels: [1, 2, 3]},
@@ -82,12 +85,9 @@ for (const [name, quantity] of Object.entries(quantities)) quantity.of ??= (p) =
 const reducedTo = ["x_max", "where", "z"];
 
 /** A quantity of a sweep's points; `where` is a value of the axis removed by a reduction. */
-export function quantityOf(name, data) {
-  if (name !== "where") {
-    const {si, ...quantity} = quantities[name];
-    return data.parameters?.si ? {...quantity, ...si} : quantity;
-  }
-  const {symbol, unit, factor} = data.folded;
+export function quantityOf(name, {parameters, folded}) {
+  if (name !== "where") return {...quantities[name], ...(parameters.si && quantities[name].si)};
+  const {symbol, unit, factor} = folded;
   const title = `${symbol} of the peak`;
   const of = ({where}) => (where == null ? null : where * factor);
   return {label: unit ? `${title} (${unit})` : title, title, of};

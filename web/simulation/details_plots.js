@@ -1,11 +1,10 @@
 // Plots of the details: lines over the time axis of the first screen, and sections.
-import {reveal} from "../shared/dom.js";
 import {exponentRange} from "../shared/exponents.js";
 import {rangeOf} from "../shared/frame.js";
-import {beads, curve, dots, levels, line, lines} from "../shared/marks.js";
+import {beads, curve, dots, levels, line} from "../shared/marks.js";
 import {digits, mm} from "../shared/numbers.js";
 import {exponentLines, halves, picked} from "./plot_options.js";
-import {alongRun, inUnits, largestMagnitude, positive, run} from "./run.js";
+import {inUnits, largestMagnitude, positive, run} from "./run.js";
 
 const estimators = ["qr", "eigenvalues", "raw_product"];
 const matrices = ["J", "M", "T"];
@@ -21,11 +20,10 @@ function acceleration({tau, x_ddot: values}) {
   return {marks, y: {label: `x″ (${unit})`}};
 }
 
-function impactsPerCycle({tau, z}) {
-  const [x, y] = alongRun(tau, [z]);
+function impactsPerCycle({tau: x, z: y}) {
   return {
     marks: [levels({y: [1, 2, 3]}), line({label: "z", colour: "c4", width: 1.5, x, y})],
-    y: {range: [0, Math.max(3.4, largestMagnitude(z) * 1.08)], label: "impacts per cycle"},
+    y: {range: [0, Math.max(3.4, largestMagnitude(y) * 1.08)], label: "impacts per cycle"},
   };
 }
 
@@ -40,11 +38,16 @@ function matrixPlot(name, eigenvalues) {
   const columns = [0, 1, 2, 3].map((k) => eigenvalues[name].map((moduli) => moduli[k]));
   const least = columns[3].reduce((a, v) => Math.min(a, v), 1);
   const drawn = log ? columns.map((column) => column.map(positive)) : columns;
-  const [x, ...padded] = alongRun(eigenvalues.tau, drawn);
   const modulus = (y, k) =>
-    beads({label: `|μ${"₁₂₃₄"[k]}|`, colour: `c${k + 1}`, size: (5.4 - k) / 2, x, y});
+    beads({
+      label: `|μ${"₁₂₃₄"[k]}|`,
+      colour: `c${k + 1}`,
+      size: (5.4 - k) / 2,
+      x: eigenvalues.tau,
+      y,
+    });
   const range = log ? rangeOf([[1], ...drawn], true) : [least - 0.08, 1.06];
-  return {marks: [one, ...padded.map(modulus)], y: {log, range, label: `|μ| of ${name}`}};
+  return {marks: [one, ...drawn.map(modulus)], y: {log, range, label: `|μ| of ${name}`}};
 }
 
 function impactPlanes(impacts) {
@@ -82,10 +85,9 @@ function stroboscopic({tau, x, x_dot: xDot}) {
 }
 
 /** Times between impacts. Chatter lies below the axis. */
-function differences({tau, time_difference: times}, Omega) {
-  const inHalfPeriods = times.map((d) => (d === null ? null : (d * Omega) / Math.PI));
-  const [x, y] = alongRun(tau, [inHalfPeriods]);
-  const range = [0.1, Math.max(largestMagnitude(inHalfPeriods), 2) * 1.3];
+function differences({tau: x, time_difference: times}, Omega) {
+  const y = times.map((d) => (d === null ? null : (d * Omega) / Math.PI));
+  const range = [0.1, Math.max(largestMagnitude(y), 2) * 1.3];
   return {
     marks: [one, beads({label: "time since the previous impact", colour: "c1", size: 1.75, x, y})],
     y: {log: true, range, label: "half periods"},
@@ -124,20 +126,20 @@ function divergence(perturbation) {
   const {tau, distance, predicted, slope} = perturbation;
   const beyond = 10 * largestMagnitude(distance); // the prediction grows without bound
   const linear = predicted.distance.map((v) => (v < beyond ? positive(v) : null));
-  const styles = [
-    {label: "distance", colour: "c1", width: 1.4},
-    {label: "linear theory", colour: "soft", dash: [5, 4]},
-    slope && {label: `slope ${digits(slope.lambda1)}`, colour: "before", width: 2.5},
+  const of = (label, y, style) => line({label, x: tau, y, ...style});
+  const marks = [
+    of("distance", distance.map(positive), {colour: "c1", width: 1.4}),
+    of("linear theory", linear, {colour: "soft", dash: [5, 4]}),
   ];
-  const columns = [distance.map(positive), linear, ...(slope ? [fitted(perturbation)] : [])];
-  return {marks: lines(tau, columns, styles), y: {log: true, label: "distance (m)"}};
+  const style = {colour: "before", width: 2.5};
+  if (slope) marks.push(of(`slope ${digits(slope.lambda1)}`, fitted(perturbation), style));
+  return {marks, y: {log: true, label: "distance (m)"}};
 }
 
-/** Options of each plot by name, in the units of the run. */
+/** Options of each plot by name, in the units of the run; none for one that is hidden. */
 export function detailsOptions(answer) {
   const {series, exponents, regime, eigenvalues, section, parameters} = answer;
   const orbit = regime.periodic && regime.contacts > 0; // not for periodic free flight
-  reveal({"figure-multipliers": orbit, "figure-divergence": answer.perturbation});
   return {
     acceleration: acceleration(series),
     z: impactsPerCycle(regime.z_moving),
@@ -146,7 +148,7 @@ export function detailsOptions(answer) {
     ...impactPlanes(answer.impacts),
     stroboscopic: stroboscopic(section.stroboscopic),
     differences: differences(section.impact, parameters.Omega),
-    ...(orbit && {multipliers: multiplierPlane(regime.multipliers)}),
-    ...(answer.perturbation && {divergence: divergence(answer.perturbation)}),
+    multipliers: orbit && multiplierPlane(regime.multipliers),
+    divergence: answer.perturbation && divergence(answer.perturbation),
   };
 }

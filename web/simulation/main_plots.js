@@ -1,12 +1,12 @@
 // Plots of the first screen. They share a cursor, and ring the impact nearest to it.
-import {$, attributes, reveal, setTexts} from "../shared/dom.js";
+import {$, attributes, setTexts} from "../shared/dom.js";
 import {exponentRange} from "../shared/exponents.js";
 import {rangeOf} from "../shared/frame.js";
 import {beads, curve, dots, levels, line, symbols} from "../shared/marks.js";
 import {firstFrom, inMm, lastUpTo, mm, nearest, short} from "../shared/numbers.js";
 import {unitsOf} from "../shared/units.js";
 import {commonOptions, exponentLines, halves, picked} from "./plot_options.js";
-import {alongRun, inUnits, largestMagnitude, positive, run, viewport} from "./run.js";
+import {inUnits, largestMagnitude, positive, run, viewport} from "./run.js";
 import {plotsIn} from "./words.js";
 
 const mostSamples = 100000; // samples in an exported table
@@ -16,7 +16,6 @@ const walls = {plus: [1, "x − y = b"], minus: [-1, "x − y = −b"]};
 let plots;
 let pinned = null; // {answer, motion} of the run to compare with
 let traced = null; // the motion in the visible range, cached
-let byWall; // the impacts at each wall
 
 export function start() {
   plots = plotsIn($("instrument"));
@@ -36,11 +35,9 @@ function stepsOf(...names) {
 
 export function drawing() {
   traced = null;
-  byWall = impactsByWall(run.motion.impacts);
   plots.common = commonOptions(run.answer);
-  reveal({"figure-load": run.load});
-  const first = [...(run.load ? ["load"] : []), "x", "relative", "lambda", "section"];
-  return stepsOf(...first, ...(run.deferred ? deferredPlots : []));
+  const deferred = run.deferred ? deferredPlots : [];
+  return stepsOf("load", "x", "relative", "lambda", "section", ...deferred);
 }
 
 /** Draws the deferred answer: eigenvalues, raw product, manifold. */
@@ -79,20 +76,15 @@ function tracesOf(from, to, columns = finest(from, to)) {
   return traced.lines;
 }
 
-/** Impacts of each wall: {mine: indices, x: times, ...style}. */
-const impactsByWall = ({tau, side}) =>
-  Object.entries(walls).map(([colour, [wall]]) => {
-    const mine = [...tau.keys()].filter((i) => side[i] === wall);
-    return {mine, x: mine.map((i) => tau[i]), colour, shape: "dot", size: 2.2};
-  });
-
 /** A component of the motion, x or gap, for the plots over time; heights: of the impacts. */
 function partOf(name, label, heights) {
   const styles = [{label, colour: "motion"}];
   if (pinned) styles.unshift({label: `${label}, pinned`, colour: "pinned", width: 1.6});
-  const impacts = byWall.map(({mine, ...style}) =>
-    symbols({...style, y: mine.map((i) => heights[i])}),
-  );
+  const {tau: x, side} = run.motion.impacts;
+  const impacts = Object.entries(walls).map(([colour, [wall]]) => {
+    const y = heights.map((v, i) => (side[i] === wall ? v : null));
+    return symbols({x, y, colour, shape: "dot", size: 2.2});
+  });
   const linesOf = (motions) => {
     const {tau, dense} = motions.at(-1);
     return styles.map((style, k) => line({...style, dense, x: tau, y: motions[k][name]}));
@@ -100,7 +92,7 @@ function partOf(name, label, heights) {
   return {
     unit: "mm",
     trace: (...part) => [...linesOf(tracesOf(...part)), ...impacts],
-    points: {x: run.answer.impacts.tau, y: heights},
+    points: {x, y: heights},
   };
 }
 
@@ -111,8 +103,9 @@ const loads = {
   force_N: ["force (N)", 1],
 };
 
-/** The samples of a load that has no period. */
+/** The samples of a load that has no period; null without one. */
 function load() {
+  if (!run.load) return null;
   const {time_s: time, ...columns} = run.load;
   const {omega0} = run.answer.parameters.derived;
   const [name] = Object.keys(loads).filter((each) => Array.isArray(columns[each]));
@@ -135,29 +128,27 @@ function displacement() {
 function relative() {
   const b = run.motion.b * 1000;
   const heights = run.answer.impacts.side.map((side) => side * b);
-  const {trace, ...rest} = partOf("gap", "x − y", heights);
   const other = (pinned?.motion.b ?? 0) * 1000;
   const reach = 1.14 * Math.max(b, other);
   const walls = [levels({y: [-b, b]}), levels({y: [-other, other], colour: "pinned"})];
   return {
-    ...rest,
-    trace: (...part) => [...walls.slice(0, pinned ? 2 : 1), ...trace(...part)],
+    ...partOf("gap", "x − y", heights),
+    under: [...plots.common.under, ...walls.slice(0, pinned ? 2 : 1)],
     y: {label: "x − y (mm)", range: [-reach, reach]},
   };
 }
 
 function largest() {
   const {tau, T} = run.deferred.eigenvalues;
-  const moduli = T.map(([first]) => positive(first));
-  const [x, y] = alongRun(tau, [moduli]);
+  const points = {x: tau, y: T.map(([first]) => positive(first))};
   return {
     marks: [
       levels({y: 1}),
-      line({label: "|μ₁|", colour: "c3", width: 0.8, x, y}),
-      beads({colour: "c3", size: 2, x, y}),
+      line({label: "|μ₁|", colour: "c3", width: 0.8, ...points}),
+      beads({colour: "c3", size: 2, ...points}),
     ],
-    y: {label: "|μ| of T", log: true, range: rangeOf([[1], moduli], true)},
-    points: {x: tau, y: moduli},
+    y: {label: "|μ| of T", log: true, range: rangeOf([[1], points.y], true)},
+    points,
   };
 }
 
@@ -166,7 +157,7 @@ function exponents() {
   const {qr} = run.answer.exponents;
   const other = pinned?.answer.exponents.qr?.history;
   const options = exponentLines(qr, exponentRange([qr?.history, other]));
-  const [x] = options.marks.filter(({label}) => label).map((mark) => mark.x);
+  const x = qr?.history?.tau ?? [];
   const beside = (history, style) => {
     if (!history?.tau.length) return;
     const {tau, lambda1, by = 1} = history;

@@ -1,11 +1,11 @@
 // Options that several plots of a run share.
 import {exponentMarks} from "../shared/exponents.js";
 import {bands, dots, levels, uprights} from "../shared/marks.js";
-import {alongRun, run, viewport} from "./run.js";
+import {run, viewport} from "./run.js";
 
 /** Options that draw the exponents of an estimator; range: of y. */
 export const exponentLines = (estimator, range) => ({
-  marks: [levels({y: 0}), ...exponentMarks(estimator, alongRun)],
+  marks: [levels({y: 0}), ...exponentMarks(estimator)],
   y: {label: "λ", range},
 });
 

@@ -10,7 +10,7 @@ import {clamp, digits, joined, nearest, withError} from "../shared/numbers.js";
 import {Plot} from "../shared/plot.js";
 import * as q from "../shared/quantities.js";
 import {read, write} from "../shared/store.js";
-import {Layers, receive, SweepData} from "../sweep/data.js";
+import {placesOf, receive, SweepData} from "../sweep/data.js";
 import {dotsOf, lineOf, regimesOf, sectionOf} from "../sweep/points.js";
 import {run} from "./run.js";
 import {fieldsOf, moveSlider, valueAt, written} from "./sliders.js";
@@ -28,12 +28,16 @@ const say = (text) => setTexts({"strip-trouble": text});
 /** The key in the browser's store: a build's address is its own. */
 const stored = (key) => `${import.meta.url} ${key}`;
 
-const lambdaOf = (p) => p?.lambda?.[0];
-const errorOf = (p) => p.standard_error?.[0];
+/** Resolves after the pause; rejects when the signal is aborted. */
+const paused = (signal) =>
+  new Promise((resolve, reject) => {
+    setTimeout(resolve, pause);
+    signal.onabort = reject;
+  });
 
 /** The range of lambda1 without outliers. */
 function usualRange(places) {
-  const values = places.flatMap(({p}) => lambdaOf(p) ?? []).sort((a, b) => a - b);
+  const values = places.flatMap(({p}) => q.lambda1(p) ?? []).sort((a, b) => a - b);
   const quantile = (share) => values[Math.floor(values.length * share)];
   const most = Math.max(quantile(0.98) ?? 0.1, 0.02) * 1.15;
   return [Math.min(quantile(0.05) ?? 0, -0.15 * most), most];
@@ -44,8 +48,8 @@ const drawn = {
   lambda1(places) {
     const range = usualRange(places);
     // Outliers lie at the edge of the range.
-    const of = (p) => (lambdaOf(p) == null ? null : clamp(lambdaOf(p), ...range));
-    const style = {tint: q.verdictColour, error: errorOf, size: 1.5, above: true};
+    const of = (p) => (q.lambda1(p) == null ? null : clamp(q.lambda1(p), ...range));
+    const style = {tint: q.verdictColour, error: q.errorOf, size: 1.5, above: true};
     return {label: "λ₁", range, marks: [levels({y: 0}), dotsOf(places, of, style)]};
   },
   x_max(places) {
@@ -69,24 +73,24 @@ const drawn = {
 };
 
 export class Strip extends Plot {
-  layers = null; // the sweep drawn
+  data = null; // the sweep drawn
   key = null; // of the sweep for the run shown
   pointed = false; // true while the text is about the pointer's place
 
   job = new Job({
-    ask: (fresh, signal) =>
-      receive(fresh, signal, () => {
-        if (this.layers?.base !== fresh) this.layers = new Layers(fresh);
-        this.markStale(false);
-        say("");
-        this.soon();
-      }),
-    show: () => {
-      countUp(this.canvas);
-      write("strips", stored(this.key), this.layers.base.file());
+    ask: async ({key, data}, signal) => {
+      const file = await read("strips", stored(key));
+      const text = await file?.text();
+      if (!text) await paused(signal);
+      if (signal.aborted) return;
+      if (text) data.takeAll(text);
+      else await receive(data, signal, () => this.take(data));
+      this.take(data);
+      if (!text) write("strips", stored(key), data.file());
     },
+    show: () => countUp(this.canvas),
     fail: ({message}) => {
-      this.layers = null;
+      this.data = null;
       say(message);
       this.refresh();
     },
@@ -111,7 +115,7 @@ export class Strip extends Plot {
     menu.onchange = () => this.show(system, parameters, slider);
     const set = Object.entries(fieldsOf(slider, 0, parameters));
     const [[parameter], ...others] = set;
-    if (this.parameter !== parameter) this.layers = null;
+    if (this.parameter !== parameter) this.data = null;
     Object.assign(this, {parameters, slider, parameter, range: slider.span});
     const base = {...system, ...Object.fromEntries(others)};
     for (const [name, value] of set) if (name === parameter || value === null) delete base[name];
@@ -121,33 +125,21 @@ export class Strip extends Plot {
     this.refresh();
   }
 
-  /** Shows the sweep over the range as soon as it is known. */
+  /** Takes the sweep over the range from the browser's store, or requests it. */
   request(key, fields) {
     this.key = key;
-    this.job.cancel();
-    clearTimeout(this.waiting);
     this.markStale(true);
-    this.find(fields);
+    this.job.start({key, data: this.sweep(fields)});
     say("");
     const {symbol, unit} = this.slider;
     setTexts({"strip-parameter": unit ? `${symbol} (${unit})` : symbol});
   }
 
-  /** Takes the sweep from the browser's store, or requests it. */
-  async find(fields) {
-    const {key} = this;
-    const paused = new Promise((resolve) => {
-      this.waiting = setTimeout(resolve, pause);
-    });
-    const file = await read("strips", stored(key));
-    const text = await file?.text();
-    if (!text) await paused;
-    if (this.key !== key) return;
-    if (!text) return this.job.start(this.sweep(fields));
-    this.layers = new Layers(this.sweep(fields));
-    this.layers.base.takeAll(text);
-    countUp(this.canvas);
+  /** Shows the points received. */
+  take(data) {
+    this.data = data;
     this.markStale(false);
+    say("");
     this.soon();
   }
 
@@ -189,15 +181,15 @@ export class Strip extends Plot {
 
   /** The point at a value of the slider, if it has been computed. */
   pointAt(value) {
-    const data = this.layers?.base;
+    const {data} = this;
     return data?.points[data.index(nearest(data.axes[0].values, this.toParameter(value)))];
   }
 
   content() {
     if (!this.range) return null;
     const [from, to] = this.range.map((value) => this.toParameter(value));
-    const all = this.layers?.places(0) ?? [];
-    const axis = this.layers?.base.axes[0];
+    const all = this.data ? placesOf([this.data], 0) : [];
+    const axis = this.data?.axes[0];
     const places = all.filter(({value}) => value >= from && value <= to);
     const {marks, ...y} = drawn[menu.value](places, axis);
     const x = {range: [from, to], factor: this.range[1] / to, aligned: true};
@@ -240,11 +232,11 @@ export class Strip extends Plot {
     const where = `${symbol} = ${written(value, this.range)} ${unit}`.trim();
     const p = this.pointAt(value);
     if (!p?.regime) return where;
-    const lambda = lambdaOf(p);
+    const lambda = q.lambda1(p);
     const rest = joined([
       q.regimeText(p.regime),
       q.verdicts[p.verdict],
-      lambda != null && `λ₁ = ${withError(lambda, errorOf(p), 3)}`,
+      lambda != null && `λ₁ = ${withError(lambda, q.errorOf(p), 3)}`,
       p.z != null && `z = ${digits(p.z, 2)}`,
     ]);
     return `${where}: ${rest}`;

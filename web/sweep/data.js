@@ -177,11 +177,8 @@ export async function receive(data, signal, onLine) {
   if (!data.complete) throw new TemporaryError("the response ended early");
 }
 
-// A sweep and its refinements: finer sweeps of ranges that were zoomed into.
-const most = 4; // sweeps kept
-
 /** Points of a start on a single axis, ascending. */
-function placesOf(data, start) {
+function pointsOf(data, start) {
   const [axis] = data.axes;
   return axis.at.flatMap((at, k) => {
     const index = data.index(k, 0, start);
@@ -190,35 +187,18 @@ function placesOf(data, start) {
   });
 }
 
-export class Layers {
-  constructor(base) {
-    this.base = base;
-    this.all = [base];
-    this.ends = {}; // ends of a map's colour scale, by quantity
-    this.coloured = new Map(); // colour of each attractor on a map
-  }
-
-  add(data) {
-    if (this.all.includes(data)) return; // a further stream of the same sweep
-    this.all.push(data);
-    if (this.all.length > most) this.all.splice(1, 1);
-  }
-
-  /** Layers that show a position of the third axis, the coarsest first. */
-  over(slice) {
-    return this.all.filter((data) => data.axes && (data.slice ?? slice) === slice);
-  }
-
-  /** Ascending points {at, low, high, value, p, data, index, start} with borders of their cells. */
-  places(start) {
-    const list = this.all.flatMap((data) => (data.axes ? placesOf(data, start) : []));
-    if (this.all.length > 1) list.sort((a, b) => a.at[0] - b.at[0]);
-    const {borders} = this.base.axes[0];
-    list.forEach((place, i) => {
-      const next = list[i + 1];
-      place.low = i ? list[i - 1].high : borders[0];
-      place.high = next ? (place.at[0] + next.at[0]) / 2 : borders.at(-1);
-    });
-    return list;
-  }
+/**
+ * Ascending points {at, low, high, value, p, data, index, start} of a start, with borders of their
+ * cells; layers: a sweep and finer ones of parts of its axis.
+ */
+export function placesOf(layers, start) {
+  const list = layers.flatMap((data) => pointsOf(data, start));
+  if (layers.length > 1) list.sort((a, b) => a.at[0] - b.at[0]);
+  const {borders} = layers[0].axes[0];
+  list.forEach((place, i) => {
+    const next = list[i + 1];
+    place.low = i ? list[i - 1].high : borders[0];
+    place.high = next ? (place.at[0] + next.at[0]) / 2 : borders.at(-1);
+  });
+  return list;
 }

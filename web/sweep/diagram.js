@@ -6,6 +6,7 @@ import * as q from "../shared/quantities.js";
 import {inSeconds} from "../shared/units.js";
 import {Viewport} from "../shared/viewport.js";
 import * as labels from "./axis_labels.js";
+import {placesOf} from "./data.js";
 import {dotsOf, lineOf, regimesOf, sectionOf} from "./points.js";
 import {missingPoint, SweepPlot, SweepView} from "./sweep_view.js";
 
@@ -30,12 +31,8 @@ export function countRegimes(points) {
   return Object.keys(q.regimes).map((regime) => [regime, count(regime)]);
 }
 
-const turns = ["0", "π/2", "π", "3π/2", "2π"];
 /** Labels of a phase axis at quarter turns. */
-const phaseLabels = (min, max) =>
-  turns
-    .map((text, i) => ({at: (i * Math.PI) / 2, text}))
-    .filter(({at}) => at >= min - 1e-9 && at <= max + 1e-9);
+const quarters = ["0", "π/2", "π", "3π/2", "2π"].map((text, i) => ({at: (i * Math.PI) / 2, text}));
 
 /** A coordinate of the section. */
 function section(view) {
@@ -50,7 +47,7 @@ function section(view) {
   return {
     title: `Section: ${title}`,
     summary: `${label} of the section at ${view.points.length} points`,
-    y: {range: held, log, label, labels: chosen.turns && phaseLabels},
+    y: {range: held, log, label, labels: chosen.turns && quarters},
     marks: [levels({y}), ...view.byStart.map(ofStart)],
     height: () => null, // several values
     columns: {[label]: null},
@@ -58,9 +55,8 @@ function section(view) {
   };
 }
 
-const lambdaOf = (i) => (p) => p.lambda?.[i] ?? null;
-const [lambda1, lambda2] = [lambdaOf(0), lambdaOf(1)];
-const errorOf = (p) => p.standard_error?.[0] ?? null;
+const lambda2 = (p) => p.lambda?.[1] ?? null;
+const {lambda1, errorOf} = q;
 const drawnLambda = (p) => (q.untouched(p) ? 0 : lambda1(p));
 
 function lambda(view) {
@@ -165,7 +161,7 @@ export class DiagramView extends SweepView {
   }
 
   refresh(choice) {
-    this.byStart = this.data.states.map((_, s) => this.layers.places(s));
+    this.byStart = this.data.states.map((_, s) => placesOf(this.layers, s));
     super.refresh(choice);
   }
 

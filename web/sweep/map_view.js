@@ -19,6 +19,12 @@ export class MapView extends SweepView {
     this.plots = [new SweepPlot(this, "map", map)];
   }
 
+  show(data) {
+    this.scaleEnds = {}; // by quantity
+    this.attractors = []; // in the order of their colours
+    super.show(data);
+  }
+
   /** The cell at positions of a layer; its point is null until it is received. */
   cell(data, k, l) {
     const {start, best, slice} = this.choice;
@@ -38,12 +44,12 @@ export class MapView extends SweepView {
   }
 
   places() {
-    return this.layers.over(this.choice.slice).flatMap((data) => [...this.cells(data)]);
+    return this.layersShown().flatMap((data) => [...this.cells(data)]);
   }
 
   /** The finest cell at a place, preferably one with a point. */
   nearest({at}) {
-    const cells = this.layers.over(this.choice.slice).flatMap((data) => {
+    const cells = this.layersShown().flatMap((data) => {
       const [k, l] = at.map((place, i) => positionAt(data.axes[i], place));
       return k < 0 || l < 0 ? [] : [this.cell(data, k, l)];
     });
@@ -94,22 +100,22 @@ export class MapView extends SweepView {
     if (this.choice.map === "regime") return regimeColour(name);
     if (name === "not_decided") return "nothing";
     if (name === "chaotic") return "chaotic";
-    const {coloured} = this.layers;
-    if (!coloured.has(name)) coloured.set(name, startStyle(coloured.size).colour);
-    return coloured.get(name);
+    const {attractors} = this;
+    if (!attractors.includes(name)) attractors.push(name);
+    return startStyle(attractors.indexOf(name)).colour;
   }
 
   /** The colour scale; null for categories. It stays once a coarse picture of the map exists. */
   scale() {
     const quantity = this.quantity();
     if (quantity.categories) return null;
-    const {layers, data, choice} = this;
-    const chosen = layers.ends[choice.map];
+    const {scaleEnds, data, choice} = this;
+    const chosen = scaleEnds[choice.map];
     if (chosen) return scaleOf(quantity, chosen);
     const values = this.values();
     const ends = endsOf(quantity, values);
     const seen = data.complete || data.received > Math.max(firstPass * data.total, 50);
-    if (seen && values.length) layers.ends[choice.map] = ends;
+    if (seen && values.length) scaleEnds[choice.map] = ends;
     return scaleOf(quantity, ends);
   }
 
@@ -128,7 +134,7 @@ export class MapView extends SweepView {
   /** Sets the pixels of all layers; those without a regime are hatched. */
   fill(pixels, width, height, scale) {
     const [none, line] = ["regime-none", "panel"].map((name) => pixel(rgb(name)));
-    for (const data of this.layers.over(this.choice.slice)) {
+    for (const data of this.layersShown()) {
       const [columns, rows] = [width, height].map((count, i) =>
         positions(data.axes[i], this.viewports[i].range, count),
       );
@@ -155,7 +161,7 @@ export class MapView extends SweepView {
       pixels[l * n + k] = pixel(v === null ? rgb("nothing") : colourOf(v));
     }
     // Only the base layer is filled: below a finer layer the coarser one shows through.
-    if (!data.complete && data === this.data) fillGaps(pixels, first.order, second.order);
+    if (!data.complete && data === this.data) fillGaps(pixels, n);
     return pixels;
   }
 }
@@ -195,20 +201,9 @@ function positions(axis, [from, to], pixels) {
   return Int32Array.from({length: pixels}, (_, i) => positionAt(axis, from + (i + 0.5) * step));
 }
 
-/** Step of the coarsest grid along an axis of n values; the service starts with that grid. */
-const coarsest = (n) => 2 ** Math.floor(Math.log2(Math.max(Math.floor(n / 8), 1)));
-
-/** Gives missing cells the colour of the preceding point on a coarser grid of the service. */
-function fillGaps(cells, columns, rows) {
-  const n = columns.length;
-  const [widest, highest] = [coarsest(n), coarsest(rows.length)];
-  for (let l = 0; l < rows.length; ++l)
-    for (let k = 0; k < n; ++k)
-      for (let step = 2; !cells[l * n + k] && step <= Math.max(widest, highest); step *= 2) {
-        const [across, up] = [Math.min(step, widest), Math.min(step, highest)];
-        const row = rows[rows[l] - (rows[l] % up)];
-        cells[l * n + k] = cells[row * n + columns[columns[k] - (columns[k] % across)]];
-      }
+/** Gives missing cells the colour of the cell before them in a row of n or, without one, below. */
+function fillGaps(cells, n) {
+  for (let i = 1; i < cells.length; ++i) cells[i] ||= (i % n && cells[i - 1]) || cells[i - n];
 }
 
 // The colour scale of a map, and the bar that shows it.

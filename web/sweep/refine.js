@@ -1,4 +1,5 @@
 // Refinement: the visible range of a zoomed sweep is computed again with the same number of points.
+import {countUp, setTexts} from "../shared/dom.js";
 import {Job} from "../shared/job.js";
 import {clamp} from "../shared/numbers.js";
 import {receive, SweepData} from "./data.js";
@@ -14,19 +15,27 @@ function axisOf(given, {from: valueAt, at}, [low, high], count) {
   return {parameter: given.parameter, from, to, count, scale: given.scale};
 }
 
-export class Refiner {
-  /** drawn(), settled(): called for some or all received points; say(text): shows the status. */
-  constructor({drawn, settled, say}) {
-    Object.assign(this, {drawn, say, view: null, waiting: 0});
-    this.job = new Job({
-      ask: (data, signal) => receive(data, signal, (line) => this.take(data, line)),
-      show: () => {
-        this.say("");
-        settled();
-      },
-      fail: (error) => this.say(`not refined: ${error.message}`),
-      later: say,
-    });
+export class Refiner extends Job {
+  view = null;
+  waiting = 0; // timer
+
+  /** tab: draws the received points. */
+  constructor(tab) {
+    super({tab, later: (text) => setTexts({"sweep-refined": text})});
+  }
+
+  ask(data, signal) {
+    return receive(data, signal, (line) => this.take(data, line));
+  }
+
+  show() {
+    this.later("");
+    this.tab.redraw();
+    countUp(this.tab.results, "refined");
+  }
+
+  fail({message}) {
+    this.later(`not refined: ${message}`);
   }
 
   /** Refines this SweepView, which shows a new sweep, from now on; null: none. */
@@ -37,8 +46,8 @@ export class Refiner {
 
   stop() {
     clearTimeout(this.waiting);
-    this.job.cancel();
-    this.say("");
+    this.cancel();
+    this.later("");
   }
 
   /** Called when the visible range changes. */
@@ -49,7 +58,7 @@ export class Refiner {
 
   begin() {
     if (!this.view) return;
-    const {layers, data, viewports, choice} = this.view;
+    const {data, viewports} = this.view;
     // A point of a carried sweep depends on its neighbours, so that it cannot be refined.
     if (!data.complete || data.carried) return;
     const counts = countsOf(data, viewports.length);
@@ -60,9 +69,9 @@ export class Refiner {
         const inside = (layer.axes[i].at.length * (to - from)) / (last - first);
         return first <= from && to <= last && inside >= 0.6 * counts[i];
       });
-    const existing = layers.over(choice.slice).findLast(covers);
+    const existing = this.view.layersShown().findLast(covers);
     if (!viewports.some(({zoomed}) => zoomed) || existing?.complete) this.stop();
-    else this.job.start(existing ?? this.makeRefined(counts)); // start() ignores a running request
+    else this.start(existing ?? this.makeRefined(counts)); // start() ignores a running request
   }
 
   /** Sweep of the visible range. A third axis is fixed at the slice shown, a reduced axis stays. */
@@ -80,10 +89,10 @@ export class Refiner {
   }
 
   take(data, {type}) {
-    if (type === "start") this.view.layers.add(data);
+    if (type === "start") this.view.add(data);
     if (type !== "point") return;
-    this.say(`refining: ${data.received} of ${data.total} points`);
-    this.drawn();
+    this.later(`refining: ${data.received} of ${data.total} points`);
+    this.tab.drawSoon();
   }
 }
 

@@ -3,11 +3,11 @@ import {asCurl} from "../shared/api.js";
 import * as dom from "../shared/dom.js";
 import {$} from "../shared/dom.js";
 import {RequestTab} from "../shared/job.js";
-import {percent} from "../shared/numbers.js";
+import {joined, percent} from "../shared/numbers.js";
 import * as q from "../shared/quantities.js";
 import {onUnits, unitsSwitch} from "../shared/units.js";
 import * as labels from "./axis_labels.js";
-import {Layers, receive, SweepData} from "./data.js";
+import {receive, SweepData} from "./data.js";
 import {countRegimes, DiagramView, startStyle} from "./diagram.js";
 import {MapView} from "./map_view.js";
 import {Refiner} from "./refine.js";
@@ -94,27 +94,16 @@ function showAttractors(map) {
   $("sweep-attractors").replaceChildren(...items);
 }
 
-// The table of peaks.
 const startsAndFree = {...q.startNames, free: "without the absorber"};
 
-/** Motions of a point from each start of the default set, and the one without the absorber. */
-const motionsOf = (p) => [
-  ...(p?.starts ?? []),
-  ...(p?.x_free == null ? [] : [{start: "free", x_max: p.x_free}]),
-];
-
-const alongAxis = (data) =>
-  data.axes[0].values
-    .flatMap((where, k) => motionsOf(data.points[data.index(k)]).map((m) => ({...m, where})))
-    .filter((m) => m.x_max != null);
-
-/** Motions of a sweep whose only axis is reduced. */
-function ofStarts(data) {
-  const points = data.points.filter((p) => p && !p.error);
-  const nameOf = (p) => (data.starts > 1 ? `start ${p.start + 1}` : "this start");
-  const own = points[0]?.starts ? [] : points.map((p) => ({...p, start: nameOf(p)}));
-  return [...own, ...motionsOf(points[0])];
-}
+/** Motions of all points from each start, and those without the absorber. */
+const motionsOf = ({points, axes: [axis], starts}) =>
+  points.flatMap((p, i) => {
+    if (!p || p.error) return [];
+    const start = starts > 1 ? `start ${p.start + 1}` : "this start";
+    const free = p.x_free == null ? [] : [{start: "free", x_max: p.x_free}];
+    return [...(p.starts ?? [{...p, start}]), ...free].map((m) => ({where: axis?.given[i], ...m}));
+  });
 
 /** Shows the largest |x| from each start over a whole axis: reduced, or of the default set. */
 function showPeaks(data) {
@@ -127,8 +116,7 @@ function showPeaks(data) {
   const which = request.reduce?.startsWith("min") ? "Smallest" : "Largest";
   const title = `${which} |x| over ${q.symbolOf(parameter)}, from each start`;
   dom.setTexts({"sweep-peaks-title": title});
-  const motions = bare ? ofStarts(data) : alongAxis(data);
-  motions.sort((a, b) => (b.x_max ?? -1) - (a.x_max ?? -1));
+  const motions = motionsOf(data).sort((a, b) => (b.x_max ?? -1) - (a.x_max ?? -1));
   const peaks = Map.groupBy(motions, ({start}) => start); // of each start the highest first
   const head = ["start", "largest |x| (mm)", `at ${labels.label(parameter)}`, "regime", "verdict"];
   const rows = [...peaks.values()].map(([m]) => [
@@ -145,15 +133,7 @@ export class SweepTab extends RequestTab {
   data = null; // the sweep shown
   view = null; // its view; null if no axis remains
   wanted = {}; // menu values for the next sweep, by name in the query
-
-  refiner = new Refiner({
-    drawn: () => this.drawSoon(),
-    settled: () => {
-      this.redraw();
-      dom.countUp(this.results, "refined");
-    },
-    say: (text) => dom.setTexts({"sweep-refined": text}),
-  });
+  refiner = new Refiner(this);
 
   constructor(tables, changed, {simulate}) {
     super("sweep-", changed);
@@ -248,7 +228,7 @@ export class SweepTab extends RequestTab {
         if (data !== this.data) this.present(data);
         this.say("");
         this.showCount();
-      } else if (line.type === "progress") this.showProgress(line);
+      } else if (line.type === "progress") this.showCount(line);
       else this.drawSoon();
     });
   }
@@ -259,20 +239,12 @@ export class SweepTab extends RequestTab {
     this.refiner.schedule();
   }
 
-  fail(error) {
-    super.fail(error);
-    this.stopped();
-  }
-
   busy(is, cancelled) {
     super.busy(is, cancelled);
     const lacking = this.data && !this.data.complete;
     dom.reveal({"sweep-resume": !is && lacking, "sweep-bar": is || lacking});
-    if (cancelled) this.stopped();
-  }
-
-  stopped() {
-    if (this.data) this.showCount();
+    if (is || !lacking) return;
+    this.showCount();
     this.redraw();
   }
 
@@ -287,7 +259,7 @@ export class SweepTab extends RequestTab {
     this.fillMenus();
     const keyOf = (state, s) => legendEntry(`${s + 1}: ${labels.fields(state)}`, startStyle(s));
     $("sweep-starts").replaceChildren(...data.states.map(keyOf));
-    this.view?.show(new Layers(data));
+    this.view?.show(data);
     this.refiner.follow(this.view);
     this.redraw();
     if (data.ends) this.view?.zoomTo(data.ends);
@@ -318,16 +290,16 @@ export class SweepTab extends RequestTab {
     this.changed();
   }
 
-  showProgress({per_second: rate, seconds_left: left}) {
-    if (left == null) return this.showCount();
-    const remaining = this.data.complete ? "" : ` · ${time(left)} left`;
-    this.showCount(` · ${rate.toFixed(rate < 10 ? 1 : 0)} per second${remaining}`);
-  }
-
-  showCount(more = "") {
-    const {total, received} = this.data;
+  /** Shows the number of points and, of a line of progress, the rate. */
+  showCount({per_second: rate, seconds_left: left} = {}) {
+    const {total, received, complete} = this.data;
     Object.assign($("sweep-bar"), {max: total || 1, value: received});
-    dom.setTexts({"sweep-rate": `${grouped(received)} of ${grouped(total)} points${more}`});
+    const parts = [
+      `${grouped(received)} of ${grouped(total)} points`,
+      left != null && `${rate.toFixed(rate < 10 ? 1 : 0)} per second`,
+      left != null && !complete && `${time(left)} left`,
+    ];
+    dom.setTexts({"sweep-rate": joined(parts, " · ")});
   }
 
   draw() {

@@ -5,6 +5,7 @@ import {clamp, roundedRange} from "../shared/numbers.js";
 import {ZoomablePlot} from "../shared/plot.js";
 import * as labels from "./axis_labels.js";
 
+const most = 4; // layers kept
 const gap = 14; // px between a place and its tooltip
 const zooms = {"+": 1.5, "=": 1.5, "-": 1 / 1.5};
 
@@ -78,7 +79,7 @@ export class SweepPlot extends ZoomablePlot {
  * at, act: whether it has a button}.
  */
 export class SweepView {
-  layers = null;
+  layers = []; // the sweep shown, and finer ones of ranges that were zoomed into
   current = null;
   tip = element("div", {className: "tip", hidden: true, ariaLive: "polite"});
 
@@ -96,17 +97,29 @@ export class SweepView {
   }
 
   get data() {
-    return this.layers?.base;
+    return this.layers[0];
   }
 
-  /** Shows another sweep, given as Layers. The zoom is kept if the axes are the same. */
-  show(layers) {
+  /** Adds a finer sweep, if it is new. */
+  add(data) {
+    if (this.layers.includes(data)) return;
+    this.layers.push(data);
+    if (this.layers.length > most) this.layers.splice(1, 1);
+  }
+
+  /** The layers that show the chosen position of the third axis, the coarsest first. */
+  layersShown() {
+    return this.layers.filter(({slice}) => (slice ?? this.choice.slice) === this.choice.slice);
+  }
+
+  /** Shows another sweep. The zoom is kept if the axes are the same. */
+  show(data) {
     const isSame = (one, other) => one.parameter === other?.parameter && one.log === other.log;
-    const fresh = this.viewports.some((_, i) => !isSame(layers.base.axes[i], this.data?.axes[i]));
-    this.layers = layers;
+    const fresh = this.viewports.some((_, i) => !isSame(data.axes[i], this.data?.axes[i]));
+    this.layers = [data];
     this.hideTip();
     for (const [i, viewport] of this.viewports.entries()) {
-      const {borders} = this.data.axes[i];
+      const {borders} = data.axes[i];
       viewport.span(borders[0], borders.at(-1), undefined, fresh);
     }
   }
