@@ -50,7 +50,6 @@ export class MeasurementTab extends RequestTab {
   record = null; // parsed columns as selected by the form
   answer = null;
   sent = null; // fields that the answer belongs to
-  opened = false;
 
   constructor({identify_fields: fields, presets}, changed) {
     super("measure-", changed);
@@ -61,7 +60,8 @@ export class MeasurementTab extends RequestTab {
       if (isColumn(name)) input.setAttribute("list", "measure-columns");
     this.list = new ImpactList(() => {
       for (const id of ["measure-again", "measure-reset"]) $(id).disabled = !this.list.edited;
-      views.mark(this.record, this.list.rows, this.answer);
+      const addAt = (...clicked) => this.addAt(...clicked);
+      views.drawRecord(this.record, this.list.rows, this.answer, addAt);
     });
     this.presets = Object.fromEntries(presets.map(({name, ...preset}) => [name, preset]));
     this.listen();
@@ -96,10 +96,10 @@ export class MeasurementTab extends RequestTab {
   open(given) {
     const fields = Object.fromEntries(given);
     if (asQuery(fields) === this.asked) return;
+    const isFirst = this.asked === null;
     const {preset = given.size ? "" : firstSample, ...rest} = fields;
     this.choosePreset(preset, rest);
-    if (!this.opened) this.read(() => this.first(given.size === 0));
-    this.opened = true;
+    if (isFirst) this.read(() => this.first(given.size === 0));
   }
 
   /** The record of before a reload or, if wanted, a sample. */
@@ -201,7 +201,7 @@ export class MeasurementTab extends RequestTab {
     this.markStale();
   }
 
-  /** Draws the columns selected by the fields, with the impacts known. */
+  /** Shows the columns selected by the fields, with the impacts known; the list draws them. */
   drawFile(fields) {
     const {parsed} = this;
     this.record = parsed && records.recordOf(parsed, fields);
@@ -209,7 +209,6 @@ export class MeasurementTab extends RequestTab {
     dom.reveal({"measure-parts": known, "measure-list": known, "measure-add-at": known});
     if (!known) return;
     const {t} = this.record;
-    views.drawRecord(this.record, (...clicked) => this.addAt(...clicked));
     // Without an answer the list starts empty, so that impacts can be added by hand.
     this.list.set(this.answer?.impacts ?? {time_s: []}, [t[0], t.at(-1)]);
   }

@@ -1,11 +1,8 @@
 // The results of a measurement as cards, and the table of fitted parameters.
 import {$, cards, listWarnings} from "../shared/dom.js";
-import {count, digits, joined, minus, withError} from "../shared/numbers.js";
+import {count, digits, joined, minus, shortTo, withError} from "../shared/numbers.js";
 import {verdicts} from "../shared/quantities.js";
 import {isLeftOut} from "./impact_list.js";
-
-/** At most n digits; a dash for a missing value. */
-const rounded = (value, n) => (value == null ? "–" : String(Number(value.toPrecision(n))));
 
 function exponentCards({parameters, exponents: {qr}, slope, forward, ...answer}) {
   const error = qr?.standard_error[0];
@@ -47,7 +44,7 @@ const restitutionCard = (wall, {R, standard_error: error, impacts}) => [
 function clearanceCard({b, standard_error: error}, parameters) {
   const off = (b / parameters.b - 1) * 100;
   const agreement = Math.abs(off) < 0.05 ? "agrees" : `off by ${digits(off, 1)} %`;
-  const given = `given ${rounded(parameters.b * 1000, 5)} mm${b == null ? "" : `, ${agreement}`}`;
+  const given = `given ${shortTo(5, parameters.b * 1000)} mm${b == null ? "" : `, ${agreement}`}`;
   const isUsed = parameters.origin.b === "fitted to the record";
   const fitted = b == null ? "–" : `${withError(b * 1000, error * 1000, 2)} mm`;
   return ["b fitted", fitted, isUsed ? "used in place of the given value" : given];
@@ -56,15 +53,15 @@ function clearanceCard({b, standard_error: error}, parameters) {
 function signalCards(signal, milliseconds) {
   const {noise_displacement: x, noise_acceleration: a, pulse_s: pulse} = signal;
   const {samples, sampling_rate: rate} = signal;
-  const noise = a == null ? "" : `${rounded(a, 3)} m/s²`;
-  const width = `${rounded(pulse * rate, 2)} samples long`;
+  const noise = a == null ? "" : `${shortTo(3, a)} m/s²`;
+  const width = `${shortTo(2, pulse * rate)} samples long`;
   const duration = `${count(samples, "sample")}, ${(samples / rate).toFixed(1)} s`;
   const answered = `answered in ${milliseconds.toFixed(0)} ms`;
   return [
-    ["forcing G", `${rounded(signal.G * 1000, 4)} mm`, "fitted"],
-    ["noise", x == null ? "–" : `${rounded(x * 1e6, 3)} µm`, noise],
-    ["pulse of an impact", `${rounded(pulse * 1000, 3)} ms`, width],
-    ["sampling", `${rounded(rate, 5)} Hz`, `${duration}; ${answered}`],
+    ["forcing G", `${shortTo(4, signal.G * 1000)} mm`, "fitted"],
+    ["noise", x == null ? "–" : `${shortTo(3, x * 1e6)} µm`, noise],
+    ["pulse of an impact", `${shortTo(3, pulse * 1000)} ms`, width],
+    ["sampling", `${shortTo(5, rate)} Hz`, `${duration}; ${answered}`],
   ];
 }
 
@@ -88,7 +85,7 @@ function showFit({fitted, signal: {forcing}}) {
     const {value: key, unit = "", factor = 1} = cell.dataset;
     const {value, standard_error: error, fixed} = fitted[key];
     const shown = fixed
-      ? minus(rounded(value * factor, 6))
+      ? minus(String(Number((value * factor).toPrecision(6))))
       : withError(value * factor, error * factor, 4);
     cell.textContent = `${shown} ${unit}`.trim() + (fixed ? ", as given" : "");
   }

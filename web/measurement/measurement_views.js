@@ -69,25 +69,6 @@ function valueAt({t}, column, moment) {
   return column[i - 1] + (column[i] - column[i - 1]) * share;
 }
 
-/** Marks impacts and sticking phases on the record; answer: null before identification. */
-export function mark(record, rows, answer) {
-  const {t, a, x} = record;
-  const {time_start_s: from, time_end_s: to} = answer?.sticking ?? {time_start_s: []};
-  const stuck = from.map((start, i) => [start, to[i]]);
-  const step = (t.at(-1) - t[0]) / (t.length - 1);
-  const reach = (answer ? answer.signal.pulse_s / 2 : step) + step;
-  const points = answer && {x: answer.impacts.time_s, y: mm(answer.impacts.x)};
-  const under = (name, marks, more) => {
-    const intervals = bands({intervals: stuck, colour: "shade"});
-    plots.draw(name, {...plots.all[name].last, under: [intervals, ...marks], ...more});
-  };
-  const spikeOf = (row) => a[spikeNear(record, row.t, reach)];
-  if (a) under("a", marksOf(rows, spikeOf, "cross", 4));
-  if (!x) return;
-  const rings = marksOf(rows, (row) => valueAt(record, x, row.t), "ring", 3.5);
-  under("x", [...forwardMarks(answer), ...rings], {points});
-}
-
 /** Impacts of the identified system, run forward from the first known state. */
 function forwardMarks(answer) {
   if (!answer?.forward) return [];
@@ -95,15 +76,28 @@ function forwardMarks(answer) {
   return [symbols({x: t, y: mm(x), colour: "soft", shape: "dot", size: 1.4})];
 }
 
-/** Draws the record alone; click: handler of clicks on the acceleration. */
-export function drawRecord({t, a, x}, click) {
-  const draw = (name, y, series, label, more) => {
+/**
+ * Draws a record with its impacts, the rows of the list, and sticking phases. answer: null before
+ * identification; click: handler of clicks on the acceleration.
+ */
+export function drawRecord(record, rows, answer, click) {
+  const {t, a, x} = record;
+  const {time_start_s: from, time_end_s: to} = answer?.sticking ?? {time_start_s: []};
+  const stuck = bands({intervals: from.map((start, i) => [start, to[i]]), colour: "shade"});
+  const step = (t.at(-1) - t[0]) / (t.length - 1);
+  const reach = (answer ? answer.signal.pulse_s / 2 : step) + step;
+  const spikeOf = (row) => a[spikeNear(record, row.t, reach)];
+  const heightOf = (row) => valueAt(record, x, row.t);
+  const draw = (name, y, series, label, marksOver, more) => {
     const marks = [line({label: series, colour: "trace", x: t, y})];
-    plots.draw(name, y && {marks, y: {label}, ...more});
+    plots.draw(name, y && {marks, under: [stuck, ...marksOver()], y: {label}, ...more});
   };
   viewport.span(t[0], t.at(-1));
-  draw("a", a, "x″", "acceleration (m/s²)", {click});
-  draw("x", x, "x", "x (mm)");
+  draw("a", a, "x″", "acceleration (m/s²)", () => marksOf(rows, spikeOf, "cross", 4), {click});
+  const rings = () => [...forwardMarks(answer), ...marksOf(rows, heightOf, "ring", 3.5)];
+  draw("x", x, "x", "x (mm)", rings, {
+    points: answer && {x: answer.impacts.time_s, y: mm(answer.impacts.x)},
+  });
 }
 
 /** Exponents by qr with the slope, and by the raw product; rings mark the final values. */

@@ -62,7 +62,7 @@ export class MotionsPlot extends ZoomablePlot {
           stretchesOf(branch).map((part) => curve({...part, ...place(part.list)})),
         ),
         dots({...place(marked), colour: "wall", shape: "diamond", size: 4, above: true}),
-        texts({...place(marked), text: marked.map(({kind}) => names[kind] ?? kind)}),
+        texts({...place(marked), text: marked.map(({kind}) => names[kind] ?? kind), above: true}),
       ],
     });
   }

@@ -98,19 +98,11 @@ function svg(tag, all, ...children) {
 
 /** An SVG drawing with the part of the canvas context's interface that the plots use. */
 class SvgPen {
-  lineWidth = 1;
+  root = svg("svg", {...size, viewBox: `0 0 ${size.width} ${size.height}`});
+  group = this.root;
   globalAlpha = 1;
-  font = "11px sans-serif";
-  textAlign = "left";
-  textBaseline = "alphabetic";
-  dash = [];
   path = "";
   saved = [];
-
-  constructor() {
-    const viewBox = `0 0 ${size.width} ${size.height}`;
-    this.root = this.group = svg("svg", {...size, viewBox});
-  }
 
   /** Puts what follows into a group, until restore(). */
   within(all) {
@@ -134,11 +126,18 @@ class SvgPen {
   restore = () => Object.assign(this, this.saved.pop());
   translate = (x, y) => this.within({transform: `translate(${x} ${y})`});
   rotate = (angle) => this.within({transform: `rotate(${(angle * 180) / Math.PI})`});
-  setLineDash = (dash) => Object.assign(this, {dash});
+  setLineDash = (dash) => Object.assign(this, {dash: dash.join(" ") || null});
   beginPath = () => Object.assign(this, {path: ""});
   moveTo = (x, y) => this.to("M", x, y);
   lineTo = (x, y) => this.to(this.path ? "L" : "M", x, y); // the first call starts the path
   closePath = () => this.to("z");
+  rect = (x, y, width, height) => {
+    const [right, bottom] = [x + width, y + height];
+    this.to("M", x, y, right, y, right, bottom, x, bottom);
+    this.closePath();
+  };
+  fill = () => this.add("path", {d: this.path, fill: this.fillStyle});
+  fillRect = (x, y, width, height) => this.add("rect", {x, y, width, height, fill: this.fillStyle});
 
   clip() {
     const id = `clip${this.root.querySelectorAll("clipPath").length}`;
@@ -152,29 +151,9 @@ class SvgPen {
     for (const to of [x - r, x + r]) this.to("A", r, r, 0, 0, 1, to, y);
   }
 
-  rect(x, y, width, height) {
-    const [right, bottom] = [x + width, y + height];
-    this.to("M", x, y, right, y, right, bottom, x, bottom);
-    this.closePath();
-  }
-
   stroke() {
-    if (!this.path) return;
-    this.add("path", {
-      d: this.path,
-      stroke: this.strokeStyle,
-      "stroke-width": this.lineWidth,
-      "stroke-dasharray": this.dash.join(" ") || null,
-      fill: "none",
-    });
-  }
-
-  fill() {
-    if (this.path) this.add("path", {d: this.path, fill: this.fillStyle});
-  }
-
-  fillRect(x, y, width, height) {
-    this.add("rect", {x, y, width, height, fill: this.fillStyle});
+    const dashes = {"stroke-width": this.lineWidth, "stroke-dasharray": this.dash};
+    this.add("path", {d: this.path, fill: "none", stroke: this.strokeStyle, ...dashes});
   }
 
   /** image: a canvas. */

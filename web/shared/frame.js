@@ -57,23 +57,15 @@ function labelsOf({range, log, factor = 1, labels}, most) {
 /** The pixel position at which a thin line is sharp. */
 const sharp = (px) => Math.round(px) + 0.5;
 
-/** Axes {x, y} extended so that a unit has the same length on both. */
-function sameScale({x, y}, width, height) {
-  const size = ({range: [min, max]}) => max - min;
-  const unit = Math.min(width / size(x), height / size(y)); // px
-  const extended = (axis, pixels) => {
-    const more = (pixels / unit - size(axis)) / 2;
-    return {...axis, range: [axis.range[0] - more, axis.range[1] + more]};
-  };
-  return {x: extended(x, width), y: extended(y, height)};
-}
+/** An axis whose range around 0 is extended. */
+const extended = (axis, factor) => ({...axis, range: axis.range.map((v) => v * factor)});
 
 export class Frame {
   /**
    * x, y: {range, log, label, factor, aligned, labels}: visible range, logarithmic scale, name of the
    * axis, factor of its numbers, numbers at the side even in small plots, and labels [{at, text}] in
    * place of round numbers. beside, above: px at the right and at the top;
-   * equal: a unit has the same length on both axes.
+   * equal: both axes have the same range around 0, extended so that a unit has the same length.
    */
   constructor({width: all, height: whole}, {x, y, beside = 10, above: top = 5, equal}) {
     const bare = whole < small && !x.aligned; // without numbers of x
@@ -81,7 +73,9 @@ export class Frame {
     const below = bare ? 5 : 18 + (x.label ? 14 : 0);
     const bottom = Math.max(whole - below, 15);
     const [width, height] = [right - left, bottom - top];
-    Object.assign(this, equal ? sameScale({x, y}, width, height) : {x, y});
+    const square = Math.min(width, height);
+    this.x = equal ? extended(x, width / square) : x;
+    this.y = equal ? extended(y, height / square) : y;
     Object.assign(this, {box: {left, top, right, bottom}, beside, bare, width, height});
     this.px = scaleOf(this.x, left, right);
     this.py = scaleOf(this.y, bottom, top);

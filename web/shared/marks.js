@@ -1,22 +1,20 @@
 // Marks: what a plot draws over its frame. A mark is its options and draw(c, frame), where c is a
-// canvas context or an SvgPen. All have `alpha` and a `label` in legend and table.
+// canvas context or an SvgPen. All have `alpha`, a `label` in legend and table, and `above`: drawn
+// last, not clipped.
 import {element} from "./dom.js";
 import {font} from "./frame.js";
 import {drawText, ink, rgb, stroke} from "./ink.js";
 import {clamp, firstFrom} from "./numbers.js";
 
 /** A kind of mark from draw(c, frame, options). */
-export const kind =
-  (draw, more = {}) =>
-  (options) => ({
-    ...options,
-    ...more,
-    draw(c, frame) {
-      c.globalAlpha = options.alpha ?? 1;
-      draw(c, frame, options);
-      c.globalAlpha = 1;
-    },
-  });
+export const kind = (draw) => (options) => ({
+  ...options,
+  draw(c, frame) {
+    c.globalAlpha = options.alpha ?? 1;
+    draw(c, frame, options);
+    c.globalAlpha = 1;
+  },
+});
 
 const isThere = (v) => v != null && !Number.isNaN(v);
 
@@ -203,32 +201,27 @@ export const symbols = (options) =>
 export const beads = (options) => dots({fitted: true, shape: "dot", ...options});
 
 /** Names of series in their colours, for pictures without a legend. */
-export const names = kind(
-  (c, {box}, {series}) =>
-    series.forEach(({label, colour}, k) => {
-      ink(c, colour);
-      drawText(c, label, box.left + 8 + 90 * k, box.top + 4, "left", "top");
-    }),
-  {above: true},
+export const names = kind((c, {box}, {series}) =>
+  series.forEach(({label, colour}, k) => {
+    ink(c, colour);
+    drawText(c, label, box.left + 8 + 90 * k, box.top + 4, "left", "top");
+  }),
 );
 
 /** Names above points, where they do not lie on another one. */
-export const texts = kind(
-  (c, frame, {x, y, text}) => {
-    ink(c, "text");
-    c.font = font;
-    const drawn = [];
-    text.forEach((one, i) => {
-      const [px, py] = [frame.px(x[i]), frame.py(y[i])];
-      const crowded = drawn.some(([a, b]) => Math.abs(a - px) < 60 && Math.abs(b - py) < 12);
-      if (!one || crowded || !frame.holds(px, py)) return;
-      drawn.push([px, py]);
-      const middle = clamp(px, frame.box.left + 30, frame.box.right - 30);
-      drawText(c, one, middle, py - 8, "center", "bottom");
-    });
-  },
-  {above: true},
-);
+export const texts = kind((c, frame, {x, y, text}) => {
+  ink(c, "text");
+  c.font = font;
+  const drawn = [];
+  text.forEach((one, i) => {
+    const [px, py] = [frame.px(x[i]), frame.py(y[i])];
+    const crowded = drawn.some(([a, b]) => Math.abs(a - px) < 60 && Math.abs(b - py) < 12);
+    if (!one || crowded || !frame.holds(px, py)) return;
+    drawn.push([px, py]);
+    const middle = clamp(px, frame.box.left + 30, frame.box.right - 30);
+    drawText(c, one, middle, py - 8, "center", "bottom");
+  });
+});
 
 // Images of pixels: maps, and densities, in which chaos appears as a cloud.
 

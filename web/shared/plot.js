@@ -172,7 +172,7 @@ export class ZoomablePlot extends Plot {
     const {x, marks = this.last.trace(...range, Math.max(width - 60, 10)), ...rest} = this.last;
     const series = seriesOf(marks);
     if (!alone) this.writeLegend(series);
-    const named = alone && series.length > 1 ? [names({series})] : [];
+    const named = alone && series.length > 1 ? [names({series, above: true})] : [];
     return {...rest, x: {...x, range}, marks: [...marks, ...named]};
   }
 

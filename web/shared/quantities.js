@@ -1,5 +1,5 @@
 // Quantities of sweep points, for menus, axes, colours and tooltips. Lengths are shown in mm.
-import {count, inMm, percent, short, withError} from "./numbers.js";
+import {count, inMm, joined, percent, short, withError} from "./numbers.js";
 
 export const regimes = {
   VI: "dense, irregular",
@@ -212,14 +212,8 @@ const symbols = {
 };
 export const symbolOf = (parameter) => symbols[parameter] ?? parameter;
 
-function period({period_cycles: cycles, impacts_per_period: impacts, symmetric}) {
-  const counts = `${count(cycles, "cycle")}, ${count(impacts, "impact")}`;
-  return `period ${counts}${symmetric ? ", symmetric" : ""}`;
-}
-
 /** Type and description of a regime; the one without impacts has no type. */
-export const regimeText = (regime) =>
-  `${regime === "none" ? "" : `${regime}, `}${regimes[regime] ?? ""}`;
+export const regimeText = (regime) => joined([regime !== "none" && regime, regimes[regime]]);
 
 const named = (regime) => (regime === "none" ? regimes.none : `Type ${regime}`);
 
@@ -250,10 +244,11 @@ function verdictText({verdict, periodic, lambda, standard_error: errors}) {
 export function describe(p, where) {
   if (p.error) return [["failed", p.error]];
   if (p.regime == null) return [["", "not measured: stopped at max_impacts"]];
-  const {x_rms_ratio: ratio, share_impacts: share} = p;
+  const {x_rms_ratio: ratio, share_impacts: share, impacts_per_period: impacts} = p;
+  const period = [count(p.period_cycles, "cycle"), count(impacts, "impact")];
   const rows = [
     ["regime", regimeText(p.regime)],
-    ["", p.periodic && p.impacts_per_period && period(p)],
+    ["", p.periodic && impacts && `period ${joined([...period, p.symmetric && "symmetric"])}`],
     ["attractor", p.periodic && p.attractor],
     ["z", short(p.z)],
     ["λ₁", p.lambda && exponentText(p)],

@@ -121,18 +121,15 @@ export class Strip extends Plot {
     for (const [name, value] of set) if (name === parameter || value === null) delete base[name];
     const more = menu.value === "section" ? {section: "impact", section_points: impacts} : {};
     const key = JSON.stringify([base, parameter, this.range, more]);
-    if (key !== this.key) this.request(key, {base, ...more});
-    this.refresh();
-  }
-
-  /** Takes the sweep over the range from the browser's store, or requests it. */
-  request(key, fields) {
-    this.key = key;
-    this.markStale(true);
-    this.job.start({key, data: this.sweep(fields)});
-    say("");
-    const {symbol, unit} = this.slider;
+    if (key !== this.key) {
+      this.key = key;
+      this.markStale(true);
+      this.job.start({key, data: this.sweep({base, ...more})});
+      say("");
+    }
+    const {symbol, unit} = slider;
     setTexts({"strip-parameter": unit ? `${symbol} (${unit})` : symbol});
+    this.refresh();
   }
 
   /** Shows the points received. */

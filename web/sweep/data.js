@@ -109,6 +109,10 @@ export class SweepData {
   begin({axes, parameters, points}) {
     const arranged = axes.map((axis, i) => arrange(axis, this.request.axes[i].scale));
     this.axes = arranged.filter((axis) => axis.parameter !== this.reduced);
+    const [first = [{}], ...others] = this.axes.map(({parameter, given}) =>
+      given.map((value) => ({[parameter]: value})),
+    );
+    this.entries = [first, this.states, ...others]; // fields that differ, fastest first
     this.parameters = parameters;
     this.points = new Array(points).fill(null);
   }
@@ -126,34 +130,23 @@ export class SweepData {
 
   /** Index of a point: the first axis varies fastest, then the starts, then the other axes. */
   index(k = 0, l = 0, start = 0, m = 0) {
-    const [first, second, third] = this.axes;
-    const size = (axis) => axis?.values.length ?? 1;
-    const entry = (axis, i) => (axis ? axis.order[i] : 0);
-    const before = entry(third, m) * size(second) + entry(second, l);
-    return (before * this.starts + start) * size(first) + entry(first, k);
+    const [first = 0, second = 0, third = 0] = [k, l, m].map((i, n) => this.axes[n]?.order[i]);
+    const entries = [first, start, second, third];
+    return this.entries.reduceRight((index, {length}, n) => index * length + entries[n], 0);
   }
 
   /** Fields of /v1/simulate for a point; best: for its best motion, where it has several. */
   fields(index, best = false) {
     const all = this.points[index];
     const point = (best && all?.best) || all;
-    const [first, second, third] = this.axes;
+    const fields = {...this.request.base, ...(this.defaultSet && point?.state)};
     let rest = index;
-    const take = (list) => {
-      const i = rest % list.length;
+    for (const list of this.entries) {
+      Object.assign(fields, list[rest % list.length]);
       rest = Math.floor(rest / list.length);
-      return list[i];
-    };
-    const place = (axis) => axis && {[axis.parameter]: take(axis.given)};
-    return {
-      ...this.request.base,
-      ...(this.defaultSet && point?.state),
-      ...place(first),
-      ...take(this.states),
-      ...place(second),
-      ...place(third),
-      ...(this.reduced && point?.where != null && {[this.reduced]: point.where}),
-    };
+    }
+    if (this.reduced && point?.where != null) fields[this.reduced] = point.where;
+    return fields;
   }
 
   /** Takes all lines of a file(). */

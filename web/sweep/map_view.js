@@ -179,7 +179,7 @@ function map(view) {
     beside: scale ? barWidth : 12,
     marks: [
       raster({paint: (...image) => view.fill(...image, scale)}),
-      ...(scale ? [bar({scale, title: label})] : []),
+      ...(scale ? [bar({scale, title: label, above: true})] : []),
     ],
     height: ({height}) => height,
     columns: {
@@ -250,33 +250,30 @@ const barWidth = 86; // px next to the map
 const thickness = 12; // px of the bar
 
 /** The bar of a scale at the right of a plot, with its title. */
-const bar = kind(
-  (c, {box, height}, {scale, title}) => {
-    const {at, ends, beyond} = scale;
-    const [low, high] = ends;
-    const left = box.right + 12;
-    const rows = Math.min(Math.round(height), 256);
-    const row = height / rows;
-    for (let y = 0; y < rows; ++y) {
-      c.fillStyle = `rgb(${at(high - ((y + 0.5) / rows) * (high - low))})`;
-      c.fillRect(left, box.top + y * row, thickness, row + 0.5);
-    }
-    c.font = font;
-    ink(c, "soft");
-    let last = Infinity;
-    for (const value of marksOf(ends, height)) {
-      const y = box.bottom - ((value - low) / (high - low)) * height;
-      if (last - y < 12) continue;
-      last = y;
-      const sign =
-        (value === low && beyond[0] && "≤ ") || (value === high && beyond[1] && "≥ ") || "";
-      const text = `${sign}${short(Number(value.toPrecision(6)))}`;
-      drawText(c, text, left + thickness + 5, clamp(y, box.top + 5, box.bottom - 5), "left");
-    }
-    drawTextUpwards(c, title, left + barWidth - 20, (box.top + box.bottom) / 2);
-  },
-  {above: true},
-);
+const bar = kind((c, {box, height}, {scale, title}) => {
+  const {at, ends, beyond} = scale;
+  const [low, high] = ends;
+  const left = box.right + 12;
+  const rows = Math.min(Math.round(height), 256);
+  const row = height / rows;
+  for (let y = 0; y < rows; ++y) {
+    c.fillStyle = `rgb(${at(high - ((y + 0.5) / rows) * (high - low))})`;
+    c.fillRect(left, box.top + y * row, thickness, row + 0.5);
+  }
+  c.font = font;
+  ink(c, "soft");
+  let last = Infinity;
+  for (const value of marksOf(ends, height)) {
+    const y = box.bottom - ((value - low) / (high - low)) * height;
+    if (last - y < 12) continue;
+    last = y;
+    const sign =
+      (value === low && beyond[0] && "≤ ") || (value === high && beyond[1] && "≥ ") || "";
+    const text = `${sign}${short(Number(value.toPrecision(6)))}`;
+    drawText(c, text, left + thickness + 5, clamp(y, box.top + 5, box.bottom - 5), "left");
+  }
+  drawTextUpwards(c, title, left + barWidth - 20, (box.top + box.bottom) / 2);
+});
 
 /** Values written next to a bar, ascending. */
 function marksOf([low, high], height) {
