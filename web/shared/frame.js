@@ -6,8 +6,9 @@ export const font = "11px system-ui, sans-serif";
 const letter = 3.4; // px, half the width of a digit
 const small = 130; // px of height below which a plot has few labels
 
+/** The position of a value; NaN for a missing one or one that the axis cannot show. */
 function scaleOf({range, log}, from, to) {
-  const at = log ? Math.log : (v) => v;
+  const at = (v) => (log ? Math.log(v || NaN) : (v ?? NaN));
   const [low, high] = range.map(at);
   return (v) => from + ((at(v) - low) / (high - low)) * (to - from);
 }
@@ -137,7 +138,7 @@ export function rangeOf(columns, log = false) {
   let max = -Infinity;
   for (const column of columns)
     for (const v of column) {
-      if (v === null) continue;
+      if (v === null || (log && v <= 0)) continue;
       if (v < min) min = v;
       if (v > max) max = v;
     }

@@ -161,31 +161,42 @@ function followFingers(plot) {
   });
 }
 
+/** Calls acts[key](event) for the keys pressed in a node. */
+export function listenToKeys(node, acts) {
+  node.addEventListener("keydown", (event) => {
+    const {target, key, ctrlKey, metaKey, altKey} = event;
+    if (target !== node || !acts[key] || ctrlKey || metaKey || altKey) return;
+    event.preventDefault();
+    acts[key](event);
+  });
+}
+
+/** Keys that zoom viewports at their cursor or, without one, in their middle. */
+export function zoomKeys(viewports) {
+  const onEach = (act) => () => {
+    for (const each of viewports) act(each);
+  };
+  const zoom = (factor) =>
+    onEach((each) => each.zoomAt(clamp(each.cursor ?? each.middle, ...each.range), factor));
+  const reset = onEach((each) => each.reset());
+  return {"+": zoom(1.5), "=": zoom(1.5), "-": zoom(1 / 1.5), 0: reset, Escape: reset};
+}
+
 /** Keys of a plot; impacts() returns the times for n and p, the next and the previous impact. */
 function followKeys(node, viewport, impacts) {
   const now = () => viewport.cursor ?? viewport.range[0];
   const go = (to) => to !== undefined && viewport.point(to);
   const step = (event, sign) => go(now() + sign * (event.shiftKey ? 0.05 : 0.005) * viewport.width);
-  const zoom = (factor) => viewport.zoomAt(clamp(now(), ...viewport.range), factor);
-  const acts = {
+  listenToKeys(node, {
+    ...zoomKeys([viewport]),
     ArrowLeft: (event) => step(event, -1),
     ArrowRight: (event) => step(event, 1),
     Home: () => go(viewport.range[0]),
     End: () => go(viewport.range[1]),
     PageUp: () => viewport.pan(-0.8),
     PageDown: () => viewport.pan(0.8),
-    "+": () => zoom(1.5),
-    "-": () => zoom(1 / 1.5),
-    0: () => viewport.reset(),
     n: () => go(impacts().find((t) => t > now())),
     p: () => go(impacts().findLast((t) => t < now())),
-  };
-  Object.assign(acts, {"=": acts["+"], Escape: acts[0]});
-  node.addEventListener("keydown", (event) => {
-    const act = acts[event.key];
-    if (!act || event.ctrlKey || event.metaKey || event.altKey) return;
-    event.preventDefault();
-    act(event);
   });
 }
 

@@ -16,8 +16,6 @@ export const kind = (draw) => (options) => ({
   },
 });
 
-const isThere = (v) => v != null && !Number.isNaN(v);
-
 /** A line at ascending x; null and NaN interrupt it. dense: it has several points per pixel. */
 export const line = kind((c, frame, {x, y, colour, width = 1, dash, dense}) => {
   const [min, max] = frame.x.range;
@@ -35,8 +33,8 @@ export const line = kind((c, frame, {x, y, colour, width = 1, dash, dense}) => {
   ink(c, colour, width, dash);
   c.beginPath();
   for (let i = from; i < to; ++i) {
-    const there = isThere(y[i]);
     const [px, py] = [frame.px(x[i]), frame.py(y[i])];
+    const there = !Number.isNaN(py);
     if (there && thinned) widen(Math.floor(px), py);
     else if (there) c[broken ? "moveTo" : "lineTo"](px, py);
     broken = !there;
@@ -161,7 +159,8 @@ export const dots = kind((c, frame, options) => {
   const {x, y, tints, errors = [], shape = "square", size = 1.2, width = 1.2, fitted} = options;
   const {top, bottom} = frame.box;
   const [min, max] = frame.x.range;
-  const visible = [...x.keys()].filter((i) => x[i] >= min && x[i] <= max && isThere(y[i]));
+  const isShown = (i) => x[i] >= min && x[i] <= max && !Number.isNaN(frame.py(y[i]));
+  const visible = [...x.keys()].filter(isShown);
   if (!tints && visible.length > many) {
     const columns = visible.map((i) => ({from: x[i], to: x[i], values: [y[i]]}));
     const {colour, alpha} = options;

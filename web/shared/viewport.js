@@ -36,6 +36,10 @@ export class Viewport {
     return this.range[1] - this.range[0];
   }
 
+  get middle() {
+    return this.range[0] + this.width / 2;
+  }
+
   /** Sets the full range; keeps a zoom that overlaps it unless `fresh`. Calls no listeners. */
   span(from, to, initial = [from, to], fresh = false) {
     const stays = !fresh && this.changed && this.range[0] < to && this.range[1] > from;

@@ -4,7 +4,7 @@ import {rangeOf} from "../shared/frame.js";
 import {beads, curve, dots, levels, line} from "../shared/marks.js";
 import {digits, mm} from "../shared/numbers.js";
 import {exponentLines, halves, picked} from "./plot_options.js";
-import {inUnits, largestMagnitude, positive, run} from "./run.js";
+import {inUnits, largestMagnitude, run} from "./run.js";
 
 const estimators = ["qr", "eigenvalues", "raw_product"];
 const matrices = ["J", "M", "T"];
@@ -37,7 +37,6 @@ function matrixPlot(name, eigenvalues) {
   const log = name === "T";
   const columns = [0, 1, 2, 3].map((k) => eigenvalues[name].map((moduli) => moduli[k]));
   const least = columns[3].reduce((a, v) => Math.min(a, v), 1);
-  const drawn = log ? columns.map((column) => column.map(positive)) : columns;
   const modulus = (y, k) =>
     beads({
       label: `|μ${"₁₂₃₄"[k]}|`,
@@ -46,8 +45,8 @@ function matrixPlot(name, eigenvalues) {
       x: eigenvalues.tau,
       y,
     });
-  const range = log ? rangeOf([[1], ...drawn], true) : [least - 0.08, 1.06];
-  return {marks: [one, ...drawn.map(modulus)], y: {log, range, label: `|μ| of ${name}`}};
+  const range = log ? rangeOf([[1], ...columns], true) : [least - 0.08, 1.06];
+  return {marks: [one, ...columns.map(modulus)], y: {log, range, label: `|μ| of ${name}`}};
 }
 
 function impactPlanes(impacts) {
@@ -125,10 +124,10 @@ function fitted({tau, distance, slope: {lambda1, tau_start: from, tau_end: to}})
 function divergence(perturbation) {
   const {tau, distance, predicted, slope} = perturbation;
   const beyond = 10 * largestMagnitude(distance); // the prediction grows without bound
-  const linear = predicted.distance.map((v) => (v < beyond ? positive(v) : null));
+  const linear = predicted.distance.map((v) => (v < beyond ? v : null));
   const of = (label, y, style) => line({label, x: tau, y, ...style});
   const marks = [
-    of("distance", distance.map(positive), {colour: "c1", width: 1.4}),
+    of("distance", distance, {colour: "c1", width: 1.4}),
     of("linear theory", linear, {colour: "soft", dash: [5, 4]}),
   ];
   const style = {colour: "before", width: 2.5};

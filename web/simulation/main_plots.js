@@ -6,7 +6,7 @@ import {beads, curve, dots, levels, line, symbols} from "../shared/marks.js";
 import {firstFrom, inMm, lastUpTo, mm, nearest, short} from "../shared/numbers.js";
 import {unitsOf} from "../shared/units.js";
 import {commonOptions, exponentLines, halves, picked} from "./plot_options.js";
-import {inUnits, largestMagnitude, positive, run, viewport} from "./run.js";
+import {inUnits, largestMagnitude, run, viewport} from "./run.js";
 import {plotsIn} from "./words.js";
 
 const mostSamples = 100000; // samples in an exported table
@@ -140,7 +140,7 @@ function relative() {
 
 function largest() {
   const {tau, T} = run.deferred.eigenvalues;
-  const points = {x: tau, y: T.map(([first]) => positive(first))};
+  const points = {x: tau, y: T.map(([first]) => first)};
   return {
     marks: [
       levels({y: 1}),

@@ -13,9 +13,6 @@ export function setRun(newest) {
 // Preparing columns of an answer for plots.
 export const inUnits = (column, quantity) => column.map(quantity.of);
 
-/** null for values that a logarithmic axis cannot show. */
-export const positive = (v) => (v > 0 ? v : null);
-
 /** The largest |value|; 0 without values. */
 export const largestMagnitude = (values) =>
   values.reduce((a, v) => Math.max(a, Math.abs(v) || 0), 0);

@@ -153,7 +153,7 @@ const closest = (places, away) =>
 
 export class DiagramView extends SweepView {
   constructor(root, ...rest) {
-    super(root, [new Viewport()], ...rest);
+    super(root, [new Viewport()], steps, ...rest);
     const kinds = {section, lambda, other: quantity};
     this.plots = Object.entries(kinds).map(
       ([name, kind]) => new SweepPlot(this, name, withRegimes(kind)),
@@ -237,11 +237,9 @@ export class DiagramView extends SweepView {
     return start ? `, from its start: ${q.startNames[start]}` : super.startOf({data});
   }
 
-  move(key) {
-    if (!(key in steps)) return false;
+  move(step) {
     const [list] = this.byStart;
     const i = this.current ? list.indexOf(this.nearest(this.current)) : -1;
-    if (list.length) this.goTo(...list[clamp(i + steps[key], 0, list.length - 1)].at);
-    return true;
+    if (list.length) this.goTo(...list[clamp(i + step, 0, list.length - 1)].at);
   }
 }

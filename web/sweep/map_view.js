@@ -15,7 +15,7 @@ const firstPass = 1 / 40; // fraction of the points after which the colour scale
 
 export class MapView extends SweepView {
   constructor(root, ...rest) {
-    super(root, [new Viewport(), new Viewport()], ...rest);
+    super(root, [new Viewport(), new Viewport()], moves, ...rest);
     this.plots = [new SweepPlot(this, "map", map)];
   }
 
@@ -63,16 +63,12 @@ export class MapView extends SweepView {
   }
 
   /** Moves the tooltip to the neighbouring cell; it starts in the middle. */
-  move(key) {
-    const way = moves[key];
-    if (!way) return false;
-    const middle = ({range: [from, to]}) => (from + to) / 2;
-    const from = this.nearest({at: this.current?.at ?? this.viewports.map(middle)});
+  move(way) {
+    const from = this.nearest({at: this.current?.at ?? this.viewports.map(({middle}) => middle)});
     const halfCell = ({borders, at}) => (borders.at(-1) - borders[0]) / at.length / 2;
     const beyond = (at, i) => at + way[i] * 1.001 * halfCell(from.data.axes[i]);
     const next = this.current && this.nearest({at: from.at.map(beyond)});
     this.goTo(...(next ?? from).at);
-    return true;
   }
 
   quantity() {

@@ -16,10 +16,9 @@ function axisOf(given, {from: valueAt, at}, [low, high], count) {
 }
 
 export class Refiner extends Job {
-  view = null;
   waiting = 0; // timer
 
-  /** tab: draws the received points. */
+  /** tab: its view is refined, and draws the received points. */
   constructor(tab) {
     super({tab, later: (text) => setTexts({"sweep-refined": text})});
   }
@@ -38,12 +37,6 @@ export class Refiner extends Job {
     this.later(`not refined: ${message}`);
   }
 
-  /** Refines this SweepView, which shows a new sweep, from now on; null: none. */
-  follow(view) {
-    this.view = view;
-    this.stop();
-  }
-
   stop() {
     clearTimeout(this.waiting);
     this.cancel();
@@ -57,8 +50,8 @@ export class Refiner extends Job {
   }
 
   begin() {
-    if (!this.view) return;
-    const {data, viewports} = this.view;
+    if (!this.tab.view) return;
+    const {data, viewports} = this.tab.view;
     // A point of a carried sweep depends on its neighbours, so that it cannot be refined.
     if (!data.complete || data.carried) return;
     const counts = countsOf(data, viewports.length);
@@ -69,14 +62,14 @@ export class Refiner extends Job {
         const inside = (layer.axes[i].at.length * (to - from)) / (last - first);
         return first <= from && to <= last && inside >= 0.6 * counts[i];
       });
-    const existing = this.view.layersShown().findLast(covers);
+    const existing = this.tab.view.layersShown().findLast(covers);
     if (!viewports.some(({zoomed}) => zoomed) || existing?.complete) this.stop();
     else this.start(existing ?? this.makeRefined(counts)); // start() ignores a running request
   }
 
   /** Sweep of the visible range. A third axis is fixed at the slice shown, a reduced axis stays. */
   makeRefined(counts) {
-    const {data, viewports, choice} = this.view;
+    const {data, viewports, choice} = this.tab.view;
     const axes = data.request.axes.map((given) => {
       const i = data.axes.findIndex(({parameter}) => parameter === given.parameter);
       const {parameter, values} = data.axes[i] ?? {};
@@ -89,7 +82,7 @@ export class Refiner extends Job {
   }
 
   take(data, {type}) {
-    if (type === "start") this.view.add(data);
+    if (type === "start") this.tab.view.add(data);
     if (type !== "point") return;
     this.later(`refining: ${data.received} of ${data.total} points`);
     this.tab.drawSoon();

@@ -260,7 +260,7 @@ export class SweepTab extends RequestTab {
     const keyOf = (state, s) => legendEntry(`${s + 1}: ${labels.fields(state)}`, startStyle(s));
     $("sweep-starts").replaceChildren(...data.states.map(keyOf));
     this.view?.show(data);
-    this.refiner.follow(this.view);
+    this.refiner.stop();
     this.redraw();
     if (data.ends) this.view?.zoomTo(data.ends);
     this.markStale();

@@ -1,13 +1,12 @@
 // Base of the views of a sweep: its plots share viewports, choices and a tooltip.
 import {$, button, element} from "../shared/dom.js";
-import {makeAccessible} from "../shared/gestures.js";
+import {listenToKeys, makeAccessible, zoomKeys} from "../shared/gestures.js";
 import {clamp, roundedRange} from "../shared/numbers.js";
 import {ZoomablePlot} from "../shared/plot.js";
 import * as labels from "./axis_labels.js";
 
 const most = 4; // layers kept
 const gap = 14; // px between a place and its tooltip
-const zooms = {"+": 1.5, "=": 1.5, "-": 1 / 1.5};
 
 export const missingPoint = [["", "not computed yet"]];
 
@@ -75,22 +74,26 @@ export class SweepPlot extends ZoomablePlot {
  * A place is {at: coordinates on the axes, value, height: of the parameters, p: the point, data,
  * index: its sweep and index there}. Subclasses have plots; places() with received points;
  * nearest({plot, at, top: the clicked height, if any}); rowsOf(place): [term, value] of the
- * tooltip; move(key): goes to another place, false for other keys. `current`: the tooltip's {plot,
- * at, act: whether it has a button}.
+ * tooltip; move(step): goes to another place. `current`: the tooltip's {plot, at, act: whether it has
+ * a button}.
  */
 export class SweepView {
   layers = []; // the sweep shown, and finer ones of ranges that were zoomed into
   current = null;
   tip = element("div", {className: "tip", hidden: true, ariaLive: "polite"});
 
-  /** root: contains the plots, receives the keys; open({data, index, best}): opens a point. */
-  constructor(root, viewports, open) {
+  /**
+   * root: contains the plots, receives the keys; steps: arguments of move() by key;
+   * open({data, index, best}): opens a point.
+   */
+  constructor(root, viewports, steps, open) {
     Object.assign(this, {root, viewports, open});
     root.append(this.tip);
     root.onpointerleave = ({pointerType}) => pointerType === "mouse" && this.hideTip();
-    root.onkeydown = (event) => {
-      if (event.target === root && this.key(event.key)) event.preventDefault();
-    };
+    const moves = Object.entries(steps).map(([key, step]) => [key, () => this.move(step)]);
+    const Enter = () => this.choose(this.current);
+    const Escape = () => this.hideTip();
+    listenToKeys(root, {...zoomKeys(viewports), ...Object.fromEntries(moves), Enter, Escape});
     root.addEventListener("focusout", (event) => {
       if (!root.contains(event.relatedTarget)) this.hideTip();
     });
@@ -157,17 +160,6 @@ export class SweepView {
       const [from, to] = ends.slice(2 * i, 2 * i + 2).map(this.data.axes[i].to);
       if (from < to) viewport.zoom(from, to);
     }
-  }
-
-  key(key) {
-    const middle = ({range, width}) => range[0] + width / 2;
-    if (key in zooms)
-      for (const each of this.viewports) each.zoomAt(each.cursor ?? middle(each), zooms[key]);
-    else if (key === "0") for (const viewport of this.viewports) viewport.reset();
-    else if (key === "Enter") this.choose(this.current);
-    else if (key === "Escape") this.hideTip();
-    else return this.move(key);
-    return true;
   }
 
   /** Shows the tooltip of a place and scrolls to it. */
