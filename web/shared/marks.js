@@ -39,8 +39,11 @@ export const line = kind((c, frame, {x, y, colour, width = 1, dash, dense}) => {
     else if (there) c[broken ? "moveTo" : "lineTo"](px, py);
     broken = !there;
   }
-  for (const {column, low, high} of ends)
-    for (const py of [low - 0.5, high + 0.5]) c.lineTo(column + 0.5, py);
+  ends.forEach(({column, low, high}, k) => {
+    const last = ends[k - 1] ?? {low, high}; // each column reaches the previous one
+    c.moveTo(column + 0.5, Math.min(low, last.high) - 0.5);
+    c.lineTo(column + 0.5, Math.max(high, last.low) + 0.5);
+  });
   c.stroke();
 });
 
@@ -240,8 +243,8 @@ function drawPixels(c, {box, width, height}, paint) {
 }
 
 /**
- * How often the values of columns [{from, to, values}] of x lie at a device pixel. A column is
- * `least` to 4 px wide, a broader one is drawn in its middle; a value is `thick` px high.
+ * Density of columns [{from, to, values}] of x: the number of values at each device pixel. A column
+ * is `least` to 4 px wide, a broader one is drawn in its middle; a value is `thick` px high.
  */
 export const density = kind((c, frame, {columns, colour, least = 1, thick = 1.4}) => {
   const [min, max] = frame.y.range;

@@ -27,8 +27,8 @@ const mm = (metres) => (metres == null ? null : metres * 1000);
 
 /**
  * of: the value at a point, by default the field of the same name; levels: horizontal lines; free:
- * the value without the absorber; diverging: the colour scale is centred on 0; categories: the
- * values are names; si: what differs for a system in SI.
+ * the value without the absorber; from0: false if its axis need not contain 0; diverging: the colour
+ * scale is centred on 0; categories: the values are names; si: what differs for a system in SI.
  */
 export const quantities = {
   lambda1: {
@@ -75,11 +75,10 @@ export const quantities = {
     si: {label: "impacts per second", of: (p) => p.impacts_per_second ?? null},
   },
 };
-// Quantities of the lowest diagram over one axis; their axis starts at 0.
+// Quantities of the lowest diagram over one axis.
 const oneAxisQuantities = Object.keys(quantities).filter(
   (name) => !quantities[name].diverging && !quantities[name].categories,
 );
-for (const name of oneAxisQuantities) quantities[name].from0 = true;
 for (const [name, quantity] of Object.entries(quantities)) quantity.of ??= (p) => p[name] ?? null;
 
 const reducedTo = ["x_max", "where", "z"];
@@ -90,7 +89,7 @@ export function quantityOf(name, {parameters, folded}) {
   const {symbol, unit, factor} = folded;
   const title = `${symbol} of the peak`;
   const of = ({where}) => (where == null ? null : where * factor);
-  return {label: unit ? `${title} (${unit})` : title, title, of};
+  return {label: unit ? `${title} (${unit})` : title, title, of, from0: false};
 }
 
 /** Entries of the quantity menus: [name, title]. */

@@ -102,7 +102,7 @@ const from0Range = ([, max], level = 0) => [0, Math.max(max, Math.min(level, max
 
 function quantity(view) {
   const chosen = q.quantityOf(view.choice.beside, view.data);
-  const {of, levels: y = [], free, from0, label, title} = chosen;
+  const {of, levels: y = [], free, from0 = true, label, title} = chosen;
   const held = (p) => [of(p), free?.(p) ?? null, ofOtherMotion(of)(p)];
   const range = rangeOf([from0 ? [0] : [], ...view.values(held)]) ?? [-1, 1];
   const ofStart = (places, s) => {
@@ -188,10 +188,11 @@ export class DiagramView extends SweepView {
     return this.several ? startStyle(start).colour : alone;
   }
 
-  /** Dots of a start, in the colours tint(point). */
+  /** Dots of a start, in the colours tint(point); smaller where there are many. */
   dots(start, of, more) {
     const {shape} = startStyle(start);
-    return dotsOf(this.byStart[start], of, {shape, size: 2, fitted: true, ...more});
+    const size = clamp((600 * this.data.starts) / this.visiblePlaces().length, 1.3, 3.4);
+    return dotsOf(this.byStart[start], of, {shape, size, fitted: true, ...more});
   }
 
   /** The best motion of each point, or one from another start that differs, as rings on a line. */

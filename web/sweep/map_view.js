@@ -214,10 +214,10 @@ function between(list, t) {
 const spare = 0.02; // fraction of the values at either end that can lie beyond the scale
 
 /** Round ends of the colour scale, beyond which a few outliers can lie. */
-function endsOf({diverging, from0}, values) {
+function endsOf({from0 = true}, values) {
   const sorted = Float64Array.from(values).sort();
   const [least, most] = [spare, 1 - spare].map((q) => sorted[Math.round(q * (sorted.length - 1))]);
-  const known = [least ?? 0, most ?? 0, ...(diverging || from0 ? [0] : [])];
+  const known = [least ?? 0, most ?? 0, ...(from0 ? [0] : [])];
   const low = Math.min(...known);
   const high = Math.max(...known) === low ? low + (Math.abs(low) || 1) : Math.max(...known);
   const [first, second] = ticks(low, high, 10);
