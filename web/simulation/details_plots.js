@@ -34,17 +34,12 @@ function exponentPlots(exponents) {
 
 /** Four moduli per impact; those of a pair coincide, so later ones are drawn smaller. */
 function matrixPlot(name, eigenvalues) {
+  const {tau: x} = eigenvalues;
   const log = name === "T";
   const columns = [0, 1, 2, 3].map((k) => eigenvalues[name].map((moduli) => moduli[k]));
   const least = columns[3].reduce((a, v) => Math.min(a, v), 1);
   const modulus = (y, k) =>
-    beads({
-      label: `|μ${"₁₂₃₄"[k]}|`,
-      colour: `c${k + 1}`,
-      size: (5.4 - k) / 2,
-      x: eigenvalues.tau,
-      y,
-    });
+    beads({label: `|μ${"₁₂₃₄"[k]}|`, colour: `c${k + 1}`, size: (5.4 - k) / 2, x, y});
   const range = log ? rangeOf([[1], ...columns], true) : [least - 0.08, 1.06];
   return {marks: [one, ...columns.map(modulus)], y: {log, range, label: `|μ| of ${name}`}};
 }

@@ -131,15 +131,15 @@ export class MapView extends SweepView {
   fill(pixels, width, height, scale) {
     const [none, line] = ["regime-none", "panel"].map((name) => pixel(rgb(name)));
     for (const data of this.layersShown()) {
-      const [columns, rows] = [width, height].map((count, i) =>
-        positions(data.axes[i], this.viewports[i].range, count),
-      );
-      rows.reverse();
+      const [first, second] = data.axes;
+      const [across, up] = this.viewports;
+      const columns = positions(first, across.range, width);
+      const rows = positions(second, up.range, height).reverse();
       const cells = this.pixels(data, scale);
       for (let j = 0; j < height; ++j)
         for (let i = 0; i < width; ++i) {
           const inside = rows[j] >= 0 && columns[i] >= 0;
-          const colour = inside && cells[rows[j] * data.axes[0].at.length + columns[i]];
+          const colour = inside && cells[rows[j] * first.at.length + columns[i]];
           const isLine = !scale && colour === none && (i + j) % 8 < 2;
           if (colour) pixels[j * width + i] = isLine ? line : colour;
         }
