@@ -81,9 +81,10 @@ void AdmissionControl::count(Release& slot) {
     if (now <= from) return;
     const auto used = std::chrono::duration_cast<std::chrono::microseconds>(now - from);
     slot.its->used += slot.its->weight * used;
-    slot.its->waiting.charge(slot.client, used.count());
-    if (slot.its != &background_)
-        (slot.its == &urgent_ ? foreground_ : urgent_).waiting.charge(slot.client, used.count());
+    for (Class* const its : {&background_, &urgent_, &foreground_}) {
+        its->waiting.charge(slot.client, used.count());
+        if (slot.its == &background_) break;
+    }
 }
 
 void AdmissionControl::give_back(Release& slot) {
@@ -367,7 +368,7 @@ AdmissionLoad AdmissionControl::load() const {
     const std::lock_guard lock(mutex_);
     return {
         limits_.running - free_, foreground_.waiting.size() + urgent_.waiting.size(),
-        static_cast<int>(sweeps_.size())};
+        background_.waiting.size(), static_cast<int>(sweeps_.size())};
 }
 
 Permit::Permit(

@@ -5,8 +5,9 @@
 // - foreground: one request. It queues up to a limit and is refused beyond it.
 // - background: the points of a sweep, the lists of a streamed answer. It waits without limit, has
 //   a ninth or more of the time while others wait, and else leaves its slot to the foreground.
-// In each class the client whose work has had least time is next. Work keeps its slot for a time
-// slice, then gives it back if another client's work waits.
+// In each class the client whose work has had least time is next; in the background its foreground
+// time counts, too. Work keeps its slot for a time slice, then gives it back if another client's
+// work waits.
 // Waiting for a slot costs a thread switch, which takes longer than a small answer. A foreground
 // request that finds no free slot therefore starts in a grace period of 1 ms without one, and
 // waits only if it needs longer (Permit).
@@ -35,8 +36,9 @@ struct AdmissionLimits {
 };
 
 struct AdmissionLoad {
-    int running = 0;          ///< slots in use
-    std::size_t waiting = 0;  ///< foreground requests waiting for a slot
+    int running = 0;             ///< slots in use
+    std::size_t waiting = 0;     ///< foreground requests waiting for a slot
+    std::size_t background = 0;  ///< background work that waits
     int sweeps = 0;
 };
 
@@ -91,7 +93,6 @@ public:
     /// True if background work should release its slot and wait again: foreground work waits, or
     /// other background work after a time slice.
     bool must_yield(const Slot& background) const;
-    bool background_waits() const { return background_waits_; }
 
     /// The right to run one sweep. Null if the limit is reached, or all but one are this client's,
     /// or sweeps are stopped.

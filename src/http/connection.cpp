@@ -13,6 +13,8 @@ constexpr auto head_time = 10s;
 // Time for each further step of a body, and of a large one while memory is scarce.
 constexpr auto body_time = 10s, scarce_body_time = 2s;
 constexpr std::size_t body_step = 65536;
+// Longest wait of a body for memory: while it is scarce answers must be read in 30 s.
+constexpr auto memory_time = 35s;
 
 // Bodies up to this size, in bytes, are accepted even when the memory budget is used up.
 constexpr std::size_t small_body = 65536;
@@ -55,7 +57,7 @@ Connection::Progress Connection::advance() try {
     for (std::size_t taken = 0;;) {
         const Progress progress = read_request();
         if (progress == Progress::complete) request_->since = Clock::now();
-        if (progress != Progress::waits || taken >= max_read) return progress;
+        if (progress != Progress::waits || taken >= max_read || awaits_memory_) return progress;
         if (half_closed_) return Progress::ended;
         const std::optional<std::size_t> size = receive(socket(), piece.data(), piece.size());
         if (!size) return Progress::waits;
@@ -82,8 +84,11 @@ Connection::Progress Connection::read_request() {
     // Large bodies only: the number of connections bounds the small ones.
     if (!is_whole() && body_size() > small_body) {
         const std::size_t held = bytes_.capacity();
-        if (memory_.is_full_for(client(), {std::max(body_size(), held) - held}))
-            request_->refused = memory_refusal();
+        const bool lacks = memory_.is_full_for(client(), {std::max(body_size(), held) - held});
+        const bool waited = std::exchange(awaits_memory_, lacks && bytes_.size() <= small_body);
+        if (lacks && !awaits_memory_) request_->refused = memory_refusal();
+        if (awaits_memory_ && !waited) deadline_ = Clock::now() + memory_time;
+        if (waited && !lacks) expect_more();
     }
     return is_whole() ? Progress::complete : Progress::waits;
 }
@@ -136,6 +141,7 @@ Request Connection::take() {
     request_->body = std::exchange(bytes_, std::move(rest));
     reader_ = HeadReader();
     served_ = true;
+    awaits_memory_ = false;
     return *std::exchange(request_, {});
 }
 

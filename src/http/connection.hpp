@@ -64,6 +64,9 @@ public:
     Progress advance();
     /// True if the event loop itself answers the complete request, however busy the workers are.
     bool is_answered_on_loop() const { return request_->refused || request_->route->on_event_loop; }
+    /// True while a large body waits for memory: advance() looks for memory, and reads no byte
+    /// before.
+    bool awaits_memory() const { return awaits_memory_; }
     /// Returns the complete request and removes its bytes from the buffer.
     Request take();
     /// Turns the incomplete request into a refused one, to be returned by take().
@@ -134,6 +137,7 @@ private:
     std::size_t expected_ = 0;        // size of the body that must be reached before the deadline
     std::shared_ptr<Delivery> delivery_;
     bool half_closed_ = false;  // the client has closed its sending side
+    bool awaits_memory_ = false;
     bool closing_ = false, aborted_ = false, served_ = false;
     std::size_t dropped_ = 0;
     Clock::time_point waiting_since_, deadline_;

@@ -234,7 +234,8 @@ void EventLoop::handle(int socket, bool failed) {
     if (connection->is_delivering()) {
         if (failed) connection->outbox().cancel();
         deliver(*connection);
-    } else if (!connection->is_closing()) read(*connection);
+    } else if (failed && !connection->is_closing()) close(socket);
+    else if (!connection->is_closing()) read(*connection);
     else if (connection->finish_closing()) close(socket);
 }
 
@@ -243,7 +244,10 @@ void EventLoop::read(Connection& connection) {
     const auto turn = std::min<Clock::duration>(longest_turn, all_turns / (open_.size() + 1));
     for (int n = 0;; ++n) {
         switch (connection.advance()) {
-            case Connection::Progress::waits: return;
+            case Connection::Progress::waits:
+                if (connection.awaits_memory())  // until expire()
+                    change_events(EPOLL_CTL_MOD, connection.socket(), 0);
+                return;
             case Connection::Progress::ended: close(connection.socket()); return;
             case Connection::Progress::complete: break;
         }
@@ -314,10 +318,12 @@ void EventLoop::expire() {
     }
     expire_deliveries();
     const bool scarce = memory_is_scarce();
-    for (const Owned& c : connections_)
+    for (const Owned& c : connections_) {
+        if (c && c->awaits_memory()) wait_for(EPOLL_CTL_MOD, *c);
         if (c && !c->is_delivering() &&
             now > (c->is_closing() ? c->deadline() : std::min(c->deadline(scarce), idle_until_)))
             time_out(*c);
+    }
     is_memory_to_return_ |=
         memory_.take_most() >= much_held || std::exchange(most_at_work_, 0) >= many_at_work;
     if (is_memory_to_return_ && memory_.bytes() < much_held && with_workers_ == 0) {
@@ -334,7 +340,9 @@ void EventLoop::time_out(Connection& connection) {
     }
     connection.refuse(
         stopping_ ? stopping_refusal()
-                  : problem_response(408, "the request did not arrive completely in time"));
+        : connection.awaits_memory()
+            ? memory_refusal()
+            : problem_response(408, "the request did not arrive completely in time"));
     answer_here(connection);
 }
 

@@ -74,13 +74,13 @@ TEST_CASE("background work gets slots in the order of arrival") {
     AdmissionControl admission({.running = 1});
     for (int round = 0; round < 200; ++round) {
         Slot slot = admission.acquire_background(client);
-        CHECK(!admission.background_waits());
+        CHECK(admission.load().background == 0);
         std::atomic<bool> served = false;
         std::thread other([&] {
             const Slot own = admission.acquire_background(client);
             served = own != nullptr;
         });
-        wait_until([&] { return admission.background_waits(); });
+        wait_until([&] { return admission.load().background > 0; });
         slot.reset();
         slot = admission.acquire_background(client);
         CHECK(slot);
@@ -93,7 +93,7 @@ TEST_CASE("background work leaves its slot to other background work after a time
     AdmissionControl admission({.running = 1});
     Slot slot = admission.acquire_background(client);
     std::thread other([&] { CHECK(admission.acquire_background("other")); });
-    wait_until([&] { return admission.background_waits(); });
+    wait_until([&] { return admission.load().background > 0; });
     wait_until([&] { return admission.must_yield(slot); });
     slot.reset();
     other.join();
@@ -107,7 +107,7 @@ TEST_CASE("stopped background work does not block later background work") {
     Slot slot = admission.acquire_background(client);
     std::thread first(
         [&] { CHECK(!admission.acquire_background(client, first_stop.get_token())); });
-    wait_until([&] { return admission.background_waits(); });
+    wait_until([&] { return admission.load().background > 0; });
     std::thread second([&] { CHECK(admission.acquire_background(client)); });
     first_stop.request_stop();
     first.join();
@@ -350,7 +350,7 @@ TEST_CASE("background work has its turn although foreground work waits, for a ti
     std::atomic<bool> second_entered = false;
     Slot background;
     std::thread waiting([&] { background = admission.acquire_background("other"); });
-    wait_until([&] { return admission.background_waits(); });
+    wait_until([&] { return admission.load().background > 0; });
     std::thread second([&] { second_entered = admission.acquire(client) != nullptr; });
     wait_until([&] { return admission.load().waiting > 0; });
     wait_until([&] { return admission.others_are_due(first); });
@@ -720,7 +720,8 @@ TEST_CASE("classes of work share the time, whatever the length of their pieces")
         begin(0, other, [&](const char* name) { return admission.acquire_urgently(name, {}); });
         begin(1, usual, [&](const char* name) { return admission.acquire(name); });
         begin(2, other, [&](const char* name) { return admission.acquire_background(name); });
-        wait_until([&] { return admission.load().waiting == 4 && admission.background_waits(); });
+        wait_until(
+            [&] { return admission.load().waiting == 4 && admission.load().background > 0; });
         slot.reset();
         const auto time = [&](std::size_t of) {
             return std::chrono::duration<double>(used[of].load()).count();
@@ -751,9 +752,13 @@ TEST_CASE("background work has its part beside one run that nothing else interru
     sweep.join();
 }
 
-TEST_CASE("a client whose work had time while others waited comes after them, in each class") {
+TEST_CASE(
+    "a client whose work had time while others waited comes after them, in each class, and in the "
+    "background") {
     using Clock = Permit::Clock;
-    for (const bool is_urgent : {false, true}) {
+    for (const auto& [is_urgent, in_background] :
+         {std::pair(false, false), std::pair(true, false), std::pair(false, true),
+          std::pair(true, true)}) {
         AdmissionControl admission({.running = 1});
         Slot slot = is_urgent ? admission.acquire_urgently("long", {}) : admission.acquire("long");
         std::string order;
@@ -761,11 +766,15 @@ TEST_CASE("a client whose work had time while others waited comes after them, in
         std::vector<std::thread> threads;
         const auto queue = [&](const std::string& name) {
             threads.emplace_back([&, name] {
-                const Slot own = admission.acquire(name);
+                const Slot own =
+                    in_background ? admission.acquire_background(name) : admission.acquire(name);
                 order += name[0];
                 others += Clock::now() - own.get_deleter().since;
             });
-            wait_until([&] { return admission.load().waiting == threads.size(); });
+            wait_until([&] {
+                const AdmissionLoad load = admission.load();
+                return load.waiting + load.background == threads.size();
+            });
         };
         const auto began = Clock::now();
         for (const char* name : {"long", "long", "other", "other", "other"}) queue(name);
