@@ -16,6 +16,7 @@ const loaders = {
   design: async () => (await import("./design/design.js")).DesignTab,
   measurement: async () => (await import("./measurement/measurement.js")).MeasurementTab,
 };
+const names = Object.keys(loaders);
 const tabs = {};
 const queryOf = (name) => tabs[name]?.query() ?? "";
 const scrolled = {};
@@ -26,29 +27,24 @@ let current = null;
 const embedded = new URLSearchParams(location.search).has("embed");
 document.body.classList.toggle("embedded", embedded);
 
-const links = [...document.querySelectorAll(".tabs a")];
-const nameOf = (link) => link.id.replace("tab-", "");
-
 /** Shows the panel of a tab, scrolled as it was left. */
 function showPanel(name) {
   if (current === name) return;
   if (current) scrolled[current] = scrollY;
   current = name;
-  for (const link of links) {
-    const is = nameOf(link) === name;
-    link.ariaCurrent = is ? "page" : null;
-    $(`panel-${nameOf(link)}`).hidden = !is;
+  for (const each of names) {
+    $(`tab-${each}`).ariaCurrent = each === name ? "page" : null;
+    $(`panel-${each}`).hidden = each !== name;
   }
   scrollTo(0, scrolled[name] ?? 0);
 }
 
 /** A tab shows its latest request; with a key its link opens another tab of the browser. */
 function listenToLinks() {
-  for (const link of links)
-    link.onclick = (event) => {
+  for (const name of names)
+    $(`tab-${name}`).onclick = (event) => {
       if (event.ctrlKey || event.metaKey || event.shiftKey) return;
       event.preventDefault();
-      const name = nameOf(link);
       if (name !== current) navigate(name, queryOf(name));
     };
 }
@@ -92,7 +88,7 @@ async function openAddress() {
   const query = new URLSearchParams(location.search);
   query.delete("embed");
   const named = query.get("tab");
-  const name = Object.hasOwn(loaders, named) ? named : "simulation";
+  const name = names.includes(named) ? named : "simulation";
   if (name === named) query.delete("tab"); // any other value stays, and open() reports it
   showPanel(name);
   try {

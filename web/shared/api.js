@@ -46,15 +46,14 @@ async function askForKey() {
 
 /** Sends a request and returns its response. Asks for an API key while the service answers 401. */
 export async function sendRequest(path, options = {}) {
-  // The first response can be preloaded, without a key: a stored key is tried once more.
-  let sent = null;
-  let response = await fetchWithKey(path, options);
-  // A key typed for another request in the meantime is tried before asking again.
-  while (response.status === 401 && (currentKey() !== sent || (await askForKey()))) {
+  let sent = null; // the first response can be preloaded, without a key
+  for (;;) {
+    const response = await fetchWithKey(path, options);
+    // A key typed for another request in the meantime is tried before asking again.
+    const isFinal = response.status !== 401 || (currentKey() === sent && !(await askForKey()));
+    if (isFinal) return response;
     sent = currentKey();
-    response = await fetchWithKey(path, options);
   }
-  return response;
 }
 
 /** Throws TemporaryError without a response, also if `options.signal` aborts the request. */
@@ -107,19 +106,14 @@ export function asCurl({path, body, file, type}, flags = "-s") {
 
 /** Yields {text, value} of each complete line. Throws TemporaryError if the stream breaks. */
 async function* jsonLines(stream) {
-  const reader = stream.pipeThrough(new TextDecoderStream()).getReader();
-  let partial = "";
+  let partial = ""; // at the end: an incomplete line, which is dropped
   try {
-    for (;;) {
-      const {done, value = ""} = await reader.read().catch(() => {
-        throw new TemporaryError("the response was cut off");
-      });
-      const texts = `${partial}${value}`.split("\n");
+    for await (const piece of stream.pipeThrough(new TextDecoderStream())) {
+      const texts = `${partial}${piece}`.split("\n");
       partial = texts.pop();
       for (const text of texts) if (text) yield {text, value: JSON.parse(text)};
-      if (done) return; // a last line without a line end is incomplete and dropped
     }
-  } finally {
-    reader.cancel().catch(() => {});
+  } catch {
+    throw new TemporaryError("the response was cut off");
   }
 }

@@ -60,7 +60,7 @@ export function onFile(panel, zone, read) {
   zone.querySelector("input").onchange = ({target}) => read(target.files[0]);
   const drag = (event) => {
     event.preventDefault();
-    zone.classList.toggle("over", event.type === "dragover");
+    zone.classList.toggle("about", event.type === "dragover");
     if (event.type === "drop") read(event.dataTransfer.files[0]);
   };
   for (const type of ["ondragover", "ondragleave", "ondrop"]) panel[type] = drag;

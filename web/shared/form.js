@@ -153,8 +153,9 @@ function placeholderOf(field) {
 }
 
 /** A type whose input is a text; field.exact keeps a value whose text is shorter. */
-const typed = (read, more) => ({
+const typed = (read, hint) => ({
   read,
+  hint,
   make: (field) =>
     element("input", {
       type: "text",
@@ -163,28 +164,23 @@ const typed = (read, more) => ({
     }),
   get({input: {value: text}, exact, factor}) {
     if (!text.trim()) return undefined;
-    const isExact = exact?.text === text;
-    if (isExact && isObject(exact.value)) return exact.value;
-    if (read !== number) return read(text);
-    return isExact ? number(String(exact.value)) : times(number(text), 1 / factor);
+    return exact.text === text ? exact.value : times(read(text), 1 / factor);
   },
   set(field, given) {
     const value = given ?? "";
     const text = textOf(shown(field, value));
     field.input.value = text;
-    field.exact = {text, value};
+    field.exact = {text, value: typeof value === "string" ? read(value) : value};
   },
   suggest({input}, text) {
     input.placeholder = text;
   },
-  ...more,
 });
 
 // Types of fields: make(field) creates the input, get(field) returns its value, undefined for the
-// default, set(field, value) sets it, suggest(field, text) shows the default. hint: without one.
+// default, set(field, value) sets it, suggest(field, text) shows the default, hint stands for none.
 const types = {
   choice: {
-    wide: true,
     make: (field) =>
       element("select", {}, ...automatic(field), ...field.choices.map((c) => new Option(c))),
     get: ({input: {value, options}, default: standard}) =>
@@ -197,7 +193,6 @@ const types = {
     },
   },
   choices: {
-    wide: true,
     make({choices}) {
       const boxOf = (value) => element("input", {type: "checkbox", value});
       const labels = choices.map((c) => element("label", {}, boxOf(c), c));
@@ -211,27 +206,24 @@ const types = {
       for (const box of input.querySelectorAll("input"))
         box.checked = (chosen ?? standard).includes(box.value);
     },
-    suggest() {},
   },
   number: typed(number),
   interval: typed(interval),
   numbers: typed(interval),
-  intervals: typed((text) => partsOf(text).map(interval), {
-    wide: true,
-    hint: "none; e.g. 0,500; 500,1000",
-  }),
-  states: typed((text) => (text.trim() === defaultSet ? defaultSet : partsOf(text).map(object)), {
-    wide: true,
-    hint: "one; e.g. x0=0.01; x0=0, y0=0.002",
-  }),
-  object: typed(object, {wide: true}),
-  text: typed((text) => text.trim(), {wide: true}),
+  intervals: typed((text) => partsOf(text).map(interval), "none; e.g. 0,500; 500,1000"),
+  states: typed(
+    (text) => (text.trim() === defaultSet ? defaultSet : partsOf(text).map(object)),
+    "one; e.g. x0=0.01; x0=0, y0=0.002",
+  ),
+  object: typed(object),
+  text: typed((text) => text.trim()),
 };
 const typeOf = ({type}) => types[type] ?? types.number;
 
 // Pairs of fields that express the same quantity: when one is filled, the other follows from it.
 const pairs = Object.entries({...equivalents, cycles: "tau_end"});
 const others = Object.fromEntries([...pairs, ...pairs.map((pair) => pair.toReversed())]);
+const excludes = {SI: "reduced", reduced: "SI"}; // a system is given in fields of one group
 
 function rounded(value) {
   if (Array.isArray(value)) return value.map(rounded);
@@ -290,7 +282,7 @@ export class Form {
 
   row(field) {
     const {name, label: title = name, type, minimum, maximum} = field;
-    const {make, set, wide} = typeOf(field);
+    const {make, set, read} = typeOf(field);
     const input = make(field);
     const error = element("p", {className: "error", id: `${this.prefix}error-${name}`});
     const origin = element("span", {className: "origin"});
@@ -308,7 +300,7 @@ export class Form {
       element("span", {className: "name"}, named, origin),
       input,
     );
-    const width = wide && !field.narrow ? " wide" : "";
+    const width = field.narrow || [number, interval].includes(read) ? "" : " wide";
     const row = element("div", {className: `field field-${name}${width}`}, label, error);
     Object.assign(field, {row, input, origin, error});
     set(field);
@@ -365,7 +357,7 @@ export class Form {
       const {[field.name]: value} = values;
       showOrigin(field, origins[field.name]);
       const text = value == null ? placeholderOf(field) : textOf(rounded(shown(field, value)));
-      typeOf(field).suggest(field, text);
+      typeOf(field).suggest?.(field, text);
     }
   }
 
@@ -390,21 +382,14 @@ export class Form {
     return Boolean(this.named.get(name)?.input.value?.trim());
   }
 
-  /** The group that no field can be given of: a system is given either in SI or reduced. */
-  get excludedGroup() {
-    const given = (f) => this.filled(f.name) || this.replaced.includes(f.name);
-    const isGiven = (group) => this.fields.some((f) => f.group === group && given(f));
-    const [si, reduced] = ["SI", "reduced"].map(isGiven);
-    if (si === reduced) return null;
-    return si ? "reduced" : "SI";
-  }
-
   /** Disables fields that are set elsewhere, follow from another field or cannot be combined. */
   updateDisabled() {
-    const {excludedGroup} = this;
+    const isGiven = ({name}) => this.filled(name) || this.replaced.includes(name);
+    const given = this.fields.filter(isGiven).map(({group}) => group);
     for (const {name, group, input} of this.fields) {
       const other = others[name];
-      const follows = !this.filled(name) && (this.filled(other) || group === excludedGroup);
+      const isExcluded = given.includes(excludes[group]) && !given.includes(group);
+      const follows = !this.filled(name) && (this.filled(other) || isExcluded);
       input.disabled = follows || [name, other].some((each) => this.replaced.includes(each));
     }
   }
@@ -420,13 +405,9 @@ export class Form {
       error.textContent = "";
       input.removeAttribute("aria-invalid");
     }
-    const left = [];
-    for (const error of errors) {
-      const {input, error: place} = this.named.get(this.nameOf(error)) ?? {};
-      if (!place) {
-        left.push(error);
-        continue;
-      }
+    const fieldOf = (error) => this.named.get(this.nameOf(error));
+    for (const error of errors.filter(fieldOf)) {
+      const {input, error: place} = fieldOf(error);
       place.append(place.textContent && " ", error.detail);
       input.setAttribute("aria-invalid", "true");
       // The groups of the form lie in a further fold, which only an error that leads opens.
@@ -434,7 +415,7 @@ export class Form {
         at.open = true;
     }
     if (lead) this.fields.find(({error}) => error.textContent)?.input.focus();
-    return left;
+    return errors.filter((error) => !fieldOf(error));
   }
 }
 

@@ -102,10 +102,7 @@ export class RequestTab extends Job {
   constructor(prefix, changed) {
     super({changed, say: sayIn(`${prefix}message`), results: $(`${prefix}results`)});
     this.formElement = $(`${prefix}form`);
-    this.formElement.onsubmit = (event) => {
-      event.preventDefault();
-      this.submit();
-    };
+    this.formElement.onsubmit = () => this.submit();
     this.noteElement = $(`${prefix}note`);
     this.examples = $(`${prefix}example`);
     this.examples?.addEventListener("change", () => {

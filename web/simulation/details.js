@@ -48,9 +48,6 @@ export function start(table, request) {
     if (run.deferred?.section) show();
     else request();
   };
-  $("to-details").onclick = () => {
-    details.open = true;
-  };
 }
 
 /** Shows the drawing of the system in the page's colours. */

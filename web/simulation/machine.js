@@ -14,8 +14,8 @@ const ballRadius = 11; // px
 const rim = 14; // px of the oscillator outside its walls
 const bandHeight = 9; // px of the band below the machine
 
-let heldScale = null; // px per m while a part is dragged
 let drawn = null; // geometry of the machine with the absorber
+let held = null; // the same at the start of a drag, and the part that is dragged
 
 const [leastTilt, mostTilt] = [4, 12].map((degrees) => (degrees * Math.PI) / 180);
 
@@ -90,7 +90,7 @@ function drawShared(canvas, size, {x, peak, title, colour}) {
   const length = Math.max(width * 0.16, 48); // of the spring
   const room = (width - length - 24) / 2;
   const reach = Math.max(motion.reach, answer.energy.without_absorber.peak ?? 0);
-  const scale = heldScale ?? Math.max(room - rim - ballRadius, 10) / (motion.b + reach);
+  const scale = held?.scale ?? Math.max(room - rim - ballRadius, 10) / (motion.b + reach);
   const px = (at) => length + 12 + room + at * scale;
   const wall = (side) => px(x - side * motion.b);
   const [top, floor] = [24, height - bandHeight - 8];
@@ -208,36 +208,32 @@ function partAt(event) {
 /** set(fields, dragging) is called with y0 or b, m. A drag holds the scale. */
 export function start(set) {
   const [{canvas}] = machines;
-  let part;
-  let held; // geometry at the start of a drag
   const drag = (event, dragging) => {
     const {b, parameters} = run.motion;
     const away = (held.along(event) - held.px(held.x)) / held.scale; // y - x
     const most = 0.999 * b;
     const [name, value] =
-      part === "ball"
+      held.part === "ball"
         ? ["y0", parameters.x0 + clamp(away, -most, most)]
         : ["b", Math.max(Math.abs(away), 1e-4)];
     set({[name]: Number(value.toPrecision(4))}, dragging);
   };
   const end = (event) => {
-    if (part) drag(event, false);
-    part = undefined;
-    heldScale = null;
+    if (held) drag(event, false);
+    held = null;
     redraw();
   };
   on(canvas, {
     pointerdown(event) {
-      part = drawn && partAt(event);
+      const part = drawn && partAt(event);
       if (!part) return;
       event.preventDefault();
       canvas.setPointerCapture(event.pointerId);
-      heldScale = drawn.scale;
       if (part === "ball") viewport.point(0);
-      held = drawn;
+      held = {...drawn, part};
     },
     pointermove(event) {
-      if (part) return drag(event, true);
+      if (held) return drag(event, true);
       canvas.style.cursor = drawn && partAt(event) ? "ew-resize" : "";
     },
     pointerup: end,

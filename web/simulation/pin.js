@@ -50,18 +50,16 @@ export async function restore(wanted, ask) {
 
 /** changed() is called when another run is pinned or unpinned; show(query) shows a run. */
 export function start(changed, show) {
-  const keepShown = () => keep(run && {...run, query: toQuery(run.fields)});
-  $("pin").onclick = () => {
-    keepShown();
+  const shown = () => run && {...run, query: toQuery(run.fields)};
+  const set = (other) => {
+    keep(other);
     changed();
   };
-  $("unpin").onclick = () => {
-    keep(null);
-    changed();
-  };
+  $("pin").onclick = () => set(shown());
+  $("unpin").onclick = () => set(null);
   $("swap").onclick = () => {
     const other = query();
-    keepShown();
+    keep(shown());
     show(other);
   };
 }

@@ -23,21 +23,6 @@ function knock(strength) {
   tone.stop(now + 0.06);
 }
 
-export function start() {
-  $("play").onclick = () => (frame ? pause() : play());
-  $("restart").onclick = () => restart();
-  $("sound").onclick = toggleSound;
-  $("record").onclick = film;
-  $("full-screen").onclick = () => $("results").requestFullscreen();
-  $("scrub").oninput = () => {
-    const [from, to] = viewport.range;
-    viewport.point(from + ($("scrub").value / 1000) * (to - from));
-  };
-  viewport.onCursor(cursorMoved);
-  viewport.onZoom(showPlace);
-  if (!matchMedia("(prefers-reduced-motion: reduce)").matches) play();
-}
-
 /** Called when another run is shown. */
 export function show() {
   if (inView(viewport.cursor)) viewport.point(viewport.cursor);
@@ -130,3 +115,16 @@ function showPlace() {
   $("scrub").value = ((cursor - from) / (to - from)) * 1000;
   if (!frame) attributes($("scrub"), {"aria-valuetext": text});
 }
+
+$("play").onclick = () => (frame ? pause() : play());
+$("restart").onclick = () => restart();
+$("sound").onclick = toggleSound;
+$("record").onclick = film;
+$("full-screen").onclick = () => $("results").requestFullscreen();
+$("scrub").oninput = () => {
+  const [from, to] = viewport.range;
+  viewport.point(from + ($("scrub").value / 1000) * (to - from));
+};
+viewport.onCursor(cursorMoved);
+viewport.onZoom(showPlace);
+if (!matchMedia("(prefers-reduced-motion: reduce)").matches) play();

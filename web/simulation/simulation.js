@@ -84,21 +84,22 @@ export class SimulationTab extends RequestTab {
     this.form = new Form($("fields"), fields);
     this.request = new Request(this.form, fields, presets);
     mainPlots.start();
-    player.start();
     sliders.start(this);
     details.start(this.request.fieldOf, () => this.requestMore(run.fields));
+    const choose = (name) => {
+      this.request.choose(name);
+      this.send({fresh: true});
+    };
     const read = (query) => {
       this.request.read(query);
-      this.note();
       this.send();
     };
-    presetMenu.start(presets, (name) => this.choosePreset(name), read);
+    presetMenu.start(presets, choose, read);
     pin.start(changed, read);
     this.listen(measure);
     machine.start((fields, dragging) => this.set(fields, dragging));
     this.strip = new Strip();
     startPlots();
-    startSheet();
   }
 
   listen(measure) {
@@ -115,6 +116,10 @@ export class SimulationTab extends RequestTab {
     $("more").ontoggle = () => {
       if (run) this.showOrigins();
       if ($("more").open) $("more").scrollIntoView({block: "nearest"});
+    };
+    $("sheet").onclick = () => {
+      const ariaExpanded = $("form").classList.toggle("open");
+      Object.assign($("sheet"), {ariaExpanded, textContent: `All ${ariaExpanded ? "▾" : "▴"}`});
     };
     unitsSwitch($("units"));
     onUnits(() => {
@@ -243,6 +248,8 @@ export class SimulationTab extends RequestTab {
     const fields = this.request.fields();
     const about = {fresh, unknown, dragged: dragging, linked, note};
     for (const [what, value] of Object.entries(about)) Object.defineProperty(fields, what, {value});
+    if (fresh) this.lastMoved = "b";
+    this.note();
     const {name, edited} = this.request;
     presetMenu.markChip(name, edited, !name && "m1" in fields);
     if (dragging) player.hold();
@@ -269,7 +276,6 @@ export class SimulationTab extends RequestTab {
   /** Sets fields, null to clear one; dragging: more changes follow. */
   set(fields, dragging) {
     for (const [name, value] of Object.entries(fields)) this.form.replace(name, value);
-    this.note();
     this.send({dragging});
   }
 
@@ -280,8 +286,7 @@ export class SimulationTab extends RequestTab {
       const {loadOf, parse} = await import("../measurement/record.js");
       const forcing = loadOf(await parse(file));
       dom.setTexts({"load-note": `${file.name}, ${forcing.time_s.length} samples`});
-      const replaced = ["F", "f", "acceleration"].filter((name) => this.form.filled(name));
-      this.set({forcing, ...Object.fromEntries(replaced.map((name) => [name, null]))}, false);
+      this.set({forcing, F: null, f: null, acceleration: null}, false);
     } catch ({message}) {
       this.say(`${file.name} cannot be read: ${message}`, true);
     }
@@ -292,13 +297,6 @@ export class SimulationTab extends RequestTab {
     const {preset, edited} = this.request;
     const changed = preset && edited ? `${preset.source}, changed` : (preset?.note ?? "");
     dom.setTexts({"preset-note": changed});
-  }
-
-  choosePreset(name) {
-    this.lastMoved = "b";
-    this.request.choose(name);
-    this.note();
-    this.send({fresh: true});
   }
 
   /** The query of the requested run with its visible range; null before the first. */
@@ -325,8 +323,6 @@ export class SimulationTab extends RequestTab {
     this.wantedView = isView ? view : null;
     const unknown = this.request.read(rest);
     if (view && !isView) unknown.push(`view=${given.get("view")}`);
-    this.lastMoved = "b";
-    this.note();
     this.asked = toQuery(this.request.fields());
     this.send({fresh: true, unknown, linked: !note, note});
     this.changed(); // in canonical form
@@ -356,13 +352,4 @@ function startPlots() {
     if (figure && key === "Enter" && !target.closest("button")) enlarge(figure);
   };
   dom.on($("plots"), {click: act, keydown: act});
-}
-
-/** On small screens the parameters are in a sheet. */
-function startSheet() {
-  $("sheet").onclick = () => {
-    const open = $("form").classList.toggle("open");
-    dom.attributes($("sheet"), {"aria-expanded": open});
-    dom.setTexts({sheet: `All ${open ? "▾" : "▴"}`});
-  };
 }

@@ -9,8 +9,8 @@ const factors = {mm: 1000, "°": 180 / Math.PI};
 /**
  * A slider, whose row is in the page. It has of(parameters): value in the field's unit;
  * fields(value, parameters): fields to set, null to clear one; usualRange(parameters): in the
- * slider's unit; aboutOf, textOf(parameters): description and value as text, where they depend on
- * the system; isShown(parameters): false where the system does without. span: the range shown.
+ * slider's unit; textOf(parameters): the values as text, if the walls differ; isShown(parameters):
+ * false where the system does without. span: the range shown.
  */
 function slider(name, more) {
   const number = $(`slider-${name}`);
@@ -35,10 +35,6 @@ const restitution = slider("R", {
   fields: (value) => ({R: value, R_plus: null, R_minus: null}),
   textOf: ({R_plus: plus, R_minus: minus}) =>
     plus !== minus && `R₊ = ${shortTo(4, plus)}, R₋ = ${shortTo(4, minus)}`,
-  aboutOf(parameters) {
-    const both = this.textOf(parameters);
-    return both && `mean of ${both}`;
-  },
 });
 const isGiven = (name) => (p) => p[name] !== 0 || p.origin[name] === "given";
 const reduced = [
@@ -204,7 +200,8 @@ function set(one, fresh, dragged) {
   attributes(number, {"aria-invalid": false});
   number.defaultValue = textAt(one, shown, one.span);
   put(number, number.defaultValue);
-  one.note.textContent = one.aboutOf?.(shown) || one.about;
+  const both = one.textOf?.(shown);
+  one.note.textContent = both ? `mean of ${both}` : one.about;
 }
 
 /** Marks sliders with invalid values; returns messages in their units. */
