@@ -280,6 +280,20 @@ test("a number is typed with a decimal point or comma; an invalid one is reporte
   await page.close();
 });
 
+test("a fault has the colour of faults; a file dragged over the tab does not move what is below", async () => {
+  const page = await still("?preset=fig11");
+  await page.click("#more > summary");
+  await type(page, "b", "x");
+  const colourOf = (selector) => page.$eval(selector, (node) => getComputedStyle(node).color);
+  await page.$eval("#error-b", (node) => node.append("error"));
+  assert.equal(await colourOf("#message.fault"), await colourOf("#error-b"));
+  const bottom = () => page.$eval("#more", (node) => node.getBoundingClientRect().bottom);
+  const before = await bottom();
+  await page.dispatchEvent("#panel-simulation", "dragover");
+  assert.equal(await bottom(), before);
+  await page.close();
+});
+
 test("new input aborts a long run", async () => {
   const page = await still("?preset=fig11");
   await unfold(page);

@@ -106,7 +106,7 @@ export function asCurl({path, body, file, type}, flags = "-s") {
 
 /** Yields {text, value} of each complete line. Throws TemporaryError if the stream breaks. */
 async function* jsonLines(stream) {
-  let partial = ""; // at the end: an incomplete line, which is dropped
+  let partial = ""; // an incomplete line, dropped at the end
   try {
     for await (const piece of stream.pipeThrough(new TextDecoderStream())) {
       const texts = `${partial}${piece}`.split("\n");

@@ -178,7 +178,7 @@ const typed = (read, hint) => ({
 });
 
 // Types of fields: make(field) creates the input, get(field) returns its value, undefined for the
-// default, set(field, value) sets it, suggest(field, text) shows the default, hint stands for none.
+// default, set(field, value) sets it, suggest(field, text) shows the default; hint: without one.
 const types = {
   choice: {
     make: (field) =>
@@ -223,9 +223,10 @@ const typeOf = ({type}) => types[type] ?? types.number;
 // Pairs of fields that express the same quantity: when one is filled, the other follows from it.
 const pairs = Object.entries({...equivalents, cycles: "tau_end"});
 const others = Object.fromEntries([...pairs, ...pairs.map((pair) => pair.toReversed())]);
-const excludes = {SI: "reduced", reduced: "SI"}; // a system is given in fields of one group
+const excludes = {SI: "reduced", reduced: "SI"}; // a system is given in one of them
 
-function rounded(value) {
+/** A number, or each one of a list, to six digits; anything else is returned unchanged. */
+export function rounded(value) {
   if (Array.isArray(value)) return value.map(rounded);
   return typeof value === "number" ? Number(value.toPrecision(6)) : value;
 }

@@ -100,7 +100,9 @@ export class RequestTab extends Job {
 
   /** prefix: of the ids of the tab; changed({edit, soon}): called when query() changes. */
   constructor(prefix, changed) {
-    super({changed, say: sayIn(`${prefix}message`), results: $(`${prefix}results`)});
+    const say = sayIn(`${prefix}message`);
+    const later = (text) => say(text, true);
+    super({changed, say, later, results: $(`${prefix}results`)});
     this.formElement = $(`${prefix}form`);
     this.formElement.onsubmit = () => this.submit();
     this.noteElement = $(`${prefix}note`);
@@ -171,10 +173,6 @@ export class RequestTab extends Job {
     attributes(this.results, {"aria-busy": is});
     this.markStale(is);
     if (cancelled) this.say("cancelled");
-  }
-
-  later(text) {
-    this.say(text, true);
   }
 
   /** Shows errors at the fields at fault, and those without a field as a message. */

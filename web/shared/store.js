@@ -32,12 +32,8 @@ export const read = (name, key) =>
   within(name, "readonly", (store) => store.get(key)).catch(() => undefined);
 
 /** Stores a value, a Blob or what can be cloned, in place of the previous one of its key. */
-export async function write(name, key, value) {
-  try {
-    if ((await within(name, "readonly", (store) => store.count())) >= most)
-      await within(name, "readwrite", (store) => store.clear());
-    await within(name, "readwrite", (store) => store.put(value, key));
-  } catch {
-    // not permitted, or no space
-  }
-}
+export const write = (name, key, value) =>
+  within(name, "readonly", (store) => store.count())
+    .then((count) => count >= most && within(name, "readwrite", (store) => store.clear()))
+    .then(() => within(name, "readwrite", (store) => store.put(value, key)))
+    .catch(() => {}); // not permitted, or no space

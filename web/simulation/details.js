@@ -1,6 +1,6 @@
 // The details of a run: cards, tables and plots, which need a larger answer while they are open.
 import {$, cards, countUp, reveal, sayIn, setTexts, tableOf} from "../shared/dom.js";
-import {resolved} from "../shared/form.js";
+import {resolved, rounded, textOf} from "../shared/form.js";
 import {count, digits, inMm, joined, minus, percent, shortTo} from "../shared/numbers.js";
 import {symbolOf, verdicts} from "../shared/quantities.js";
 import {detailsOptions} from "./details_plots.js";
@@ -212,13 +212,6 @@ const derived = {
   window_s: ["s", "window, omega0"],
 };
 
-function precise(value) {
-  if (Array.isArray(value)) return value.map(precise).join(" to ");
-  if (typeof value === "number") return minus(String(Number(value.toPrecision(6))));
-  if (typeof value === "object") return Object.keys(value).join(", ");
-  return String(value).replaceAll("_", " ");
-}
-
 function listParameters(parameters, fieldOf) {
   const {values, origins} = resolved(parameters);
   const all = {...values, ...parameters.derived};
@@ -229,7 +222,8 @@ function listParameters(parameters, fieldOf) {
     const [unit, from] = derived[name] ?? [fieldOf[name].unit ?? ""];
     const shown = unit === "dimensionless" ? "" : unit.replace("tau", "τ");
     const origin = origins[name] ?? (from && `follows from ${from}`) ?? "";
-    return [name, symbolOf(name), `${precise(all[name])} ${shown}`.trim(), origin];
+    const value = minus(textOf(rounded(all[name])).replaceAll("_", " "));
+    return [name, symbolOf(name), `${value} ${shown}`.trim(), origin];
   });
   $("parameters").replaceChildren(...tableOf(["name", "symbol", "value", "origin"], rows));
 }

@@ -47,17 +47,15 @@ function play() {
     before = now;
   };
   frame = requestAnimationFrame(next);
-  showButton("❚❚", "Pause");
+  Object.assign($("play"), {textContent: "❚❚", ariaLabel: "Pause"});
 }
 
 function pause() {
   cancelAnimationFrame(frame);
   frame = 0;
-  showButton("▶", "Play");
+  Object.assign($("play"), {textContent: "▶", ariaLabel: "Play"});
   showPlace();
 }
-
-const showButton = (text, ariaLabel) => Object.assign($("play"), {textContent: text, ariaLabel});
 
 function toggleSound() {
   audio?.close();

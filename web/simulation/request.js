@@ -123,7 +123,7 @@ export function markPlots(preset) {
   }
   const own = [...document.querySelectorAll("figure.about")];
   const alone = own.length && own.every((figure) => figure.closest("#details"));
-  $("to-details").href = alone ? `#${own[0].id}` : "#summary-title"; // which opens the details
+  $("to-details").href = alone ? `#${own[0].id}` : "#summary-title"; // a target inside opens them
   setTexts({"to-details": alone ? `${source} is below ▾` : "details ▾"});
 }
 

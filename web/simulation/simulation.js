@@ -103,11 +103,8 @@ export class SimulationTab extends RequestTab {
   }
 
   listen(measure) {
-    const {form, request} = this;
-    for (const {input} of form.fields) {
-      input.oninput = () => this.note();
-      input.onchange = () => this.send();
-    }
+    $("fields").oninput = () => this.note();
+    $("fields").onchange = () => this.send();
     viewport.onZoom(() => {
       dom.reveal({whole: viewport.zoomed});
       this.changed({soon: true});
@@ -130,7 +127,7 @@ export class SimulationTab extends RequestTab {
     });
     dom.onFile($("panel-simulation"), $("load"), (file) => this.readLoad(file));
     $("measure-this").onclick = () => run && measure(run.answer);
-    const texts = formsOf("v1/simulate", () => request.fields());
+    const texts = formsOf("v1/simulate", () => this.request.fields());
     $("copies").onchange = ({target}) => {
       dom.copy(texts[target.value](), this.say);
       target.value = "";
