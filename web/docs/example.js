@@ -16,13 +16,16 @@ export const pretty = (value) =>
   JSON.stringify(value, null, 2).replace(/\[[^[\]{}]*\]/g, (list) => list.replace(/\s+/g, " "));
 
 /** Reads until the body ends or exceeds longest: {text, complete: the body ended}. */
-async function read({body}) {
+async function read(response) {
+  const reader = response.body?.pipeThrough(new TextDecoderStream()).getReader();
   let text = "";
-  for await (const piece of body?.pipeThrough(new TextDecoderStream()) ?? []) {
-    text += piece;
-    if (text.length > longest) return {text, complete: false};
+  while (reader && text.length <= longest) {
+    const {done, value} = await reader.read();
+    if (done) return {text, complete: true};
+    text += value;
   }
-  return {text, complete: true};
+  reader?.cancel().catch(() => {}); // the rest is not needed
+  return {text, complete: !reader};
 }
 
 function sizeOf(text) {

@@ -106,14 +106,19 @@ export function asCurl({path, body, file, type}, flags = "-s") {
 
 /** Yields {text, value} of each complete line. Throws TemporaryError if the stream breaks. */
 async function* jsonLines(stream) {
-  let partial = ""; // an incomplete line, dropped at the end
+  const reader = stream.pipeThrough(new TextDecoderStream()).getReader();
+  let partial = "";
   try {
-    for await (const piece of stream.pipeThrough(new TextDecoderStream())) {
-      const texts = `${partial}${piece}`.split("\n");
+    for (;;) {
+      const {done, value = ""} = await reader.read().catch(() => {
+        throw new TemporaryError("the response was cut off");
+      });
+      const texts = `${partial}${value}`.split("\n");
       partial = texts.pop();
       for (const text of texts) if (text) yield {text, value: JSON.parse(text)};
+      if (done) return; // a last line without a line end is incomplete and dropped
     }
-  } catch {
-    throw new TemporaryError("the response was cut off");
+  } finally {
+    reader.cancel().catch(() => {});
   }
 }
