@@ -256,11 +256,6 @@ inline constexpr Property<MeasuredSlope> slope[] = {
 
 // Points of a sweep.
 
-/// A measured point, and the length of its forcing cycle.
-struct MeasuredPoint : PointResult {
-    double cycle;
-};
-
 inline constexpr Quantity attractor_quantity{
     "attractor",
     "name of the motion, equal wherever a run settles on it: see attractors.md; not_decided if it "
@@ -272,10 +267,10 @@ inline constexpr Quantity mirror_quantity{
     "an orbit or without a mirror image",
     word_or_null};
 
-inline constexpr Property<MeasuredPoint> point[] = {
+inline constexpr Property<PointResult> point[] = {
     {{"lambda", "four exponents by qr", exponents}, at<&PointResult::lambda>},
     {{"status", "status of each exponent", statuses},
-     [](const MeasuredPoint& p) { return statuses_of(p.lambda); }},
+     [](const PointResult& p) { return statuses_of(p.lambda); }},
     {{"standard_error",
       "standard error of each exponent, with seven degrees of freedom: 95 % intervals are 2.365 "
       "errors on both sides; 2.776 for the other standard errors, which have four",
@@ -289,10 +284,10 @@ inline constexpr Property<MeasuredPoint> point[] = {
      at<&PointResult::verdict>},
     {{"z", "contacts per cycle"}, at<&PointResult::regime, &Regime::z>},
     {{"z_standard_error", "standard error of z; null if periodic", number_or_null},
-     [](const MeasuredPoint& p) { return json_of(p.regime.orbit ? nan : p.regime.z_error); }},
+     [](const PointResult& p) { return json_of(p.regime.orbit ? nan : p.regime.z_error); }},
     {{"regime", "I to VI, or none", regime}, at<&PointResult::regime, &Regime::type>},
     {{"periodic", "true if a stable orbit attracts the motion", flag},
-     [](const MeasuredPoint& p) { return Json(p.regime.orbit.has_value()); }},
+     [](const PointResult& p) { return Json(p.regime.orbit.has_value()); }},
     {{"period_cycles", "period in forcing cycles", whole},
      at<&PointResult::regime, &Regime::orbit, &PeriodicOrbit::cycles>},
     {{"impacts_per_period", "contacts per period", whole},
@@ -303,10 +298,7 @@ inline constexpr Property<MeasuredPoint> point[] = {
       "measured cycle in which the orbit captured the motion, later than the last one if "
       "settle_cycles was needed; if it is late, lambda is a mean over a transient; null if not "
       "periodic or not yet captured"},
-     [](const MeasuredPoint& p) {
-         const auto& capture = p.regime.capture;
-         return capture && capture->tau ? Json(std::round(*capture->tau / p.cycle)) : Json(nullptr);
-     }},
+     at<&PointResult::capture_cycle>},
     {{"lambda1_before", "lambda1 up to the capture; null if not periodic", number_or_null},
      at<&PointResult::lambda1_before>},
     {{"lambda1_after", "lambda1 of the orbit, from its multipliers", number_or_null},

@@ -28,10 +28,8 @@ void add_extremes(Json& j, const SweepRequest& r, const Extremes* extremes) {
     j.update(describe(properties::impact_extremes, extremes));
 }
 
-void add_motion(
-    Json& line, const SweepRequest& r, const PointSystem& system, const PointResult& p) {
-    const properties::MeasuredPoint point{{p}, system.parameters.cycle()};
-    line.update(describe(properties::point, p.measured ? &point : nullptr));
+void add_motion(Json& line, const SweepRequest& r, const PointResult& p) {
+    line.update(describe(properties::point, p.measured ? &p : nullptr));
     add_extremes(line, r, p.measured ? &p.extremes : nullptr);
     line["reason"] = !p.measured                        ? "transient_max_impacts"
                      : p.outcome.reason == End::tau_end ? "complete"
@@ -180,7 +178,7 @@ Json describe_point(const SweepRequest& r, std::size_t index, const SweepPoint& 
     const Motion& worst = motions.empty() ? point.motions[0] : *motions.back();
     if (r.plan.default_set)
         line.update({{"start", worst.start}, {"state", describe(properties::start, worst.from)}});
-    add_motion(line, r, *point.system, worst.result);
+    add_motion(line, r, worst.result);
     const std::optional<bool> depends = depends_on_start(point, r.plan.default_set);
     if (r.plan.default_set) {
         line["worst"] = describe_motion(r, worst);

@@ -147,6 +147,7 @@ void set_conclusions(PointResult& r, Analysis& a, double cycle) {
     if (const auto& capture = a.regime->capture) {
         r.lambda1_before = lambda1_until(a.exponents->product, capture->tau.value_or(infinity));
         r.lambda1_after = capture->after[0];
+        if (capture->tau) r.capture_cycle = std::round(*capture->tau / cycle);
     }
     r.regime = without_lists(std::move(*a.regime));
 }

@@ -87,6 +87,7 @@ struct PointResult {
     Verdict verdict;
     /// lambda1 up to the capture and of the orbit; empty without a capture.
     std::optional<double> lambda1_before, lambda1_after;
+    std::optional<double> capture_cycle;  ///< of the measured part, or after it
     /// Cycles, from the start of the measured part, for which a motion is known to be chaotic:
     /// until its capture, or as long as it was followed. Empty if no chaos is shown.
     std::optional<double> chaotic_cycles;
