@@ -3,8 +3,6 @@
 #include <fmt/format.h>
 
 #include <numbers>
-#include <numeric>
-#include <set>
 
 #include "api/cancellation.hpp"
 #include "api/schema/enum_names.hpp"
@@ -188,18 +186,7 @@ void read_tolerances(DesignRequest& r, const Json& given, std::vector<FieldError
     if (r.plan.tolerances.empty()) return;
     const std::size_t count = designed(given, "samples");
     r.plan.seed = designed(given, "seed");
-    std::vector<std::size_t>& samples = r.plan.samples;
-    if (given.contains("indices")) {
-        const auto wanted = given["indices"].get<std::set<std::size_t>>();
-        samples.assign(wanted.begin(), wanted.end());
-        if (!samples.empty() && samples.back() >= count)
-            errors.push_back(
-                {"/indices", samples.back(), Json::array({0, count - 1}),
-                 fmt::format("there are {} samples, numbered from 0", count)});
-    } else {
-        samples.resize(count);
-        std::iota(samples.begin(), samples.end(), 0);
-    }
+    r.plan.samples = read_indices(given, count, fmt::format("there are {} samples", count), errors);
 }
 
 /// The largest x without absorber, m. Throws Cancelled.

@@ -1,7 +1,6 @@
 #include "api/sweep.hpp"
 
 #include <algorithm>
-#include <numeric>
 
 #include "api/schema/enum_names.hpp"
 #include "core/motion/elementary.hpp"
@@ -311,23 +310,6 @@ void read_options(SweepRequest& r, const Json& given, std::vector<FieldError>& e
              "worst of several"});
 }
 
-void read_indices(SweepRequest& r, const Json& given, std::vector<FieldError>& errors) {
-    std::vector<std::size_t>& lines = r.plan.lines;
-    const std::size_t all = r.plan.grid.lines();
-    if (!given.contains("indices")) {
-        lines.resize(all);
-        std::iota(lines.begin(), lines.end(), 0);
-        return;
-    }
-    lines = given["indices"].get<std::vector<std::size_t>>();
-    std::sort(lines.begin(), lines.end());
-    lines.erase(std::unique(lines.begin(), lines.end()), lines.end());
-    if (!lines.empty() && lines.back() >= all)
-        errors.push_back(
-            {"/indices", lines.back(), Json::array({0, all - 1}),
-             "the sweep has " + std::to_string(all) + " points, numbered from 0"});
-}
-
 /// Refuses with a load all that needs the period of a forcing or a steady state.
 void check_loaded(const SweepRequest& r, const Json& given, std::vector<FieldError>& errors) {
     if (!r.systems->has_load()) return;
@@ -395,7 +377,9 @@ SweepRequest read_grid(const Json& given, std::size_t starts, std::size_t most_p
     const KindsOfStarts kinds = kinds_of_starts(r);
     check_fields(r, kinds, errors);
     read_options(r, given, errors);
-    read_indices(r, given, errors);
+    const std::size_t lines = r.plan.grid.lines();
+    r.plan.lines =
+        read_indices(given, lines, "the sweep has " + std::to_string(lines) + " points", errors);
     refuse_any(errors);
     r.systems = systems_of(r, kinds);
     check_loaded(r, given, errors);

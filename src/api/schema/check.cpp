@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 #include <string_view>
 
 #include "api/schema/tables.hpp"
@@ -180,6 +181,25 @@ void add_errors(
         e.pointer = where + e.pointer;
         all.push_back(std::move(e));
     }
+}
+
+std::vector<std::size_t> read_indices(
+    const Json& object, std::size_t count, const std::string& detail,
+    std::vector<FieldError>& errors) {
+    std::vector<std::size_t> indices;
+    if (!object.contains("indices")) {
+        indices.resize(count);
+        std::iota(indices.begin(), indices.end(), 0);
+        return indices;
+    }
+    indices = object["indices"].get<std::vector<std::size_t>>();
+    std::ranges::sort(indices);
+    indices.erase(std::ranges::unique(indices).begin(), indices.end());
+    if (!indices.empty() && indices.back() >= count)
+        errors.push_back(
+            {"/indices", indices.back(), Json::array({0, count - 1}),
+             detail + ", numbered from 0"});
+    return indices;
 }
 
 Json beginning_of(const Json& value) {

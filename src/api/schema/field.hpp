@@ -158,6 +158,12 @@ std::vector<FieldError> check(const FieldTable& table, const Json& object);
 void add_errors(
     const std::string& where, std::vector<FieldError> nested, std::vector<FieldError>& all);
 
+/// The numbers in the field `indices`, ascending and without repetitions, or all below `count`. An
+/// error for one that is not; `detail`: how many there are, "the sweep has 4 points".
+std::vector<std::size_t> read_indices(
+    const Json& object, std::size_t count, const std::string& detail,
+    std::vector<FieldError>& errors);
+
 /// Bytes of an invalid value that a response repeats.
 inline constexpr std::size_t longest_echo = 200;
 
