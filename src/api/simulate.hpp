@@ -1,8 +1,6 @@
 // Requests and answers of /v1/simulate and /v1/manifold.
 #pragma once
 
-#include <set>
-
 #include "api/columns.hpp"
 #include "api/describe.hpp"
 #include "api/provenance.hpp"

@@ -1,5 +1,6 @@
 // The requests of /v1/simulate and /v1/manifold.
 #include <algorithm>
+#include <set>
 
 #include "api/simulate.hpp"
 

@@ -9,7 +9,6 @@
 #include <vector>
 
 #include "api/problem.hpp"
-#include "api/sweep.hpp"
 #include "cli/exit.hpp"
 #include "cli/files.hpp"
 #include "program/process.hpp"

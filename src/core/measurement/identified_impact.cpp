@@ -7,7 +7,6 @@
 #include "core/measurement/hidden_contacts.hpp"
 #include "core/measurement/interval_motion.hpp"
 #include "core/measurement/robust.hpp"
-#include "core/motion/elementary.hpp"
 
 namespace vines {
 

@@ -15,7 +15,6 @@
 #include <cmath>
 
 #include "core/measurement/joint_equations.hpp"
-#include "core/motion/elementary.hpp"
 
 namespace vines {
 

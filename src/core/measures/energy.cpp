@@ -4,8 +4,6 @@
 #include <cmath>
 #include <limits>
 
-#include "core/motion/elementary.hpp"
-
 namespace vines {
 
 namespace {

@@ -1,7 +1,6 @@
 #include "core/motion/parameters.hpp"
 
 #include <algorithm>
-#include <cmath>
 #include <cstdio>
 #include <limits>
 

@@ -1,7 +1,6 @@
 // A run, flight by flight: state of the motion and notification of the observers.
 #include "core/motion/simulate.hpp"
 
-#include <algorithm>
 #include <cassert>
 #include <cmath>
 #include <memory>

@@ -6,7 +6,6 @@
 #include "core/stability/lyapunov.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <limits>
 

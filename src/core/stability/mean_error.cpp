@@ -1,11 +1,8 @@
 #include "core/stability/mean_error.hpp"
 
 #include <array>
-#include <cmath>
 #include <numbers>
 #include <numeric>
-
-#include "core/motion/elementary.hpp"
 
 namespace vines {
 

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "core/motion/elementary.hpp"
 #include "core/motion/record.hpp"
 
 namespace vines {
