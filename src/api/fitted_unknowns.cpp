@@ -152,12 +152,12 @@ Json describe_laws(const std::optional<FittedLaws>& laws, const BallLaws& wanted
 ChannelForcing channel_forcing(const MeasuredForcing& m, const System& system) {
     const Parameters& p = system.parameters;
     const double amplitude = elementary::hypot(m.sin, m.cos);
-    if (m.kind == ForcingKind::force)
+    if (m.kind == LoadKind::force)
         return {amplitude / system.si->k1, elementary::atan2(m.cos, m.sin)};
     // A base moving as F sin(omega t) has the acceleration -omega^2 F sin(omega t); the forcing
     // leads the displacement of the base by phi, eq. (3).
     const double omega = 2 * std::numbers::pi * m.f,
-                 by_F = m.kind == ForcingKind::base_acceleration ? -omega * omega : 1;
+                 by_F = m.kind == LoadKind::base_acceleration ? -omega * omega : 1;
     return {
         amplitude / std::abs(by_F) * elementary::hypot(1.0, p.lambda * p.epsilon * p.Omega),
         elementary::atan2(m.cos * by_F, m.sin * by_F) + p.phi()};
@@ -180,12 +180,12 @@ Json describe_measured_forcing(
         warnings.push_back(fmt::format(
             "the channel of the {} gives F = {:.4g} m, the oscillator's motion {:.4g} m: is a "
             "sensitivity wrong?",
-            m.kind == ForcingKind::force ? "force" : "base", F, used.si->F));
+            m.kind == LoadKind::force ? "force" : "base", F, used.si->F));
     if (std::abs(phase) > phase_off)
         warnings.push_back(fmt::format(
             "the forcing in the oscillator's motion {} the channel of the {} by {:.3g} rad: is the "
             "channel inverted or delayed?",
-            phase > 0 ? "lags" : "leads", m.kind == ForcingKind::force ? "force" : "base",
+            phase > 0 ? "lags" : "leads", m.kind == LoadKind::force ? "force" : "base",
             std::abs(phase)));
     return {
         {"f", m.f}, {"F", F}, {"phase", phase}, {"load", fit.forcing.load ? "measured" : "sine"}};

@@ -318,7 +318,7 @@ Json identify_answer(const IdentifyRequest& r, const IdentificationWatch& watch)
     const Measurement& m = r.measurement;
     const MeasurementResult result = watched_result(r, watch);
     const std::vector<std::string> doubts = all_doubts(result);
-    Warnings warnings = r.notes;
+    Warnings warnings = r.system.notes;
     if (result.refined) add_fit_warnings(r, result, warnings);
     add_continuity_warnings(result, warnings);
     if (m.laws.any() && !result.laws)

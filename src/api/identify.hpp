@@ -12,7 +12,7 @@ namespace vines::api {
 
 /// The forcing measured by a channel of the record: the motion of the base, or a force on m1.
 struct MeasuredForcing {
-    ForcingKind kind;
+    LoadKind kind;
     double f;  ///< Hz
     /// Coefficients of sin(2 pi f t) and cos(2 pi f t), in m/s^2, m or N.
     double sin, cos;
@@ -23,7 +23,6 @@ struct IdentifyRequest {
     Measurement measurement;
     std::optional<MeasuredForcing> forcing;  ///< from a channel of the record
     bool forcing_fitted = false;             ///< G comes from the measurement
-    std::vector<std::string> notes;          ///< warnings about the record
     std::set<std::string> include;           ///< additional parts of the answer
     std::size_t most_points;                 ///< of the motion
 

@@ -150,7 +150,7 @@ void take_motion(IdentifyRequest& r, CancelCheck& cancel) {
     const ListedForcing forcing = fit_forcing(p, impacts, [&cancel] { cancel.step(); });
     if (r.forcing_fitted) p.G = G_of(p, forcing.sin, forcing.cos);
     if (!(forcing.misfit < most_misfit)) {
-        r.notes.push_back(fmt::format(
+        r.system.notes.push_back(fmt::format(
             "no forcing at this frequency leads from each impact to the next: the states miss it "
             "by {:.2g} of the oscillator's speed. Is f, a mass, a stiffness or a unit wrong, or "
             "are impacts missing?",

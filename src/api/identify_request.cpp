@@ -56,7 +56,7 @@ void check_span(const std::vector<double>& tau, double omega0) {
 
 /// Warns of gaps and clipping.
 void note_flaws(const MeasuredRecord& r, double omega0, std::vector<std::string>& notes) {
-    const std::vector<TimeGap> gaps = time_gaps(r);
+    const std::vector<Interval> gaps = time_gaps(r);
     if (!gaps.empty())
         notes.push_back(fmt::format(
             "the record has {} gap(s), the first of {:.4g} s at {:.6g} s: impacts inside a gap "
@@ -85,7 +85,6 @@ IdentifyRequest read_fields(const Json& given, bool with_record, bool forcing_fi
     const MergedFields merged = merge_with_preset(identify_fields(), given);
     r.system = read_system_alone(merged, forcing_fitted);
     r.forcing_fitted = forcing_fitted;
-    r.notes = r.system.notes;
     if (with_record && !r.system.si) {
         const std::string detail =
             "a record in seconds needs the oscillator's natural frequency: give m1, c1, k1, m2 and "
@@ -176,7 +175,7 @@ void take_hum(IdentifyRequest& r, double omega0, CancelCheck& cancel) {
     for (const Hum& hum : remove_hum(
              r.measurement.record, mains, r.measurement.parameters.Omega,
              [&cancel] { cancel.step(hum_steps); })) {
-        r.notes.push_back(fmt::format(
+        r.system.notes.push_back(fmt::format(
             "a hum of {:.3g} {} at {:.4g} Hz was removed from the {}",
             hum.amplitude * (hum.in_displacement ? 1e6 : omega0 * omega0),
             hum.in_displacement ? "um" : "m/s^2", hum.Omega * omega0 / (2 * std::numbers::pi),
@@ -221,15 +220,15 @@ void read_record(IdentifyRequest& r, const Json& fields, Csv csv, CancelCheck& c
     check_span(record.tau, omega0);
     change_each(record.x, cancel, [&](double v) { return v * x.factor; });
     change_each(record.x_ddot, cancel, [&](double v) { return v * a.factor / (omega0 * omega0); });
-    note_flaws(record, omega0, r.notes);
+    note_flaws(record, omega0, r.system.notes);
     take_hum(r, omega0, cancel);
     cancel.step(record.tau.size());
     if (!x.column)
-        r.notes.push_back(
+        r.system.notes.push_back(
             "without a displacement, x at the impacts rests on the acceleration alone, whose "
             "errors add up: y' and R are less certain");
     if (!a.column && r.measurement.impact_times.empty())
-        r.notes.push_back(
+        r.system.notes.push_back(
             "without an acceleration only impacts that cause a visible kink in the displacement "
             "are found");
     for (double tau : r.measurement.impact_times)
@@ -270,7 +269,7 @@ std::vector<CsvColumn> read_record_columns(Json record, CancelCheck& cancel) {
 
 /// Samples of the forcing's channel, with empty cells left out.
 struct ForcingSamples {
-    ForcingKind kind;
+    LoadKind kind;
     std::string name;
     std::vector<double> seconds, values;  ///< values in m/s^2, m or N
 };
@@ -282,9 +281,9 @@ std::optional<ForcingSamples> forcing_samples(
     RecordColumn channel{};
     ForcingSamples samples{};
     for (const auto& [kind, each] :
-         {std::pair{ForcingKind::base_acceleration, &base_acceleration_channel},
-          std::pair{ForcingKind::base_displacement, &base_displacement_channel},
-          std::pair{ForcingKind::force, &force_channel}}) {
+         {std::pair{LoadKind::base_acceleration, &base_acceleration_channel},
+          std::pair{LoadKind::base_displacement, &base_displacement_channel},
+          std::pair{LoadKind::force, &force_channel}}) {
         const RecordColumn found = find_column(columns, fields, *each);
         if (!found.column) continue;
         if (channel.column)
@@ -326,9 +325,9 @@ MeasuredForcing measured_forcing(const ForcingSamples& s, CancelCheck& cancel) {
 void take_load(IdentifyRequest& r, ForcingSamples s, CancelCheck& cancel) {
     const double omega0 = r.system.si->omega0();
     // In the units of the model, m (per unit of tau squared).
-    const double unit = s.kind == ForcingKind::force               ? r.system.si->k1
-                        : s.kind == ForcingKind::base_acceleration ? omega0 * omega0
-                                                                   : 1;
+    const double unit = s.kind == LoadKind::force               ? r.system.si->k1
+                        : s.kind == LoadKind::base_acceleration ? omega0 * omega0
+                                                                : 1;
     MeasuredForcing& m = *r.forcing;
     for (double& t : s.seconds) t *= omega0;
     for (double& v : s.values) v /= unit;

@@ -3,7 +3,6 @@
 #include <algorithm>
 
 #include "api/schema/enum_names.hpp"
-#include "core/motion/elementary.hpp"
 
 namespace vines::api {
 
@@ -62,19 +61,6 @@ std::vector<std::string> parameter_names() {
     for (const Field& f : sweep_base_fields())
         if (f.type == FieldType::number) names.push_back(f.name);
     return names;
-}
-
-/// `count` values from `from` to `to`; both ends are exact.
-std::vector<double> spaced(double from, double to, std::size_t count, bool logarithmic) {
-    std::vector<double> values;
-    for (std::size_t i = 0; i < count; ++i) {
-        const double share =
-            count > 1 ? static_cast<double>(i) / static_cast<double>(count - 1) : 0;
-        values.push_back(
-            logarithmic ? from * elementary::pow(to / from, share) : from + share * (to - from));
-    }
-    if (count > 1) values.back() = to;
-    return values;
 }
 
 void check_values(const Json& j, std::size_t most, std::vector<FieldError>& errors) {

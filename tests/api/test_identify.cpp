@@ -40,7 +40,8 @@ TEST_CASE("the warning about a clipped channel gives the extreme in the unit of 
     for (int k = 0; k < 200; ++k)
         csv += std::to_string(0.001 * k) + "," + std::to_string(1e-5 * k) + "," +
                std::to_string(std::min(12.5, 20 * std::sin(0.1 * k))) + "\n";
-    const std::vector<std::string> notes = read_identify_request({{"preset", "fig15"}}, csv).notes;
+    const std::vector<std::string> notes =
+        read_identify_request({{"preset", "fig15"}}, csv).system.notes;
     CHECK(std::any_of(notes.begin(), notes.end(), [](const std::string& note) {
         return note.starts_with("the acceleration reaches its extreme 12.5 m/s^2 exactly ");
     }));

@@ -13,9 +13,9 @@ namespace {
 constexpr double found_within = 1.5e-3;  // s
 
 /// Gaps that can hide an impact.
-std::vector<TimeGap> long_gaps(const Experiment& e) {
-    std::vector<TimeGap> gaps = time_gaps(e.record);
-    std::erase_if(gaps, [&](const TimeGap& g) { return g.to - g.from < 0.01 * e.omega0; });
+std::vector<Interval> long_gaps(const Experiment& e) {
+    std::vector<Interval> gaps = time_gaps(e.record);
+    std::erase_if(gaps, [&](const Interval& g) { return g.to - g.from < 0.01 * e.omega0; });
     return gaps;
 }
 
@@ -32,8 +32,8 @@ std::vector<char> are_of_sticks(const Experiment& e) {
     return are;
 }
 
-bool can_be_seen(const Experiment& e, const std::vector<TimeGap>& gaps, const Impact& i) {
-    return std::none_of(gaps.begin(), gaps.end(), [&](const TimeGap& g) {
+bool can_be_seen(const Experiment& e, const std::vector<Interval>& gaps, const Impact& i) {
+    return std::none_of(gaps.begin(), gaps.end(), [&](const Interval& g) {
         const double margin = found_within * e.omega0;
         return i.tau > g.from - margin && i.tau < g.to + margin;
     });
@@ -41,7 +41,7 @@ bool can_be_seen(const Experiment& e, const std::vector<TimeGap>& gaps, const Im
 
 /// Exponent of the visible true impacts: result of a perfect identification.
 double true_lambda1(
-    const Experiment& e, const std::vector<TimeGap>& gaps, const std::vector<Impact>& seen) {
+    const Experiment& e, const std::vector<Interval>& gaps, const std::vector<Impact>& seen) {
     std::vector<IdentifiedImpact> impacts = listed(seen);
     complete_impacts(e.true_parameters, impacts, 0);
     const MeasuredExponents exponents(
@@ -59,7 +59,7 @@ bool Score::is_right() const {
 
 Score score_of(const Experiment& e, const MeasurementResult& result) {
     Score s;
-    const std::vector<TimeGap> gaps = long_gaps(e);
+    const std::vector<Interval> gaps = long_gaps(e);
     const std::vector<char> of_sticks = are_of_sticks(e);
     const auto counts = [&](const Impact& i) {
         return !of_sticks[static_cast<std::size_t>(&i - e.impacts.data())] &&

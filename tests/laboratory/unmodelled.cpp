@@ -219,7 +219,7 @@ Experiment unmodelled_experiment(double b, const UnmodelledEffects& o) {
 }
 
 ForcingChannel unmodelled_channel(
-    const Experiment& e, const UnmodelledEffects& o, ForcingKind kind, double noise) {
+    const Experiment& e, const UnmodelledEffects& o, LoadKind kind, double noise) {
     const Parameters& p = e.true_parameters;
     const std::vector<double>& tau = e.record.tau;
     ForcingChannel c{kind, tau, {}, tau.front(), tau.back(), 2 * p.zeta()};
@@ -228,10 +228,9 @@ ForcingChannel unmodelled_channel(
         // The base leads its force by 2 zeta, to first order.
         constexpr double h = 0.01;
         const auto force = [&](double by) {
-            return forcing_at(
-                p, e.omega0, o, at + by - (kind == ForcingKind::force ? 0 : c.damping));
+            return forcing_at(p, e.omega0, o, at + by - (kind == LoadKind::force ? 0 : c.damping));
         };
-        const double value = kind == ForcingKind::base_acceleration
+        const double value = kind == LoadKind::base_acceleration
                                  ? (force(h) - 2 * force(0) + force(-h)) / (h * h)
                                  : force(0);
         c.values.push_back(value + noise * p.epsilon * p.A() * standard_normal(engine));

@@ -41,7 +41,7 @@ Experiment unmodelled_experiment(double b, const UnmodelledEffects& effects);
 /// What a channel of the forcing shows of it, with noise: the force, or the acceleration of the
 /// base. `noise`: relative to the amplitude.
 ForcingChannel unmodelled_channel(
-    const Experiment& experiment, const UnmodelledEffects& effects, ForcingKind kind, double noise);
+    const Experiment& experiment, const UnmodelledEffects& effects, LoadKind kind, double noise);
 
 /// Mean R of the true impacts at a wall.
 double mean_R(const Experiment& experiment, int side);

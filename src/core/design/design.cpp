@@ -33,7 +33,7 @@ constexpr double changes[] = {1.01, 1.02, 1.04, 1.08, 1.16, 1.32, 1.64};
 constexpr double small_excess = 1.05, large_excess = 1.2;
 // Largest and smallest amplitudes of step 3, over the largest of the plan, and their number.
 constexpr double most_amplitude = 4, least_amplitude = 1.0 / 32;
-constexpr int amplitude_count = 36;
+constexpr std::size_t amplitude_count = 36;
 constexpr long most_impacts_per_cycle = 200;
 
 /// Responses of absorbers over b (rows) and f (columns). Receives them from a sweep.
@@ -71,16 +71,6 @@ struct DesignMap : SweepSink {
         }
     }
 };
-
-/// `count` values in a geometric row; both ends are exact.
-std::vector<double> geometric(double from, double to, int count) {
-    std::vector<double> row = {from};
-    for (int k = 1; k < count; ++k)
-        row.push_back(
-            k + 1 < count ? from * elementary::pow(to / from, k / static_cast<double>(count - 1))
-                          : to);
-    return row;
-}
 
 void sort_unique(std::vector<double>& values) {
     std::ranges::sort(values);
@@ -209,7 +199,8 @@ struct DesignSearch {
 
     /// Step 1: all absorbers of the maps, the best first.
     std::vector<DesignPoint> search_maps() const {
-        const std::vector<double> row = geometric(plan.b.from, plan.b.to, plan.b_count);
+        const std::vector<double> row =
+            spaced(plan.b.from, plan.b.to, static_cast<std::size_t>(plan.b_count), true);
         std::vector<DesignPoint> all;
         for (const double m2 : plan.m2)
             for (const double R : plan.R)
@@ -298,7 +289,7 @@ struct DesignSearch {
     void set_amplitudes(Design& d) const {
         const DesignPoint& p = d.best;
         const SiParameters si = host_with(p.m2);
-        std::vector<double> all = geometric(least_amplitude, most_amplitude, amplitude_count);
+        std::vector<double> all = spaced(least_amplitude, most_amplitude, amplitude_count, true);
         all.push_back(1);
         sort_unique(all);
         const DesignMap m = map({p.b}, all, frequencies(), p.R, si);

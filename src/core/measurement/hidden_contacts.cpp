@@ -221,7 +221,7 @@ struct HiddenContactSearch {
     double end_after(double tau) const {
         const double end = std::min(
             tau + longest_flights * limits.typical_flight, impacts.back().tau + same_moment);
-        const auto gap = std::ranges::upper_bound(limits.gaps, tau, {}, &TimeGap::to);
+        const auto gap = std::ranges::upper_bound(limits.gaps, tau, {}, &Interval::to);
         return gap == limits.gaps.end() ? end : std::min(end, gap->from);
     }
 

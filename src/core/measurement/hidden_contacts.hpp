@@ -66,7 +66,7 @@ struct HiddenContactLimits {
     double typical_flight = 0;  ///< tau; no run lasts longer than 40 of them
     /// Most consecutive hidden impacts that are strong enough to be visible.
     int most_seen = 6;
-    std::vector<TimeGap> gaps = {};  ///< gaps of the record in order; no run crosses them
+    std::vector<Interval> gaps = {};  ///< gaps of the record in order; no run crosses them
 };
 /// Hidden contacts in order of time. The velocity of the mass after an impact comes from the flight
 /// before it, eq. (43), or from the impact's own jump, eqs. (4), (36). `doubtful`: one entry per

@@ -206,7 +206,7 @@ bool is_representative(const IdentifiedImpacts& impacts) {
 }  // namespace
 
 Continuity continuity_of(
-    const Parameters& p, const IdentifiedImpacts& impacts, std::vector<TimeGap> gaps) {
+    const Parameters& p, const IdentifiedImpacts& impacts, std::vector<Interval> gaps) {
     Continuity c;
     std::vector<double> flights, speeds;
     for (std::size_t i = 1; i < impacts.size(); ++i) {
@@ -215,7 +215,7 @@ Continuity continuity_of(
         speeds.push_back(std::abs(impacts[i].y_dot_before));
     }
     const double typical_flight = median(flights), typical_speed = median(speeds);
-    std::erase_if(gaps, [&](const TimeGap& g) {
+    std::erase_if(gaps, [&](const Interval& g) {
         return !(g.to - g.from > hiding_fraction * typical_flight);
     });
     for (std::size_t i = 0; i < impacts.size(); ++i) {

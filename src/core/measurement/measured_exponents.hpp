@@ -44,7 +44,7 @@ struct Continuity {
 };
 /// Only gaps longer than a tenth of a typical flight count: an impact could hide in them.
 Continuity continuity_of(
-    const Parameters& parameters, const IdentifiedImpacts& impacts, std::vector<TimeGap> gaps);
+    const Parameters& parameters, const IdentifiedImpacts& impacts, std::vector<Interval> gaps);
 
 class MeasuredExponents {
 public:

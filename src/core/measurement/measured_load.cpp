@@ -149,7 +149,7 @@ struct EnvelopeFit {
         const Complex phasor = elementary::phasor(omega * sigma);
         for (std::size_t j = 0; j < s.count; ++j)
             row.by[j] =
-                phasor * (k == 0 || channel.kind != ForcingKind::base_acceleration
+                phasor * (k == 0 || channel.kind != LoadKind::base_acceleration
                               ? s.value[j]
                               : Complex(
                                     s.second[j] * by_tau * by_tau - omega * omega * s.value[j],
@@ -320,7 +320,7 @@ std::shared_ptr<const MeasuredLoad> MeasuredLoad::of(
     for (std::size_t k = 1; k < all.size(); ++k) {
         // The base acts through spring and damper.
         const Complex by_base(
-            1, channel.kind == ForcingKind::force
+            1, channel.kind == LoadKind::force
                    ? 0
                    : static_cast<double>(k) * sine.omega * channel.damping);
         for (Complex& c : all[k].coefficients) c *= by_base;
@@ -350,7 +350,7 @@ double MeasuredLoad::error_of(std::size_t k) const {
     if (k > harmonics_.size() || harmonics_[k - 1].coefficients.empty() ||
         (k == 1 && !harmonics_[0].varies()))
         return 0;
-    return noise_ / (kind_ == ForcingKind::base_acceleration ? static_cast<double>(k * k) : 1);
+    return noise_ / (kind_ == LoadKind::base_acceleration ? static_cast<double>(k * k) : 1);
 }
 
 LoadResponse::Excess::Excess(const MeasuredLoad& load, const UnknownValues& values) {

@@ -20,6 +20,7 @@
 
 #include "core/measurement/progress.hpp"
 #include "core/measurement/unknowns.hpp"
+#include "core/motion/load.hpp"
 
 namespace vines {
 
@@ -35,12 +36,9 @@ struct Harmonic {
 std::optional<Harmonic> harmonic_of(
     const std::vector<double>& time, const std::vector<double>& values, const Look& look = [] {});
 
-/// The quantity that a channel of the forcing measures. Forces are divided by k1.
-enum class ForcingKind { base_acceleration, base_displacement, force };
-
 /// A channel of the forcing, with its samples in tau. `damping`: 2 zeta, for a base.
 struct ForcingChannel {
-    ForcingKind kind;
+    LoadKind kind;
     std::vector<double> tau, values;  ///< in m, accelerations per unit of tau squared; ascending
     double begin, end;                ///< of the record, tau
     double damping;
@@ -77,7 +75,7 @@ private:
     MeasuredLoad() = default;
 
     double length_ = 0, noise_ = 0;
-    ForcingKind kind_ = ForcingKind::base_acceleration;
+    LoadKind kind_ = LoadKind::base_acceleration;
     std::vector<Envelope> harmonics_;  ///< C_k divided by the fundamental, from k = 1 on
 };
 

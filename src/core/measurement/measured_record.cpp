@@ -189,17 +189,17 @@ std::size_t first_index(const MeasuredRecord& r, double tau) {
     return static_cast<std::size_t>(std::ranges::lower_bound(r.tau, tau) - r.tau.begin());
 }
 
-std::vector<TimeGap> time_gaps(const MeasuredRecord& r) {
-    std::vector<TimeGap> gaps;
+std::vector<Interval> time_gaps(const MeasuredRecord& r) {
+    std::vector<Interval> gaps;
     const double longest = 3 * median(steps_of(r.tau));
     for (std::size_t k = 1; k < r.tau.size(); ++k)
         if (r.tau[k] - r.tau[k - 1] > longest) gaps.push_back({r.tau[k - 1], r.tau[k]});
     return gaps;
 }
 
-bool overlaps_any(const std::vector<TimeGap>& gaps, double begin, double end) {
+bool overlaps_any(const std::vector<Interval>& gaps, double begin, double end) {
     return std::ranges::any_of(
-        gaps, [=](const TimeGap& g) { return g.from < end && begin < g.to; });
+        gaps, [=](const Interval& g) { return g.from < end && begin < g.to; });
 }
 
 RecordStatistics::RecordStatistics(const MeasuredRecord& r) : step(median(steps_of(r.tau))) {

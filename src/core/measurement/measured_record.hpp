@@ -7,6 +7,7 @@
 
 #include "core/measurement/progress.hpp"
 #include "core/measurement/robust.hpp"
+#include "core/motion/simulate.hpp"
 
 namespace vines {
 
@@ -19,15 +20,10 @@ struct MeasuredRecord {
 /// Index of the first sample at or after `tau`.
 std::size_t first_index(const MeasuredRecord& record, double tau);
 
-/// A stretch of time without samples, in tau.
-struct TimeGap {
-    double from, to;
-};
-
-/// Gaps: steps longer than three median steps.
-std::vector<TimeGap> time_gaps(const MeasuredRecord& record);
+/// Times without samples, in tau: steps longer than three median steps.
+std::vector<Interval> time_gaps(const MeasuredRecord& record);
 /// Whether a gap overlaps the time between `begin` and `end`.
-bool overlaps_any(const std::vector<TimeGap>& gaps, double begin, double end);
+bool overlaps_any(const std::vector<Interval>& gaps, double begin, double end);
 
 /// Properties of one sensor's signal.
 struct SensorStatistics {

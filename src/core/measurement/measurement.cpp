@@ -64,7 +64,7 @@ void fit_b(
 /// Uses b and epsilon of the parameters. `pulse`: length of a pulse in tau; two impacts closer than
 /// that are one detected twice. Flights across a gap are unknown.
 Identification identify_impacts(
-    const Parameters& p, const std::vector<FittedImpact>& m, const std::vector<TimeGap>& gaps,
+    const Parameters& p, const std::vector<FittedImpact>& m, const std::vector<Interval>& gaps,
     double pulse) {
     Identification found;
     std::vector<Flight> flights;

@@ -86,8 +86,8 @@ private:
 /// The impacts of a record.
 struct FoundImpacts {
     JointFit fit;
-    bool with_mass = false;     ///< the mass was part of the fit: its R and b are fitted
-    std::vector<TimeGap> gaps;  ///< gaps of the record that can hide an impact
+    bool with_mass = false;      ///< the mass was part of the fit: its R and b are fitted
+    std::vector<Interval> gaps;  ///< gaps of the record that can hide an impact
     PulseTemplate pulse;
     PulseExtent extent{0, 0};
     long unseen = 0;              ///< impacts without a visible pulse

@@ -134,11 +134,11 @@ void fit_with_mass(ImpactSearch& s) {
 void find_candidates(ImpactSearch& s, bool events_first) {
     s.fixed[Unknown::stiffness] = s.fixed[Unknown::damping] = true;
     s.found.gaps = time_gaps(s.record);
-    std::erase_if(s.found.gaps, [](const TimeGap& g) { return g.to - g.from < hiding_gap; });
+    std::erase_if(s.found.gaps, [](const Interval& g) { return g.to - g.from < hiding_gap; });
     for (const double tau : s.measurement.impact_times) s.candidates.push_back({.tau = tau});
     if (s.searches()) find_first_candidates(s, events_first);
     std::erase_if(s.candidates, [&](const Candidate& c) { return is_in_gap(s, c.tau); });
-    for (const TimeGap& g : s.found.gaps)
+    for (const Interval& g : s.found.gaps)
         s.candidates.push_back({.tau = 0.5 * (g.from + g.to), .border = Border::gap});
     std::ranges::sort(s.candidates, {}, &Candidate::tau);
 }

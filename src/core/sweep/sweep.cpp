@@ -9,6 +9,8 @@
 #include <bit>
 #include <cassert>
 
+#include "core/motion/elementary.hpp"
+
 namespace vines {
 
 namespace {
@@ -291,6 +293,18 @@ std::size_t SweepPlan::runs() const {
 bool SweepPlan::tries_second_start(std::size_t point) const {
     const std::size_t every = (grid.points() + second_starts - 1) / second_starts;
     return !default_set && carry == Carry::none && grid.starts == 1 && point % every == 0;
+}
+
+std::vector<double> spaced(double from, double to, std::size_t count, bool geometric) {
+    std::vector<double> values;
+    for (std::size_t i = 0; i < count; ++i) {
+        const double share =
+            count > 1 ? static_cast<double>(i) / static_cast<double>(count - 1) : 0;
+        values.push_back(
+            geometric ? from * elementary::pow(to / from, share) : from + share * (to - from));
+    }
+    if (count > 1) values.back() = to;
+    return values;
 }
 
 StartTrial run_sweep(const SweepPlan& plan, int threads, RunControl& control, SweepSink& sink) {

@@ -86,4 +86,7 @@ struct StartTrial {
 /// and its number. Returns early, without the remaining lines, after a stop request.
 StartTrial run_sweep(const SweepPlan& plan, int threads, RunControl& control, SweepSink& sink);
 
+/// `count` equidistant or geometric values from `from` to `to`; both ends are exact.
+std::vector<double> spaced(double from, double to, std::size_t count, bool geometric);
+
 }  // namespace vines

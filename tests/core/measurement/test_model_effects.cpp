@@ -229,8 +229,8 @@ double found_share(const Experiment& e, const MeasurementResult& r) {
     return static_cast<double>(found) / static_cast<double>(e.impacts.size());
 }
 
-constexpr ForcingKind forcing_kinds[] = {
-    ForcingKind::base_acceleration, ForcingKind::base_displacement, ForcingKind::force};
+constexpr LoadKind forcing_kinds[] = {
+    LoadKind::base_acceleration, LoadKind::base_displacement, LoadKind::force};
 
 std::shared_ptr<const MeasuredLoad> load_of(const ForcingChannel& channel) {
     return MeasuredLoad::of(channel, *harmonic_of(channel.tau, channel.values));
@@ -244,7 +244,7 @@ TEST_CASE(
     for (const UnmodelledEffects& effects :
          {UnmodelledEffects{.amplitude_modulation = 0.03}, UnmodelledEffects{.second = 0.05},
           UnmodelledEffects{.sweep = 0.005}})
-        for (const ForcingKind kind : forcing_kinds) {
+        for (const LoadKind kind : forcing_kinds) {
             CAPTURE(effects.amplitude_modulation);
             CAPTURE(effects.second);
             CAPTURE(static_cast<int>(kind));
@@ -270,7 +270,7 @@ TEST_CASE(
         const UnmodelledEffects effects{.R = R, .second = 0.05, .amplitude_modulation = 0.03};
         const Experiment e = unmodelled_experiment(0.012, effects);
         Measurement m = measurement_of(e);
-        m.forcing.load = load_of(unmodelled_channel(e, effects, ForcingKind::force, 0.02));
+        m.forcing.load = load_of(unmodelled_channel(e, effects, LoadKind::force, 0.02));
         const MeasurementResult r = evaluate_measurement(m);
         check_values(e, r, mean_amplitude(effects));
         CHECK(r.doubts.empty());
@@ -290,7 +290,7 @@ TEST_CASE("with a measured forcing zeta is fitted under modulation" * doctest::t
     Experiment e = unmodelled_experiment(0.015, effects);
     e.parameters.lambda *= 1.3;
     Measurement m = measurement_of(e);
-    m.forcing.load = load_of(unmodelled_channel(e, effects, ForcingKind::base_acceleration, 0.02));
+    m.forcing.load = load_of(unmodelled_channel(e, effects, LoadKind::base_acceleration, 0.02));
     const MeasurementResult r = evaluate_measurement(m);
     const JointFit& fit = r.refined->fit;
     CHECK(!fit.fixed[Unknown::damping]);
@@ -303,7 +303,7 @@ TEST_CASE("with a measured forcing zeta is fitted under modulation" * doctest::t
 
 TEST_CASE("a channel of a clean sine is no load") {
     const Experiment e = unmodelled_experiment(0.009, {});
-    for (const ForcingKind kind : forcing_kinds)
+    for (const LoadKind kind : forcing_kinds)
         for (const double noise : {0.0, 0.01, 0.1})
             CHECK(!load_of(unmodelled_channel(e, {}, kind, noise)));
 }
