@@ -103,8 +103,8 @@ Json describe_capture(const Capture& c) {
         {{"tau", or_null(c.tau)},
          {"status", c.tau ? "captured" : "on_its_way"},
          {"chaotic_before", c.chaotic_before == true ? Json(true) : Json(nullptr)},
-         {"exponents_before", describe_final(c.before)},
-         {"exponents_after", describe_final(c.after)}});
+         {"exponents_before", describe(properties::final_exponents, c.before)},
+         {"exponents_after", describe(properties::final_exponents, c.after)}});
 }
 
 /// `untouched`: Regime::untouched.
@@ -190,11 +190,7 @@ Json describe_perturbation(Perturbation&& p) {
     const std::optional<LinearStretch>& linear = p.linear;
     Json j = describe(perturbation_columns, p);
     j.update(
-        {{"start", object(
-                       {{"x", p.start.x},
-                        {"x_dot", p.start.x_dot},
-                        {"y", p.start.y},
-                        {"y_dot", p.start.y_dot}})},
+        {{"start", describe(properties::difference, p.start)},
          {"impacts", describe(touch_columns, p.impacts)},
          {quantity.distance.name, column(p.distance)},
          {"predicted",
@@ -226,24 +222,12 @@ Json describe_regime(const Regime& r) {
     return j;
 }
 
-Json describe_final(const Exponents& values) {
-    return {{"final", column(values)}, {"status", statuses_of(values)}};
-}
-
-Json describe_window(const TransferProduct& product) {
-    return {
-        {"window", product.impacts() > 0 ? Json::array({product.start_tau(), product.end_tau()})
-                                         : Json(nullptr)},
-        {"impacts", product.impacts()},
-        {"sum_rule_residual", finite_or_null(product.sum_rule_residual())}};
-}
-
 void add_estimators(
     Json& j, const TransferProduct& product, const Growth& growth, const ExponentOptions& shown,
     bool histories, bool slopes) {
     const auto add = [&](const char* name, const Exponents& values, const Json& more,
                          const ExponentHistory& history) {
-        Json part = describe_final(values);
+        Json part = describe(properties::final_exponents, values);
         part.update(more);
         if (histories) part["history"] = describe(history_columns, history);
         if (slopes) part["slope"] = finite_or_null(coarse_slope(history, product.start_tau()));
@@ -275,7 +259,7 @@ void add_estimators(
 
 Json describe_exponents(
     const WindowExponents& w, const ExponentOptions& shown, const Regime& regime, bool histories) {
-    Json j = describe_window(w.product);
+    Json j = describe(properties::window, w.product);
     if (shown.qr) {
         j["verdict"] = enum_json(w.judgement.verdict);
         j["verdict_sigmas"] = finite_or_null(w.growth.lambda1 / w.growth.standard_error[0]);

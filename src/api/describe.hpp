@@ -23,17 +23,12 @@ Json describe_energy(const EnergyResult& energy);
 Json describe_manifold(const Manifold& manifold);
 Json describe_manifold(const ManifoldResult& manifold);
 
-/// {final, status} of the four exponents, per unit of tau.
-Json describe_final(const Exponents& values);
-
 /// Exponents and verdict of one window, by the estimators in `shown`; with their histories if
 /// `histories`. `regime` gives the reasons of the verdict.
 Json describe_exponents(
     const WindowExponents& window, const ExponentOptions& shown, const Regime& regime,
     bool histories);
-/// The parts of describe_exponents(): the window, and the result of each estimator, with its slope
-/// if `slopes`.
-Json describe_window(const TransferProduct& product);
+/// The result of each estimator, a part of describe_exponents(), with its slope if `slopes`.
 void add_estimators(
     Json& part, const TransferProduct& product, const Growth& growth, const ExponentOptions& shown,
     bool histories, bool slopes);

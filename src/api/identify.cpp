@@ -115,7 +115,7 @@ std::string sampling_advice(const FoundImpacts& refined, double step, double ome
 Json describe_measured(
     const MeasuredExponents& e, const std::vector<KnownStretch>& stretches,
     const std::vector<IdentifiedImpact>& impacts, Warnings& warnings) {
-    Json j = describe_window(e.all());
+    Json j = describe(properties::window, e.all());
     add_estimators(j, e.all(), growth_of(e.all()), e.all().options(), true, false);
     change_numbers(j["qr"]["history"][quantity.tau.name].get_binary(), [&e](double tau) {
         return e.moment(tau);
@@ -127,7 +127,7 @@ Json describe_measured(
         const std::string text = text_of(w, any_size);
         if (std::ranges::count(warnings, text) == 0) warnings.push_back(text);
     }
-    Json longest = describe_window(e.longest());
+    Json longest = describe(properties::window, e.longest());
     add_estimators(
         longest, e.longest(), growth_of(e.longest()), e.longest().options(), true, false);
     for (const char* name : {"eigenvalues", "raw_product"})

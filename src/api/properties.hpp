@@ -254,6 +254,34 @@ inline constexpr Property<MeasuredSlope> slope[] = {
     {{"high", "upper end of its 90 % interval", number_or_null}, at<&MeasuredSlope::high>},
 };
 
+// Exponents.
+
+inline constexpr Property<Exponents> final_exponents[] = {
+    {{"final", "four exponents at the end of the window, descending, per unit of tau", exponents},
+     [](const Exponents& values) { return json_of(values); }},
+    {{"status",
+      "for each exponent: ok, minus_infinity (a sticking phase or R = 0 reduced the rank), "
+      "not_converged",
+      statuses},
+     statuses_of},
+};
+
+inline constexpr Property<TransferProduct> window[] = {
+    {{"window",
+      "from the first impact at or after tau_s to the last at or before tau_e; null without an "
+      "impact",
+      interval_or_null},
+     [](const TransferProduct& p) {
+         return p.impacts() > 0 ? Json{p.start_tau(), p.end_tau()} : Json(nullptr);
+     }},
+    {{"impacts", "number of impacts in the window", whole}, at<&TransferProduct::impacts>},
+    {{"sum_rule_residual",
+      "error of qr in the sum rule of the exponents, or the bound of its rounding errors if that "
+      "exceeds 1e-6",
+      number_or_null},
+     at<&TransferProduct::sum_rule_residual>},
+};
+
 // Points of a sweep.
 
 inline constexpr Quantity attractor_quantity{
@@ -420,6 +448,14 @@ inline constexpr Property<Lifetime> lifetime[] = {
     {{"high", "upper end of its 95 % interval", number_or_null}, at<&Lifetime::high>},
     {{"captured", "captured motions", whole}, at<&Lifetime::captured>},
     {{"runs", "motions with shown chaos", whole}, at<&Lifetime::runs>},
+};
+
+/// A difference of two initial states.
+inline constexpr Property<State> difference[] = {
+    {quantity.x, at<&State::x>},
+    {quantity.x_dot.with("velocity of the oscillator, m per unit of tau"), at<&State::x_dot>},
+    {quantity.y, at<&State::y>},
+    {quantity.y_dot.with("velocity of the ball, m per unit of tau"), at<&State::y_dot>},
 };
 
 /// The initial state, as fields of /v1/simulate that reproduce the motion.

@@ -30,6 +30,7 @@ enum class ValueType : std::uint8_t {
     statuses,   ///< of four exponents
     matrix,     ///< 4 x 4 numbers, by rows
     interval,   ///< [from, to]
+    interval_or_null,
     damping,
     regime,
     verdict

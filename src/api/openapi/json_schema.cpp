@@ -104,6 +104,7 @@ Json schema_of(ValueType type) {
         case statuses: return list_of(enum_schema<Status>(), 4);
         case matrix: return list_of(list_of(number, 4), 4);
         case interval: return list_of(number, 2);
+        case interval_or_null: return or_null(interval);
         case damping: return enum_schema<Damping>();
         case regime: return one_of({"none", "I", "II", "III", "IV", "V", "VI"});
         case verdict: return enum_schema<Verdict>();

@@ -26,15 +26,6 @@ Keys sealed_keys(const std::string& parameters) {
 
 namespace {
 
-Keys final_keys() {
-    return {
-        {"final", exponents,
-         "four exponents at the end of the window, descending, per unit of tau"},
-        {"status", statuses,
-         "for each exponent: ok, minus_infinity (a sticking phase or R = 0 reduced the rank), "
-         "not_converged"}};
-}
-
 Keys system_keys() {
     const Json load = object_of(
         {{"kind", one_of({"record", "half_sine", "chirp", "noise", "harmonics"}), "of the load"},
@@ -72,13 +63,14 @@ Keys estimator_keys(Of of, const Keys& of_history = {}) {
         "history", object_of({columns_of(history_columns), of_history}),
         "each exponent as a function of time"};
     return {
-        final_keys(), of == Of::measurement ? Keys() : slope, of == Of::windows ? Keys() : history};
+        values_of(properties::final_exponents), of == Of::measurement ? Keys() : slope,
+        of == Of::windows ? Keys() : history};
 }
 
 /// The window of one estimator: a record with gaps has several stretches.
 Keys own_window(Of of) {
     if (of != Of::measurement) return {};
-    return {"window", or_null(interval), "the longest stretch"};
+    return {"window", interval_or_null, "the longest stretch"};
 }
 
 Keys estimators(Of of) {
@@ -104,17 +96,6 @@ Keys estimators(Of of) {
         {"raw_product?", raw_product, "by the product itself, down to its rounding floor"}};
 }
 
-Keys window_keys() {
-    return {
-        {"window", or_null(interval),
-         "from the first impact at or after tau_s to the last at or before tau_e; null without an "
-         "impact"},
-        {"impacts", whole, "number of impacts in the window"},
-        {"sum_rule_residual", number_or_null,
-         "error of qr in the sum rule of the exponents, or the bound of its rounding errors if "
-         "that exceeds 1e-6"}};
-}
-
 Keys verdict_keys() {
     return {
         {"verdict?", verdict,
@@ -133,10 +114,10 @@ Json capture() {
           "captured, or on_its_way: the run ends before its capture"},
          {"chaotic_before", or_null(flag),
           "true if chaos before the capture is shown, otherwise null"},
-         {"exponents_before", object_of(final_keys()),
+         {"exponents_before", object_of(values_of(properties::final_exponents)),
           "exponents of the run before the capture, or of the whole run if that comes later, by "
           "qr"},
-         {"exponents_after", object_of(final_keys()),
+         {"exponents_after", object_of(values_of(properties::final_exponents)),
           "exponents of the orbit, from its multipliers"}});
 }
 
@@ -220,17 +201,18 @@ void add_systems(Json& schemas) {
 }
 
 void add_exponents(Json& schemas) {
-    schemas["Exponents"] = object_of({window_keys(), verdict_keys(), estimators(Of::run)});
+    schemas["Exponents"] =
+        object_of({values_of(properties::window), verdict_keys(), estimators(Of::run)});
     schemas["WindowExponents"] = object_of(
         {{"asked", interval, "requested window"},
-         window_keys(),
+         values_of(properties::window),
          verdict_keys(),
          estimators(Of::windows)});
     const Keys stretches = {
         column_of(quantity.tau_start.with("start of each stretch")),
         column_of(quantity.tau_end.with("end of each stretch"))};
     schemas["MeasuredExponents"] = object_of(
-        {window_keys(),
+        {values_of(properties::window),
          estimators(Of::measurement),
          {"duration?", number, "total length of the stretches, in tau"},
          {"stretches?", object_of(stretches),
@@ -304,9 +286,6 @@ void add_parts(Json& schemas) {
           "synchronisation of the contacts with the forcing (1:1 resonance)"},
          {"stretches", table_of(stretch_columns),
           "synchronised and other stretches, in order of time"}});
-    const Keys start = {
-        quantity.x, quantity.x_dot.with("velocity of the oscillator, m per unit of tau"),
-        quantity.y, quantity.y_dot.with("velocity of the ball, m per unit of tau")};
     const Keys predicted = {
         {"lambda1", number_or_null,
          "largest exponent by qr over the impacts of the stretch in slope; null without one"},
@@ -316,7 +295,7 @@ void add_parts(Json& schemas) {
         quantity.tau_start.with("start of the stretch").or_null(),
         quantity.tau_end.with("end of the stretch").or_null()};
     schemas["Perturbation"] = object_of(
-        {{"start", object_of(start), "perturbation of the start"},
+        {{"start", object_of(values_of(properties::difference)), "perturbation of the start"},
          columns_of(perturbation_columns),
          {"impacts", table_of(touch_columns), "impacts of the second run"},
          column_of(quantity.distance),
