@@ -21,8 +21,8 @@ BasinPlan basin_plan(const SweepRequest& r, const Json& given) {
     BasinPlan plan{
         .box = {},
         .count = r.plan.grid.starts,
-        .seed = value_or_default(basins_fields(), given, "seed"),
-        .pairs = value_or_default(basins_fields(), given, "pairs"),
+        .seed = WithDefaults{basins_fields(), given}["seed"],
+        .pairs = WithDefaults{basins_fields(), given}["pairs"],
         .values = r.axes.empty() ? std::vector<double>{0} : r.axes[0].values,
         .system_at = [systems = r.systems](double value) { return systems->at_value(value); }};
     for (const double value : plan.values) {
@@ -58,7 +58,7 @@ SweepRequest read_basins_request(const Json& given, std::size_t most_points) {
     Json grid = given;
     grid["axes"] = Json::array();
     if (given.contains("axis")) grid["axes"].push_back(given["axis"]);
-    const Json count = value_or_default(basins_fields(), given, "count");
+    const Json count = WithDefaults{basins_fields(), given}["count"];
     try {
         SweepRequest r = read_grid(grid, count.get<std::size_t>(), most_points);
         r.given.erase("axes");

@@ -21,10 +21,6 @@ std::vector<std::string> continued_names() {
     return texts_of(simulate_fields_where(is_continued), &Field::name);
 }
 
-Json continued(const Json& given, const char* name) {
-    return value_or_default(continue_fields(), given, name);
-}
-
 /// The parameter's value in the base: given, of its preset, or the default.
 std::optional<double> value_in(const SystemFields& fields, const std::string& parameter) {
     if (fields.has(parameter)) return fields.number(parameter);
@@ -325,11 +321,12 @@ ContinueRequest read_continue_request(const Json& object) {
     r.given = object;
     const SystemFields fields = read_family(r, given);
     const double from = given["from"], to = given["to"];
+    const WithDefaults field{continue_fields(), given};
     r.plan = {
         .family = {systems_along(fields, {r.parameter}), {{from, to}}},
-        .resolution = continued(given, "resolution"),
-        .most_points = continued(given, "points"),
-        .switches = continued(given, "switch")};
+        .resolution = field["resolution"],
+        .most_points = field["points"],
+        .switches = field["switch"]};
     for (const double end : {from, to})
         if (!r.plan.family.system_at({end}))
             errors.push_back(
@@ -337,11 +334,11 @@ ContinueRequest read_continue_request(const Json& object) {
                  "the base forms no valid system with this " + r.parameter});
     refuse_any(errors);
     if (given.contains("curve")) read_curve(r, given, fields);
-    r.settles = continued(given, "orbit") == "settled";
-    r.period_cycles = continued(given, "period_cycles");
+    r.settles = field["orbit"] == "settled";
+    r.period_cycles = field["period_cycles"];
     r.settling = {
-        .transient_cycles = continued(given, "transient_cycles"),
-        .cycles = continued(given, "cycles"),
+        .transient_cycles = field["transient_cycles"],
+        .cycles = field["cycles"],
         .max_impacts = r.base.max_impacts};
     return r;
 }

@@ -139,10 +139,6 @@ Json with_lists(const Json& object) {
     return given;
 }
 
-Json designed(const Json& given, const char* name) {
-    return value_or_default(design_fields(), given, name);
-}
-
 /// A checked distribution; errors are relative to the tolerances.
 Tolerance read_tolerance(
     Toleranced what, const std::string& name, const Json& given, std::vector<FieldError>& errors) {
@@ -184,8 +180,9 @@ void read_tolerances(DesignRequest& r, const Json& given, std::vector<FieldError
     }
     add_errors("/tolerances", std::move(faults), errors);
     if (r.plan.tolerances.empty()) return;
-    const std::size_t count = designed(given, "samples");
-    r.plan.seed = designed(given, "seed");
+    const WithDefaults field{design_fields(), given};
+    const std::size_t count = field["samples"];
+    r.plan.seed = field["seed"];
     r.plan.samples = read_indices(given, count, fmt::format("there are {} samples", count), errors);
 }
 
@@ -207,6 +204,7 @@ const char* name_in(const DesignRequest& r, Toleranced what) {
 
 DesignRequest read_design_request(const Json& object, const std::function<bool()>& gives_up) {
     const Json given = with_lists(object);
+    const WithDefaults field{design_fields(), given};
     DesignRequest r;
     r.given = object;
     std::vector<FieldError> errors;
@@ -227,7 +225,7 @@ DesignRequest read_design_request(const Json& object, const std::function<bool()
             return is ? a / (omega * omega) : a;
         };
     } else if (given.contains("initial_velocity")) plan.host.initial_velocity = r.amplitude;
-    plan.R = numbers_within(designed(given, "R"), "R", {0, 1}, errors);
+    plan.R = numbers_within(field["R"], "R", {0, 1}, errors);
     if (errors.empty()) read_host(r, given, errors);
     refuse_any(errors);
     plan.m2 = given.contains("m2")
@@ -235,8 +233,8 @@ DesignRequest read_design_request(const Json& object, const std::function<bool()
                   : std::vector{r.host.m2};
     refuse_any(errors);
     plan.host.si = r.host;
-    plan.transient_cycles = designed(given, "transient_cycles");
-    plan.cycles = designed(given, "cycles");
+    plan.transient_cycles = field["transient_cycles"];
+    plan.cycles = field["cycles"];
     if (given.contains("b")) plan.b = interval_of(given, "b", b_range, errors);
     else {
         const double most = largest_without(plan, gives_up);
@@ -247,12 +245,12 @@ DesignRequest read_design_request(const Json& object, const std::function<bool()
     refuse_any(errors);
     r.objective = given.value("objective", r.excitation->objective);
     plan.objective = enum_value<Objective>(r.objective);
-    plan.mean = designed(given, "over") == "mean";
+    plan.mean = field["over"] == "mean";
     if (r.objective == "decay_time" && plan.host.initial_velocity == 0)
         refuse("/objective", "decay_time needs initial_velocity");
-    plan.default_set = harmonic && designed(given, "starts") != "one";
-    plan.b_count = plan.b.from < plan.b.to ? designed(given, "b_count").get<int>() : 1;
-    plan.f_count = harmonic ? designed(given, "f_count").get<int>() : 1;
+    plan.default_set = harmonic && field["starts"] != "one";
+    plan.b_count = plan.b.from < plan.b.to ? field["b_count"].get<int>() : 1;
+    plan.f_count = harmonic ? field["f_count"].get<int>() : 1;
     return r;
 }
 

@@ -148,7 +148,7 @@ std::optional<State> read_perturbation(
     for (const Component& c : perturbed_components) difference.*c.value = given.value(c.name, 0.0);
     if (!random.empty())
         difference = random_difference(
-            value_or_default(find(l.table, "perturbation")->fields, given, "seed"), given["size"]);
+            WithDefaults{find(l.table, "perturbation")->fields, given}["seed"], given["size"]);
     const State perturbed = displaced(start, difference);
     if (length_of(difference_of(perturbed, start)) == 0)
         errors.push_back(

@@ -139,10 +139,6 @@ Axis read_axis(
 
 constexpr std::size_t most_axes = 3;
 
-Json field(const Json& object, const char* name) {
-    return value_or_default(sweep_fields(), object, name);
-}
-
 /// The same errors, with pointers into the request.
 void add_point_errors(
     const SweepRequest& r, std::size_t start, const std::vector<FieldError>& of_point,
@@ -272,19 +268,20 @@ void check_overlaps(const SweepRequest& r, std::vector<FieldError>& errors) {
 
 void read_options(SweepRequest& r, const Json& given, std::vector<FieldError>& errors) {
     SweepPlan& plan = r.plan;
-    const std::string section = field(given, "section"), carry = field(given, "carry_state");
-    const auto objective = enum_value<Objective>(field(given, "objective").get<std::string>());
+    const WithDefaults field{sweep_fields(), given};
+    const std::string section = field["section"], carry = field["carry_state"];
+    const auto objective = enum_value<Objective>(field["objective"].get<std::string>());
     plan.carry = enum_value<Carry>(carry);
     plan.options = {
-        .transient_cycles = field(given, "transient_cycles"),
-        .cycles = field(given, "cycles"),
-        .settle_cycles = field(given, "settle_cycles"),
+        .transient_cycles = field["transient_cycles"],
+        .cycles = field["cycles"],
+        .settle_cycles = field["settle_cycles"],
         .section = enum_value<SectionKind>(section),
-        .section_points = field(given, "section_points"),
-        .section_phase = field(given, "section_phase"),
+        .section_points = field["section_points"],
+        .section_phase = field["section_phase"],
         .carry = plan.default_set || plan.carry != Carry::none,
         .objective = objective,
-        .peaks = !field(given, "include").empty() || is_peak(objective)};
+        .peaks = !field["include"].empty() || is_peak(objective)};
     if (plan.default_set && plan.carry != Carry::none)
         errors.push_back(
             {"/carry_state", carry, Json::array({"none"}),
@@ -344,7 +341,7 @@ SweepRequest read_grid(const Json& given, std::size_t starts, std::size_t most_p
     SweepRequest r;
     r.given = given;
     for (const char* name : {"indices", "format"}) r.given.erase(name);
-    r.base = field(given, "base");
+    r.base = given.value("base", Json::object());
     read_axes(r, given["axes"], most_points, errors);
     add_errors("/base", check(sweep_base_fields(), r.base), errors);
     read_starts(r, given.value("starts", Json::array()), errors);

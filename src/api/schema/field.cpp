@@ -36,10 +36,6 @@ const Field* find(const FieldTable& table, const std::string& name) {
     return field == table.end() ? nullptr : &*field;
 }
 
-Json value_or_default(const FieldTable& table, const Json& object, const char* name) {
-    return object.contains(name) ? object[name] : find(table, name)->fallback;
-}
-
 namespace {
 
 /// Longer names are not compared, which saves time: field names are much shorter.

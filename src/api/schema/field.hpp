@@ -109,8 +109,15 @@ FieldTable operator+(FieldTable table, const FieldTable& more);
 /// The field of this name; null if the table has none.
 const Field* find(const FieldTable& table, const std::string& name);
 
-/// The value of a field of the table in an object, otherwise the table's default.
-Json value_or_default(const FieldTable& table, const Json& object, const char* name);
+/// The fields of an object, with the defaults of a table for those that it lacks. Refers to both.
+struct WithDefaults {
+    const FieldTable& table;
+    const Json& object;
+
+    Json operator[](const char* name) const {
+        return object.contains(name) ? object[name] : find(table, name)->fallback;
+    }
+};
 
 /// "; did you mean NAME?" for the name, of those known, that a mistyped name probably stands for;
 /// empty if none is similar. Names and table must not be empty.
