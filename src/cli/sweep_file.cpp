@@ -36,6 +36,44 @@ void add_point(
                 from_other_file ? "another file" : fmt::format("line {}", there->second.number)));
 }
 
+struct MergeOptions {
+    std::vector<std::string> inputs;
+    std::string output;
+};
+
+/// Adds a shard's points. Throws std::runtime_error if they contradict those of earlier shards.
+void add(SweepFile& all, const std::string& path, const std::string& first_path) {
+    const SweepFile part = parse_sweep_file(read_file(path), path, LineChecks::full);
+    if (part.start.empty()) throw std::runtime_error(path + " is empty");
+    if (all.start.empty()) all.start = part.start;
+    if (part.start != all.start)
+        throw std::runtime_error(fmt::format(
+            "{} belongs to another sweep than {}: its first line differs", path, first_path));
+    for (const auto& [index, line] : part.points) add_point(all, line, index, path, true);
+}
+
+int merge(const MergeOptions& o) {
+    SweepFile all;
+    for (const std::string& path : o.inputs) add(all, path, o.inputs[0]);
+    const api::SweepRequest request = request_of(all, o.inputs[0]);
+    if (request.basins)
+        throw std::runtime_error(
+            "basins of shards are not merged, since their last line needs all starts: put the "
+            "lines of points into one file and complete it with vines basins --resume");
+    const std::size_t points = request.plan.grid.lines();
+    if (all.points.size() < points) {
+        std::size_t first = 0;
+        while (all.points.contains(first)) ++first;
+        print_message(fmt::format(
+            "{} of {} points are missing, the first is {}: a shard is not complete or was not "
+            "given",
+            points - all.points.size(), points, first));
+        return incomplete;
+    }
+    write_all(o.output, all.text(request));
+    return complete;
+}
+
 }  // namespace
 
 void fail_in_line(const std::string& name, long number, const std::string& fault) {
@@ -86,48 +124,6 @@ api::SweepRequest request_of(const SweepFile& file, const std::string& name) {
         fail_in_line(name, 1, std::string("its request is invalid: ") + problem.what());
     }
 }
-
-namespace {
-
-struct MergeOptions {
-    std::vector<std::string> inputs;
-    std::string output;
-};
-
-/// Adds a shard's points. Throws std::runtime_error if they contradict those of earlier shards.
-void add(SweepFile& all, const std::string& path, const std::string& first_path) {
-    const SweepFile part = parse_sweep_file(read_file(path), path, LineChecks::full);
-    if (part.start.empty()) throw std::runtime_error(path + " is empty");
-    if (all.start.empty()) all.start = part.start;
-    if (part.start != all.start)
-        throw std::runtime_error(fmt::format(
-            "{} belongs to another sweep than {}: its first line differs", path, first_path));
-    for (const auto& [index, line] : part.points) add_point(all, line, index, path, true);
-}
-
-int merge(const MergeOptions& o) {
-    SweepFile all;
-    for (const std::string& path : o.inputs) add(all, path, o.inputs[0]);
-    const api::SweepRequest request = request_of(all, o.inputs[0]);
-    if (request.basins)
-        throw std::runtime_error(
-            "basins of shards are not merged, since their last line needs all starts: put the "
-            "lines of points into one file and complete it with vines basins --resume");
-    const std::size_t points = request.plan.grid.lines();
-    if (all.points.size() < points) {
-        std::size_t first = 0;
-        while (all.points.contains(first)) ++first;
-        print_message(fmt::format(
-            "{} of {} points are missing, the first is {}: a shard is not complete or was not "
-            "given",
-            points - all.points.size(), points, first));
-        return incomplete;
-    }
-    write_all(o.output, all.text(request));
-    return complete;
-}
-
-}  // namespace
 
 Command add_merge(CLI::App& app) {
     const auto options = std::make_shared<MergeOptions>();

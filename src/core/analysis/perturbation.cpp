@@ -23,71 +23,6 @@ Eigen::Vector4d carried_over(
     return d;
 }
 
-}  // namespace
-
-State random_difference(std::uint64_t seed, double size) {
-    std::mt19937_64 engine(seed);
-    for (;;) {
-        State s;
-        for (double* v : {&s.x_dot, &s.x, &s.y_dot, &s.y}) *v = uniform(engine, -1, 1);
-        const double length = length_of(s);
-        if (length > 1 || length < least_drawn) continue;
-        for (double* v : {&s.x_dot, &s.x, &s.y_dot, &s.y}) *v *= size / length;
-        return s;
-    }
-}
-
-double length_of(const State& d) {
-    return std::sqrt(d.x_dot * d.x_dot + d.x * d.x + d.y_dot * d.y_dot + d.y * d.y);
-}
-
-void ComparedRun::on_stretch(const Stretch& stretch) {
-    const auto deviation_after = [&](double s) {
-        return carried_over(
-            stretch.flow, stretch.sticking_side != 0, s, parameters_.epsilon, deviation_);
-    };
-    if (step_ > 0) series_.on_stretch(stretch);
-    for (std::size_t i = tangent.size(); i < series().tau.size(); ++i)
-        tangent.push_back(deviation_after(std::max(0.0, series().tau[i] - stretch.tau)).norm());
-    deviation_ = deviation_after(stretch.duration);
-}
-
-void ComparedRun::on_impact(const Impact& i) {
-    add(
-        {.tau = i.tau,
-         .side = i.side,
-         .stick = false,
-         .pressed = i.side * i.x_ddot_before > 0,
-         .release = i.tau,
-         .before = {i.x, i.x_dot_before, i.sin_theta, i.cos_theta},
-         .y_dot_before = i.y_dot_before,
-         .deviation = state_of(deviation_)});
-    deviation_ = saltation(parameters_, i).times(deviation_);  // (26)
-}
-
-double ComparedRun::look_ahead(const Outcome& outcome) {
-    if (is_cut_) return contacts.end()[-most_ahead].tau;
-    ComparedRun ahead(parameters_, 0, {});
-    simulate(
-        parameters_, outcome.state,
-        {.tau_end = outcome.tau + parameters_.cycle(),
-         .max_impacts = most_ahead,
-         .tau_start = outcome.tau},
-        {&ahead});
-    auto from = ahead.contacts.begin();
-    // A sticking phase that spans the end is recorded by both runs.
-    const bool sticking =
-        !contacts.empty() && contacts.back().stick && contacts.back().release >= outcome.tau;
-    if (sticking && from != ahead.contacts.end() && from->stick && from->tau <= outcome.tau) {
-        contacts.back().release = from->release;
-        ++from;
-    }
-    contacts.insert(contacts.end(), from, ahead.contacts.end());
-    return outcome.tau;
-}
-
-namespace {
-
 /// Interval in which one run has had a contact that the other has not had yet.
 struct ContactGap {
     double from, to;
@@ -266,6 +201,67 @@ void keep_common(Series& s, const Series& reference) {
 }
 
 }  // namespace
+
+State random_difference(std::uint64_t seed, double size) {
+    std::mt19937_64 engine(seed);
+    for (;;) {
+        State s;
+        for (double* v : {&s.x_dot, &s.x, &s.y_dot, &s.y}) *v = uniform(engine, -1, 1);
+        const double length = length_of(s);
+        if (length > 1 || length < least_drawn) continue;
+        for (double* v : {&s.x_dot, &s.x, &s.y_dot, &s.y}) *v *= size / length;
+        return s;
+    }
+}
+
+double length_of(const State& d) {
+    return std::sqrt(d.x_dot * d.x_dot + d.x * d.x + d.y_dot * d.y_dot + d.y * d.y);
+}
+
+void ComparedRun::on_stretch(const Stretch& stretch) {
+    const auto deviation_after = [&](double s) {
+        return carried_over(
+            stretch.flow, stretch.sticking_side != 0, s, parameters_.epsilon, deviation_);
+    };
+    if (step_ > 0) series_.on_stretch(stretch);
+    for (std::size_t i = tangent.size(); i < series().tau.size(); ++i)
+        tangent.push_back(deviation_after(std::max(0.0, series().tau[i] - stretch.tau)).norm());
+    deviation_ = deviation_after(stretch.duration);
+}
+
+void ComparedRun::on_impact(const Impact& i) {
+    add(
+        {.tau = i.tau,
+         .side = i.side,
+         .stick = false,
+         .pressed = i.side * i.x_ddot_before > 0,
+         .release = i.tau,
+         .before = {i.x, i.x_dot_before, i.sin_theta, i.cos_theta},
+         .y_dot_before = i.y_dot_before,
+         .deviation = state_of(deviation_)});
+    deviation_ = saltation(parameters_, i).times(deviation_);  // (26)
+}
+
+double ComparedRun::look_ahead(const Outcome& outcome) {
+    if (is_cut_) return contacts.end()[-most_ahead].tau;
+    ComparedRun ahead(parameters_, 0, {});
+    simulate(
+        parameters_, outcome.state,
+        {.tau_end = outcome.tau + parameters_.cycle(),
+         .max_impacts = most_ahead,
+         .tau_start = outcome.tau},
+        {&ahead});
+    auto from = ahead.contacts.begin();
+    // A sticking phase that spans the end is recorded by both runs.
+    const bool sticking =
+        !contacts.empty() && contacts.back().stick && contacts.back().release >= outcome.tau;
+    if (sticking && from != ahead.contacts.end() && from->stick && from->tau <= outcome.tau) {
+        contacts.back().release = from->release;
+        ++from;
+    }
+    contacts.insert(contacts.end(), from, ahead.contacts.end());
+    return outcome.tau;
+}
 
 Perturbation perturbation_of(
     const Parameters& p, const State& start, const State& difference, ComparedRun& reference,

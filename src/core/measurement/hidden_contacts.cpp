@@ -31,58 +31,6 @@ Load load_of(const LoadResponse::Excess& excess, const UnknownValues& v, double 
     return {faster * step, nodes};
 }
 
-}  // namespace
-
-IdentifiedSystem::IdentifiedSystem(
-    const Parameters& p, const UnknownValues& v, double tau_zero, const MeasuredLoad* load)
-    : values(v),
-      flows(v, false, p.epsilon, load),
-      own(p),
-      faster(std::sqrt(v[Unknown::stiffness])),
-      tau_zero(tau_zero) {
-    own.Omega /= faster;
-    own.lambda = std::max(0.0, v[Unknown::damping] / (faster * p.epsilon));
-    own.G = G_of(own, v[Unknown::force_sin], v[Unknown::force_cos]) / (faster * faster);
-    own.friction /= faster * faster;
-    if (!flows.excess) return;
-    own.G = 0;
-    own.load = std::make_shared<const Load>(load_of(*flows.excess, v, faster));
-}
-
-// simulate() counts the forcing's phase from eq. (3); the measurement has its own phase.
-double IdentifiedSystem::start_of(double tau) const {
-    if (flows.excess) return faster * (tau - tau_zero - flows.excess->begin);
-    return std::fmod(
-        faster * (tau - tau_zero) + (flows.free.phase - own.phi()) / own.Omega, own.cycle());
-}
-
-Outcome IdentifiedSystem::run(
-    double tau, const State& s, Limits limits, std::initializer_list<Observer*> observers) const {
-    limits.tau_start = start_of(tau);
-    limits.tau_end = limits.tau_start + faster * (limits.tau_end - tau);
-    return simulate(own, {s.x_dot / faster, s.x, s.y_dot / faster, s.y}, limits, observers);
-}
-
-OscillatorMotion IdentifiedSystem::free_motion(
-    const Release& from, int from_side, double tau, int to_side) const {
-    const double pull = faster * faster * own.epsilon * own.friction;
-    const FittedInterval interval{
-        from.tau, from.x, from.x_dot, false, Sliding::between(from_side, to_side), pull};
-    return IntervalMotion(flows.free, values, tau_zero, interval).at(tau - from.tau, false).value;
-}
-
-Impact IdentifiedSystem::measured(Impact i, double tau) const {
-    i.tau = measured_time(i.tau, tau);
-    for (double* v :
-         {&i.x_dot_before, &i.x_dot_after, &i.y_dot_before, &i.y_dot_after,
-          &i.relative_speed_before, &i.relative_speed_after})
-        *v *= faster;
-    i.x_ddot_before *= faster * faster;
-    return i;
-}
-
-namespace {
-
 // Largest distance between an impact of the run and the measured one: tau, plus this share of time.
 constexpr double same_moment = 0.1, same_share = 0.01;
 constexpr double same_jump = 0.2;  // tolerance of the jump of x', relative
@@ -303,6 +251,54 @@ struct HiddenContactSearch {
 };
 
 }  // namespace
+
+IdentifiedSystem::IdentifiedSystem(
+    const Parameters& p, const UnknownValues& v, double tau_zero, const MeasuredLoad* load)
+    : values(v),
+      flows(v, false, p.epsilon, load),
+      own(p),
+      faster(std::sqrt(v[Unknown::stiffness])),
+      tau_zero(tau_zero) {
+    own.Omega /= faster;
+    own.lambda = std::max(0.0, v[Unknown::damping] / (faster * p.epsilon));
+    own.G = G_of(own, v[Unknown::force_sin], v[Unknown::force_cos]) / (faster * faster);
+    own.friction /= faster * faster;
+    if (!flows.excess) return;
+    own.G = 0;
+    own.load = std::make_shared<const Load>(load_of(*flows.excess, v, faster));
+}
+
+// simulate() counts the forcing's phase from eq. (3); the measurement has its own phase.
+double IdentifiedSystem::start_of(double tau) const {
+    if (flows.excess) return faster * (tau - tau_zero - flows.excess->begin);
+    return std::fmod(
+        faster * (tau - tau_zero) + (flows.free.phase - own.phi()) / own.Omega, own.cycle());
+}
+
+Outcome IdentifiedSystem::run(
+    double tau, const State& s, Limits limits, std::initializer_list<Observer*> observers) const {
+    limits.tau_start = start_of(tau);
+    limits.tau_end = limits.tau_start + faster * (limits.tau_end - tau);
+    return simulate(own, {s.x_dot / faster, s.x, s.y_dot / faster, s.y}, limits, observers);
+}
+
+OscillatorMotion IdentifiedSystem::free_motion(
+    const Release& from, int from_side, double tau, int to_side) const {
+    const double pull = faster * faster * own.epsilon * own.friction;
+    const FittedInterval interval{
+        from.tau, from.x, from.x_dot, false, Sliding::between(from_side, to_side), pull};
+    return IntervalMotion(flows.free, values, tau_zero, interval).at(tau - from.tau, false).value;
+}
+
+Impact IdentifiedSystem::measured(Impact i, double tau) const {
+    i.tau = measured_time(i.tau, tau);
+    for (double* v :
+         {&i.x_dot_before, &i.x_dot_after, &i.y_dot_before, &i.y_dot_after,
+          &i.relative_speed_before, &i.relative_speed_after})
+        *v *= faster;
+    i.x_ddot_before *= faster * faster;
+    return i;
+}
 
 std::vector<HiddenContacts> hidden_contacts(
     const IdentifiedSystem& system, const HiddenContactLimits& limits,

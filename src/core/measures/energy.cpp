@@ -16,6 +16,24 @@ constexpr double time_rounding = 1e-15;
 // A step or a cycle can end with a stretch, up to this much of tau.
 constexpr double step_rounding = 1e-9;
 
+/// Time after tau_start at which a non-increasing energy reaches `level`; bisects 0 to `high`.
+template <class EnergyAt>
+double crossing_time(EnergyAt energy_at, double level, double high, double tau_start) {
+    double low = 0;
+    while (high - low > time_rounding * (tau_start + high)) {
+        const double middle = 0.5 * (low + high);
+        if (middle <= low || middle >= high) break;
+        (energy_at(middle) > level ? low : high) = middle;
+    }
+    return tau_start + high;
+}
+
+struct DecayLevel {
+    std::optional<double> DecayTimes::* time;
+    double fraction;  ///< of the energy at the start
+};
+constexpr DecayLevel decay_levels[] = {{&DecayTimes::half, 0.5}, {&DecayTimes::tenth, 0.1}};
+
 }  // namespace
 
 double energy_of(const Parameters& p, const State& s) {
@@ -251,28 +269,6 @@ Unattached unattached(
             : 0,
         peak_beyond(0, flow, begin, duration), free_amplitude(p)};
 }
-
-namespace {
-
-/// Time after tau_start at which a non-increasing energy reaches `level`; bisects 0 to `high`.
-template <class EnergyAt>
-double crossing_time(EnergyAt energy_at, double level, double high, double tau_start) {
-    double low = 0;
-    while (high - low > time_rounding * (tau_start + high)) {
-        const double middle = 0.5 * (low + high);
-        if (middle <= low || middle >= high) break;
-        (energy_at(middle) > level ? low : high) = middle;
-    }
-    return tau_start + high;
-}
-
-struct DecayLevel {
-    std::optional<double> DecayTimes::* time;
-    double fraction;  ///< of the energy at the start
-};
-constexpr DecayLevel decay_levels[] = {{&DecayTimes::half, 0.5}, {&DecayTimes::tenth, 0.1}};
-
-}  // namespace
 
 void Decay::on_stretch(const Stretch& stretch) {
     const double from = tau_start_ - stretch.tau;

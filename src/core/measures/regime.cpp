@@ -340,6 +340,18 @@ RegimeType type_of(const Regime& r) {
     return r.longest_synchronised >= shortest_stretch ? RegimeType::II : RegimeType::I;
 }
 
+VerdictReason undecided_by(const Capture& capture) {
+    return capture.chaotic_before ? VerdictReason::transient : VerdictReason::not_known_before;
+}
+
+VerdictReason undecided_by(const Growth& g) {
+    const double error = student_three_sigma * g.standard_error[0];
+    if (std::isnan(error)) return VerdictReason::no_error;
+    if (g.lambda1 < -error) return VerdictReason::negative;
+    if (g.lambda1 <= error) return VerdictReason::within_error;
+    return g.whole <= least_growth ? VerdictReason::little_growth : VerdictReason::algebraic_growth;
+}
+
 }  // namespace
 
 // The energy x^2 + x'^2 of the deviation from the steady motion cannot grow.
@@ -389,22 +401,6 @@ Regime regime_of(
     r.type = type_of(r);
     return r;
 }
-
-namespace {
-
-VerdictReason undecided_by(const Capture& capture) {
-    return capture.chaotic_before ? VerdictReason::transient : VerdictReason::not_known_before;
-}
-
-VerdictReason undecided_by(const Growth& g) {
-    const double error = student_three_sigma * g.standard_error[0];
-    if (std::isnan(error)) return VerdictReason::no_error;
-    if (g.lambda1 < -error) return VerdictReason::negative;
-    if (g.lambda1 <= error) return VerdictReason::within_error;
-    return g.whole <= least_growth ? VerdictReason::little_growth : VerdictReason::algebraic_growth;
-}
-
-}  // namespace
 
 Judgement judge(const Growth& g, const Regime& r, double tau_start) {
     if (!r.forced) return {Verdict::none, VerdictReason::free_decay};

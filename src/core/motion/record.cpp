@@ -12,6 +12,36 @@ constexpr std::size_t longest_table = 64;
 // Largest rounding of a sample time that two Taylor terms correct; their error is its square.
 constexpr double most_rounding = 1e-9;
 
+/// Threshold of kappa = |x''/(x'- - y'-)| above which an impact counts as nearly tangent. The
+/// condition number of M is about 14 kappa^2 at R = .6: an ulp becomes a relative error of 1e-8.
+constexpr double nearly_tangent_ratio = 1800;
+
+// Length of the longest list that the service makes; longer ones are reallocated.
+constexpr std::size_t most_reserved = 2000000;
+
+/// Impacts of a chatter are slow as well, but neighbouring motions have them too.
+bool is_nearly_tangent(const Impact& i) {
+    return !(i.side * i.x_ddot_before > 0) &&
+           std::abs(i.x_ddot_before) > nearly_tangent_ratio * std::abs(i.relative_speed_before);
+}
+
+class Repetition : public Observer {
+public:
+    Repetition(const ImpactRange& range, const std::function<void(const Impact&)>& take)
+        : range_(range),
+          take_(take) {}
+    void on_impact(const Impact& impact) override {
+        const long number = seen_++ - range_.first;
+        if (number >= 0 && number < range_.count) take_(impact);
+    }
+    bool complete() const { return seen_ >= range_.first + range_.count; }
+
+private:
+    const ImpactRange range_;
+    const std::function<void(const Impact&)>& take_;
+    long seen_ = 0;
+};
+
 }  // namespace
 
 void SampledFlow::begin(const Flow& flow, const Oscillation& start) {
@@ -104,40 +134,6 @@ void ContactStream::flush_contacts() {
     for (const CountedContact& contact : held_) on_contact(contact);
     held_.clear();
 }
-
-namespace {
-
-/// Threshold of kappa = |x''/(x'- - y'-)| above which an impact counts as nearly tangent. The
-/// condition number of M is about 14 kappa^2 at R = .6: an ulp becomes a relative error of 1e-8.
-constexpr double nearly_tangent_ratio = 1800;
-
-// Length of the longest list that the service makes; longer ones are reallocated.
-constexpr std::size_t most_reserved = 2000000;
-
-/// Impacts of a chatter are slow as well, but neighbouring motions have them too.
-bool is_nearly_tangent(const Impact& i) {
-    return !(i.side * i.x_ddot_before > 0) &&
-           std::abs(i.x_ddot_before) > nearly_tangent_ratio * std::abs(i.relative_speed_before);
-}
-
-class Repetition : public Observer {
-public:
-    Repetition(const ImpactRange& range, const std::function<void(const Impact&)>& take)
-        : range_(range),
-          take_(take) {}
-    void on_impact(const Impact& impact) override {
-        const long number = seen_++ - range_.first;
-        if (number >= 0 && number < range_.count) take_(impact);
-    }
-    bool complete() const { return seen_ >= range_.first + range_.count; }
-
-private:
-    const ImpactRange range_;
-    const std::function<void(const Impact&)>& take_;
-    long seen_ = 0;
-};
-
-}  // namespace
 
 ImpactCollector::ImpactCollector(std::size_t most_listed, std::size_t most_kept)
     : most_listed_(most_listed),

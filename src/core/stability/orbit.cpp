@@ -120,50 +120,6 @@ std::optional<State> solve_return(
     return std::nullopt;
 }
 
-}  // namespace
-
-double time_far_from_events(const Parameters& p, const State& start, const StopRequest& stop) {
-    const double cycle = p.cycle();
-    LongestFlight longest(0.5 * cycle);
-    follow(p, start, 0, cycle, stop, {&longest});
-    longest.flight_to(cycle);
-    return longest.middle;
-}
-
-State scale_of(const Parameters& p, std::span<const State> states) {
-    State scale{least_scale * p.b, least_scale * p.b, least_ball_speed * p.b, p.b};
-    for (const State& s : states)
-        scale = {
-            std::max(scale.x_dot, std::abs(s.x_dot)), std::max(scale.x, std::abs(s.x)),
-            std::max(scale.y_dot, std::abs(s.y_dot)), scale.y};
-    // At a given phase of the forcing either can pass through zero.
-    scale.x = scale.x_dot = std::max(scale.x, scale.x_dot);
-    return scale;
-}
-
-double distance(const State& a, const State& b, const State& scale) {
-    return (vector_of(a) - vector_of(b)).cwiseQuotient(vector_of(scale)).cwiseAbs().maxCoeff();
-}
-
-Exponents PeriodicOrbit::exponents(const Parameters& p) const {
-    Exponents lambda;
-    // A multiplier that is zero up to rounding is zero: the orbit sticks, or R = 0.
-    for (int k = 0; k < 4; ++k)
-        lambda[k] = elementary::log(elementary::modulus(multipliers[k])) / (cycles * p.cycle());
-    return lambda;
-}
-
-std::optional<State> follow(
-    const Parameters& p, const State& start, double tau, double duration, const StopRequest& stop,
-    std::initializer_list<Observer*> observers) {
-    const Outcome outcome =
-        simulate(p, start, {tau + duration, most_orbit_impacts, stop, tau}, observers);
-    if (outcome.reason != End::tau_end) return std::nullopt;
-    return outcome.state;
-}
-
-namespace {
-
 /// Sets the smallest period and the results of the monodromy matrix over it; false if stopped.
 bool find_smallest_period(
     const Parameters& p, int cycles, const State& scale, const StopRequest& stop,
@@ -215,27 +171,6 @@ bool is_symmetric(
     return half && distance(state_of(-vector_of(*half)), orbit.state, scale) < symmetric_within;
 }
 
-}  // namespace
-
-std::optional<PeriodicOrbit> find_orbit(
-    const Parameters& p, const State& at_whole_cycle, int cycles, const State& scale, double reach,
-    const StopRequest& stop) {
-    const double tau = time_far_from_events(p, at_whole_cycle, stop);
-    const auto guess = follow(p, at_whole_cycle, 0, tau, stop);
-    if (!guess) return std::nullopt;
-    const auto found = solve_return(p, *guess, tau, cycles, scale, reach, stop);
-    if (!found) return std::nullopt;
-    PeriodicOrbit orbit{};
-    orbit.tau = tau;
-    orbit.state = *found;
-    if (!find_smallest_period(p, cycles, scale, stop, orbit) || !count_period(p, stop, orbit))
-        return std::nullopt;
-    orbit.symmetric = is_symmetric(p, orbit, scale, stop);
-    return orbit;
-}
-
-namespace {
-
 /// z^n, n > 0, by squaring.
 std::complex<double> power(std::complex<double> z, int n) {
     std::complex<double> result = 1;
@@ -282,6 +217,63 @@ constexpr double linear_return_share = 0.2;
 constexpr double least_contraction = 1e-9;
 
 }  // namespace
+
+double time_far_from_events(const Parameters& p, const State& start, const StopRequest& stop) {
+    const double cycle = p.cycle();
+    LongestFlight longest(0.5 * cycle);
+    follow(p, start, 0, cycle, stop, {&longest});
+    longest.flight_to(cycle);
+    return longest.middle;
+}
+
+State scale_of(const Parameters& p, std::span<const State> states) {
+    State scale{least_scale * p.b, least_scale * p.b, least_ball_speed * p.b, p.b};
+    for (const State& s : states)
+        scale = {
+            std::max(scale.x_dot, std::abs(s.x_dot)), std::max(scale.x, std::abs(s.x)),
+            std::max(scale.y_dot, std::abs(s.y_dot)), scale.y};
+    // At a given phase of the forcing either can pass through zero.
+    scale.x = scale.x_dot = std::max(scale.x, scale.x_dot);
+    return scale;
+}
+
+double distance(const State& a, const State& b, const State& scale) {
+    return (vector_of(a) - vector_of(b)).cwiseQuotient(vector_of(scale)).cwiseAbs().maxCoeff();
+}
+
+Exponents PeriodicOrbit::exponents(const Parameters& p) const {
+    Exponents lambda;
+    // A multiplier that is zero up to rounding is zero: the orbit sticks, or R = 0.
+    for (int k = 0; k < 4; ++k)
+        lambda[k] = elementary::log(elementary::modulus(multipliers[k])) / (cycles * p.cycle());
+    return lambda;
+}
+
+std::optional<State> follow(
+    const Parameters& p, const State& start, double tau, double duration, const StopRequest& stop,
+    std::initializer_list<Observer*> observers) {
+    const Outcome outcome =
+        simulate(p, start, {tau + duration, most_orbit_impacts, stop, tau}, observers);
+    if (outcome.reason != End::tau_end) return std::nullopt;
+    return outcome.state;
+}
+
+std::optional<PeriodicOrbit> find_orbit(
+    const Parameters& p, const State& at_whole_cycle, int cycles, const State& scale, double reach,
+    const StopRequest& stop) {
+    const double tau = time_far_from_events(p, at_whole_cycle, stop);
+    const auto guess = follow(p, at_whole_cycle, 0, tau, stop);
+    if (!guess) return std::nullopt;
+    const auto found = solve_return(p, *guess, tau, cycles, scale, reach, stop);
+    if (!found) return std::nullopt;
+    PeriodicOrbit orbit{};
+    orbit.tau = tau;
+    orbit.state = *found;
+    if (!find_smallest_period(p, cycles, scale, stop, orbit) || !count_period(p, stop, orbit))
+        return std::nullopt;
+    orbit.symmetric = is_symmetric(p, orbit, scale, stop);
+    return orbit;
+}
 
 bool attracts(
     const Parameters& p, const PeriodicOrbit& orbit, const State& at_whole_cycle,

@@ -43,6 +43,16 @@ std::array<double, error_steps> even_steps(
     return steps;
 }
 
+/// Probability that Student's distribution with seven degrees of freedom exceeds t > 0.
+double student_tail(double t) {
+    const double angle = elementary::atan2(t, std::sqrt(7.0)), c = elementary::cos(angle),
+                 s = elementary::sin(angle);
+    return 0.5 - (angle + s * c * (1 + c * c * (2.0 / 3 + c * c * 8.0 / 15))) / std::numbers::pi;
+}
+
+/// Probability of three standard deviations of the normal distribution, one-sided.
+constexpr double three_sigma_probability = 0.00135;
+
 }  // namespace
 
 GrowthSteps growth_steps(const ExponentHistory& h, double tau_start, std::size_t stride) {
@@ -102,20 +112,6 @@ bool can_be_quasi_periodic(const Growth& g) {
     return verdict_by_exponents(g) != Verdict::chaotic && std::abs(g.late) < least_late_growth &&
            g.late_lambda2 < -student_three_sigma;
 }
-
-namespace {
-
-/// Probability that Student's distribution with seven degrees of freedom exceeds t > 0.
-double student_tail(double t) {
-    const double angle = elementary::atan2(t, std::sqrt(7.0)), c = elementary::cos(angle),
-                 s = elementary::sin(angle);
-    return 0.5 - (angle + s * c * (1 + c * c * (2.0 / 3 + c * c * 8.0 / 15))) / std::numbers::pi;
-}
-
-/// Probability of three standard deviations of the normal distribution, one-sided.
-constexpr double three_sigma_probability = 0.00135;
-
-}  // namespace
 
 std::optional<double> chaotic_transient_end(const ExponentHistory& h, double start) {
     if (h.tau.empty()) return std::nullopt;

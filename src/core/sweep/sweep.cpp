@@ -28,39 +28,6 @@ std::size_t level_on_axis(std::size_t at, std::size_t steps) {
     return levels - std::min(levels, halvings);
 }
 
-}  // namespace
-
-std::size_t Grid::points() const {
-    std::size_t product = starts;
-    for (const std::size_t n : steps) product *= n;
-    return product;
-}
-
-Place Grid::place_of(std::size_t line) const {
-    assert(line < lines());
-    Place place{0, std::vector<std::size_t>(steps.size(), 0)};
-    auto take = [&line](std::size_t n) {
-        const std::size_t at = line % n;
-        line /= n;
-        return at;
-    };
-    const std::size_t first = reduced == 0 ? 1 : 0;
-    if (first < steps.size()) place.at[first] = take(steps[first]);
-    place.start = take(starts);
-    for (std::size_t a = first + 1; a < steps.size(); ++a)
-        if (a != reduced) place.at[a] = take(steps[a]);
-    return place;
-}
-
-std::size_t Grid::level(const Place& place) const {
-    std::size_t finest = 0;
-    for (std::size_t a = 0; a < steps.size(); ++a)
-        finest = std::max(finest, level_on_axis(place.at[a], steps[a]));
-    return finest;
-}
-
-namespace {
-
 /// Points along the inner axis, and the requested lines among them.
 struct Row {
     Place place;
@@ -280,6 +247,35 @@ struct Sweep {
 };
 
 }  // namespace
+
+std::size_t Grid::points() const {
+    std::size_t product = starts;
+    for (const std::size_t n : steps) product *= n;
+    return product;
+}
+
+Place Grid::place_of(std::size_t line) const {
+    assert(line < lines());
+    Place place{0, std::vector<std::size_t>(steps.size(), 0)};
+    auto take = [&line](std::size_t n) {
+        const std::size_t at = line % n;
+        line /= n;
+        return at;
+    };
+    const std::size_t first = reduced == 0 ? 1 : 0;
+    if (first < steps.size()) place.at[first] = take(steps[first]);
+    place.start = take(starts);
+    for (std::size_t a = first + 1; a < steps.size(); ++a)
+        if (a != reduced) place.at[a] = take(steps[a]);
+    return place;
+}
+
+std::size_t Grid::level(const Place& place) const {
+    std::size_t finest = 0;
+    for (std::size_t a = 0; a < steps.size(); ++a)
+        finest = std::max(finest, level_on_axis(place.at[a], steps[a]));
+    return finest;
+}
 
 std::size_t SweepPlan::runs() const {
     if (!by_rows()) return lines.size();
