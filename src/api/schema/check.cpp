@@ -194,7 +194,7 @@ std::vector<std::size_t> read_indices(
     }
     indices = object["indices"].get<std::vector<std::size_t>>();
     std::ranges::sort(indices);
-    indices.erase(std::ranges::unique(indices).begin(), indices.end());
+    indices.erase(std::unique(indices.begin(), indices.end()), indices.end());
     if (!indices.empty() && indices.back() >= count)
         errors.push_back(
             {"/indices", indices.back(), Json::array({0, count - 1}),
