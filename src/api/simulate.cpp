@@ -80,9 +80,10 @@ std::size_t expected_bytes(const SimulateRequest& r) {
     const AnswerSize size = size_of(r);
     const double samples = w.samples_per_cycle * (w.tau_end / w.parameters.cycle() + 1);
     double bytes = size.point * std::min(samples, static_cast<double>(w.most_points));
-    const auto impacts = std::min(impacts_expected(w), w.most_listed);
-    if (w.parts.impacts && impacts <= w.most_kept)
-        bytes += size.impact * static_cast<double>(impacts) / 2;  // two per cycle are usual
+    const auto expected = impacts_expected(w);
+    const auto usual = std::min(expected / 2, w.most_listed);  // two per cycle
+    if (w.parts.impacts && std::min(expected, w.most_listed) <= w.most_kept)
+        bytes += size.impact * static_cast<double>(usual);
     return static_cast<std::size_t>(bytes);
 }
 
