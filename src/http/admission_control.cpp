@@ -300,7 +300,7 @@ bool AdmissionControl::make_space(Queue& queue, const std::string& client, std::
     };
     if (fits(queue.size(), 0)) return true;
     const auto last = queue.pop_for(
-        client, [&](const Waiter* body) { return fits(queue.size() - 1, body->bytes); });
+        client, [&](const Waiter* body) { return fits(queue.size() - 1, body->bytes); }, bytes);
     if (last) (*last)->set(&Waiter::displaced);
     return last.has_value();
 }
@@ -329,8 +329,8 @@ AdmissionControl::SizePermit AdmissionControl::acquire_body(
     const std::function<bool()>& gives_up) {
     if (bytes <= immediate_body) return {&immediate_, [](BySize*) {}};
     std::unique_lock lock(mutex_);
-    BySize& large = is_record ? large_records_ : large_bodies_;
-    BySize& bodies = bytes > bodies_at_once ? large : is_record ? lesser_records_ : lesser_bodies_;
+    BySize& lesser = is_record ? lesser_records_ : lesser_bodies_;
+    BySize& bodies = bytes <= lesser.at_once ? lesser : is_record ? large_records_ : large_bodies_;
     if (!make_space(bodies.waiting, client, bytes)) return nullptr;
     return acquire_by_size(lock, bodies, client, bytes, gives_up);
 }

@@ -16,8 +16,11 @@ constexpr std::size_t body_step = 65536;
 // Longest wait of a body for memory: while it is scarce answers must be read in 30 s.
 constexpr auto memory_time = 35s;
 
-// Bodies up to this size, in bytes, are accepted even when the memory budget is used up.
-constexpr std::size_t small_body = 65536;
+// Bodies up to this size, in bytes, are accepted even when the memory budget is used up; as much is
+// read of a larger one before it is known whether there is memory.
+constexpr std::size_t small_body = 4096;
+// Larger ones wait for memory only before they are read: parts of many could wait for each other.
+constexpr std::size_t usual_body = 4 << 20;
 
 // Lingering close: longest time, and most bytes discarded.
 constexpr auto lingering_time = 3s;
@@ -59,7 +62,8 @@ Connection::Progress Connection::advance() try {
         if (progress == Progress::complete) request_->since = Clock::now();
         if (progress != Progress::waits || taken >= max_read || awaits_memory_) return progress;
         if (half_closed_) return Progress::ended;
-        const std::optional<std::size_t> size = receive(socket(), piece.data(), piece.size());
+        const std::size_t most = request_ ? piece.size() : small_body;
+        const std::optional<std::size_t> size = receive(socket(), piece.data(), most);
         if (!size) return Progress::waits;
         half_closed_ = *size == 0;
         if (bytes_.empty() && !half_closed_ && !request_) wait_for_head(head_time);
@@ -81,11 +85,12 @@ Connection::Progress Connection::read_request() {
     }
     if (!request_) return Progress::waits;
     const auto is_whole = [this] { return request_->refused || bytes_.size() >= body_size(); };
-    // Large bodies only: the number of connections bounds the small ones.
+    // The number of connections bounds the small ones.
     if (!is_whole() && body_size() > small_body) {
         const std::size_t held = bytes_.capacity();
         const bool lacks = memory_.is_full_for(client(), {std::max(body_size(), held) - held});
-        const bool waited = std::exchange(awaits_memory_, lacks && bytes_.size() <= small_body);
+        const bool may_wait = bytes_.size() <= small_body || body_size() <= usual_body;
+        const bool waited = std::exchange(awaits_memory_, lacks && may_wait);
         if (lacks && !awaits_memory_) request_->refused = memory_refusal();
         if (awaits_memory_ && !waited) deadline_ = Clock::now() + memory_time;
         if (waited && !lacks) expect_more();

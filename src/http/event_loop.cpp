@@ -319,7 +319,10 @@ void EventLoop::expire() {
     expire_deliveries();
     const bool scarce = memory_is_scarce();
     for (const Owned& c : connections_) {
-        if (c && c->awaits_memory()) wait_for(EPOLL_CTL_MOD, *c);
+        if (c && c->awaits_memory()) {
+            wait_for(EPOLL_CTL_MOD, *c);
+            queue(c->socket());
+        }
         if (c && !c->is_delivering() &&
             now > (c->is_closing() ? c->deadline() : std::min(c->deadline(scarce), idle_until_)))
             time_out(*c);

@@ -53,13 +53,14 @@ public:
     }
     const std::string& last_client() const { return entries_.back().client; }
     T pop_last() { return take(std::prev(entries_.end())); }
-    /// The last entry for which may(value) is true of the client that has the most of these;
-    /// nothing if this client, with one more, would not have fewer.
+    /// The last entry for which may(value) is true of the client that has the most of these, by
+    /// cost and number; nothing if this client, with one more of this cost, would not have less.
     template <class May = bool (*)(const T&)>
-    std::optional<T> pop_for(const std::string& client, const May& may = any) {
+    std::optional<T> pop_for(
+        const std::string& client, const May& may = any, std::size_t cost = 0) {
         std::map<std::string, std::size_t> counts;
-        for (const Entry& e : entries_) counts[e.client] += may(e.value);
-        const std::size_t own = counts[client] + 1;
+        for (const Entry& e : entries_) counts[e.client] += may(e.value) ? e.cost + 1 : 0;
+        const std::size_t own = counts[client] + cost + 1;
         const auto most =
             std::ranges::max_element(counts, {}, [](const auto& c) { return c.second; });
         if (most->second <= own) return std::nullopt;

@@ -33,11 +33,12 @@ public:
         Bytes bytes;
     };
     /// True if `more` bytes should not be accepted of a client. A client's share is the limit
-    /// divided by one more than the clients that wait or hold a 4096th of it. Within it an eighth
-    /// of the limit stays free, for those who hold up to a 32nd; beyond it also two shares, or as
-    /// much as the client holds, and what others wait for. More than a quarter of the limit counts
-    /// as a quarter. Bytes held for long have half of the budget, of which a client leaves as much
-    /// free as it holds.
+    /// divided by one more than the clients that wait or hold a 4096th of it. Four times what the
+    /// client then holds stays free, at most an eighth of the limit, for those who hold less;
+    /// beyond its share and a 32nd also two shares, or as much as the client holds, and what others
+    /// wait for. More than a quarter of the limit counts as a quarter. Bytes held for long have
+    /// half of the budget, of which a client leaves as much free as it holds, and four times what
+    /// it then holds up to a 32nd of the limit.
     bool is_full_for(const std::string& client, Bytes more) {
         const std::lock_guard lock(mutex_);
         return is_lacking(client, more, due(client, more, Clock::now()));
@@ -116,10 +117,12 @@ private:
         const std::size_t needed = std::min(more.all, limit_ / 4), share = limit_ / sharing;
         const std::size_t total = own.all + needed, beyond = std::max(own.all, 2 * share) + claimed;
         const std::size_t kept =
-            total <= limit_ / 32 ? 0 : limit_ / 8 + (total <= share ? 0 : beyond);
+            std::min(4 * total, limit_ / 8) + (total <= std::max(share, limit_ / 32) ? 0 : beyond);
+        const std::size_t kept_for_long =
+            std::max(own.for_long, std::min(4 * (own.for_long + more.for_long), limit_ / 32));
         const bool is_full_now =
             needed + held_ + kept >= limit_ ||
-            (more.for_long > 0 && own.for_long + more.for_long + held_for_long_ > limit_ / 2);
+            (more.for_long > 0 && kept_for_long + more.for_long + held_for_long_ > limit_ / 2);
         if (is_full() || (is_full_now && own.all < share)) last_full_ = Clock::now();
         return is_full_now;
     }

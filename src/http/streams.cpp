@@ -278,11 +278,12 @@ Response stream_lines(
     auto& running = is_shared ? streams[std::string(asked.head.path()) + asked.body] : own;
     auto lines = running.lock();
     if (lines && !lines->is_cut_off()) {
-        // One client has at most half of the places, a second one a quarter, and so on.
+        // One client has at most half of the places, a second one a quarter, and then each one.
         auto& followers = service.running->followers;
         const std::string client = asked.sender.client();
-        const std::size_t left = service.options.most_followers - followers.size();
-        if (followers.count(client) >= left) return sweep_refusal(service, true);
+        const std::size_t most = service.options.most_followers, left = most - followers.size();
+        const std::size_t own = followers.count(client);
+        if (own >= left || (own > 0 && left <= most / 4)) return sweep_refusal(service, true);
         following = {nullptr, [all = service.running, at = followers.insert(client)](void*) {
                          const std::lock_guard ending(all->mutex);
                          all->followers.erase(at);
