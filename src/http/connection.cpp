@@ -67,6 +67,11 @@ Connection::Progress Connection::advance() try {
         if (!size) return Progress::waits;
         half_closed_ = *size == 0;
         if (bytes_.empty() && !half_closed_ && !request_) wait_for_head(head_time);
+        if (request_ && bytes_.size() + *size > bytes_.capacity()) {
+            std::string larger;  // reserve() of a text that has bytes doubles its capacity
+            larger.reserve(std::min(body_size(), 2 * (bytes_.size() + *size)));
+            bytes_.swap(larger.append(bytes_));
+        }
         bytes_.append(piece.data(), *size);
         hold_received();
         if (request_ && bytes_.size() >= expected_) expect_more();

@@ -207,7 +207,7 @@ test("uploads that dribble are cut off while another waits for memory", async (t
       socket.destroy();
     });
   }
-  await until(async () => (await metric(one.url, "vines_http_held_bytes")) > 90e6);
+  await until(async () => (await metric(one.url, "vines_http_held_bytes")) > 70e6);
   const record = `{"preset": "fig20", ${" ".repeat(30 << 20)}"record": {}}`;
   const answer = await send(one.url, "/v1/identify", record, other);
   assert.equal(answer.status, 422, await answer.text()); // read, once it found memory
