@@ -18,11 +18,12 @@ StartBox box_of(const Json& box, const State& start) {
 }
 
 BasinPlan basin_plan(const SweepRequest& r, const Json& given) {
+    const WithDefaults field{basins_fields(), given};
     BasinPlan plan{
         .box = {},
         .count = r.plan.grid.starts,
-        .seed = WithDefaults{basins_fields(), given}["seed"],
-        .pairs = WithDefaults{basins_fields(), given}["pairs"],
+        .seed = field["seed"],
+        .pairs = field["pairs"],
         .values = r.axes.empty() ? std::vector<double>{0} : r.axes[0].values,
         .system_at = [systems = r.systems](double value) { return systems->at_value(value); }};
     for (const double value : plan.values) {

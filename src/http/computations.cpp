@@ -63,9 +63,6 @@ constexpr std::size_t max_hash = 256;
 // fraction is left to finish the answer.
 constexpr std::chrono::duration<double> age_in_need(5);
 
-// Longest wait for memory: while it is scarce answers must be read in 30 s.
-constexpr std::chrono::seconds longest_wait_for_memory(35);
-
 /// Ends the request of a client that has left; only the log shows its status.
 [[noreturn]] void throw_client_left() { throw Problem(499, "the client has left"); }
 

@@ -13,8 +13,6 @@ constexpr auto head_time = 10s;
 // Time for each further step of a body, and of a large one while memory is scarce.
 constexpr auto body_time = 10s, scarce_body_time = 2s;
 constexpr std::size_t body_step = 65536;
-// Longest wait of a body for memory: while it is scarce answers must be read in 30 s.
-constexpr auto memory_time = 35s;
 
 // Bodies up to this size, in bytes, are accepted even when the memory budget is used up; as much is
 // read of a larger one before it is known whether there is memory.
@@ -97,7 +95,7 @@ Connection::Progress Connection::read_request() {
         const bool may_wait = bytes_.size() <= small_body || body_size() <= usual_body;
         const bool waited = std::exchange(awaits_memory_, lacks && may_wait);
         if (lacks && !awaits_memory_) request_->refused = memory_refusal();
-        if (awaits_memory_ && !waited) deadline_ = Clock::now() + memory_time;
+        if (awaits_memory_ && !waited) deadline_ = Clock::now() + longest_wait_for_memory;
         if (waited && !lacks) expect_more();
     }
     return is_whole() ? Progress::complete : Progress::waits;

@@ -17,6 +17,9 @@
 
 namespace vines::http {
 
+// Longest wait for memory: while it is scarce answers must be read in 30 s.
+inline constexpr std::chrono::seconds longest_wait_for_memory(35);
+
 /// Thread-safe.
 class MemoryBudget {
 public:
@@ -45,8 +48,8 @@ public:
     }
     /// The same before the bytes are made, of a client that holds less than half of them, or with
     /// them up to a 32nd, and has waited since this time; false for any other. Unless they are for
-    /// long, it then has a claim for 3 s. Claims are due in the order of time, later by 35 s times
-    /// the part of the limit that the client would hold.
+    /// long, it then has a claim for 3 s. Claims are due in the order of time, later by the longest
+    /// wait times the part of the limit that the client would hold.
     bool must_wait(const std::string& client, Bytes more, Clock::time_point since) {
         const std::lock_guard lock(mutex_);
         const std::size_t held = bytes_of(client).all;
@@ -101,7 +104,7 @@ private:
     }
     Clock::time_point due(const std::string& client, Bytes more, Clock::time_point since) const {
         const auto all = static_cast<double>(bytes_of(client).all + more.all);
-        const std::chrono::duration<double> later(35 * all / static_cast<double>(limit_));
+        const auto later = longest_wait_for_memory * all / static_cast<double>(limit_);
         return since + std::chrono::duration_cast<Clock::duration>(later);
     }
     bool is_lacking(const std::string& client, Bytes more, Clock::time_point due) {
