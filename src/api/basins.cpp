@@ -47,9 +47,26 @@ Json describe(const std::optional<Estimate>& estimate) {
     return {{"value", estimate->value}, {"standard_error", finite_or_null(estimate->error)}};
 }
 
+// Values of the parameter that is swept: each keeps its system and its motions.
+constexpr std::size_t most_values = 1000;
+
+/// Refuses a load, under which no motion lasts, and too many values.
+void check_basins(const SweepRequest& r) {
+    if (r.systems->has_load())
+        refuse(
+            {{"/base/forcing", nullptr, nullptr,
+              "basins need a harmonic forcing: under a load no motion lasts"}});
+    const std::size_t values = r.axes.empty() ? 1 : r.axes[0].values.size();
+    if (values > most_values)
+        refuse(
+            {{"/axis", values, Json::array({1, most_values}),
+              "basins have at most " + std::to_string(most_values) + " values on their axis"}});
+}
+
 }  // namespace
 
-SweepRequest read_basins_request(const Json& given, std::size_t most_points) {
+SweepRequest read_basins_request(
+    const Json& given, std::size_t most_points, const CancelCheck& cancel) {
     std::vector<FieldError> errors = check(basins_fields(), given);
     if (!given.contains("box") || given["box"].empty())
         errors.push_back(
@@ -61,7 +78,8 @@ SweepRequest read_basins_request(const Json& given, std::size_t most_points) {
     if (given.contains("axis")) grid["axes"].push_back(given["axis"]);
     const Json count = WithDefaults{basins_fields(), given}["count"];
     try {
-        SweepRequest r = read_grid(grid, count.get<std::size_t>(), most_points);
+        SweepRequest r = read_grid(grid, count.get<std::size_t>(), most_points, cancel);
+        check_basins(r);
         r.given.erase("axes");
         r.basins = std::make_shared<Basins>(basin_plan(r, given));
         r.plan.system_at = [basins = r.basins](const Place& place) {

@@ -1,6 +1,7 @@
 // Requests of /v1/sweep and /v1/basins, read into the plan that the core executes, and their lines.
 #pragma once
 
+#include "api/cancellation.hpp"
 #include "api/line_stream.hpp"
 #include "api/system.hpp"
 #include "core/sweep/basins.hpp"
@@ -32,6 +33,8 @@ struct SweepSystems {
 
     /// nullopt if the point's values form no valid system.
     std::optional<PointSystem> at(const Place& place) const;
+    /// True if the point's values form a valid system, whatever its load.
+    bool is_valid(const Place& place) const;
     /// The system of the first start with another value on the first axis, if there is one.
     std::optional<PointSystem> at_value(double value) const;
     bool has_load() const;
@@ -40,6 +43,7 @@ struct SweepSystems {
 
 private:
     SystemFields fields_at(const Place& place) const;
+    SystemFields unforced_at(const Place& place) const;
     std::optional<PointSystem> system_of(const SystemFields& fields) const;
 };
 
@@ -57,14 +61,17 @@ struct SweepRequest {
 Json fields_of(const SweepRequest& request, const Place& place);
 
 /// Problem 422 naming every invalid field, or if more than `most_points` points would be computed.
-SweepRequest read_sweep_request(const Json& object, std::size_t most_points);
+SweepRequest read_sweep_request(
+    const Json& object, std::size_t most_points, const CancelCheck& cancel = CancelCheck({}));
 
 /// The grid of a request whose own fields are checked: with `starts` that many at each point, else
 /// those that it lists.
-SweepRequest read_grid(const Json& given, std::size_t starts, std::size_t most_points);
+SweepRequest read_grid(
+    const Json& given, std::size_t starts, std::size_t most_points, const CancelCheck& cancel);
 
 /// A request of /v1/basins as a sweep over its starts; the same problems.
-SweepRequest read_basins_request(const Json& object, std::size_t most_points);
+SweepRequest read_basins_request(
+    const Json& object, std::size_t most_points, const CancelCheck& cancel = CancelCheck({}));
 
 /// The requested lines of shard `shard` of `shards`. Rows computed together stay in one shard.
 std::vector<std::size_t> shard_of(

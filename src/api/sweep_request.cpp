@@ -26,6 +26,17 @@ std::optional<PointSystem> SweepSystems::at(const Place& place) const {
     return system_of(fields_at(place));
 }
 
+/// Without its load, which can take a tenth of a second to make.
+SystemFields SweepSystems::unforced_at(const Place& place) const {
+    SystemFields fields = fields_at(place);
+    if (fields.forcing) fields.forcing = nullptr, fields.numbers["F"] = 0;
+    return fields;
+}
+
+bool SweepSystems::is_valid(const Place& place) const {
+    return system_of(unforced_at(place)).has_value();
+}
+
 std::optional<PointSystem> SweepSystems::at_value(double value) const {
     SystemFields fields = fields_at({0, std::vector<std::size_t>(axes.size(), 0)});
     if (!axes.empty()) fields.numbers[axes[0].parameter] = value;
@@ -51,7 +62,7 @@ std::optional<PointSystem> SweepSystems::system_of(const SystemFields& fields) c
 }
 
 std::optional<SiParameters> SweepSystems::si_at(const Place& place) const {
-    return resolve(fields_at(place)).si;
+    return resolve(unforced_at(place)).si;
 }
 
 namespace {
@@ -170,11 +181,13 @@ KindsOfStarts kinds_of_starts(const SweepRequest& r) {
 
 /// Checks that the fields can be combined, with the first and with the last values of the axes.
 void check_fields(
-    const SweepRequest& r, const KindsOfStarts& kinds, std::vector<FieldError>& errors) {
+    const SweepRequest& r, const KindsOfStarts& kinds, const CancelCheck& cancel,
+    std::vector<FieldError>& errors) {
     for (const auto& [names, start] : kinds)
         for (const bool last : {false, true}) {
             Place place{start, {}};
             for (const Axis& a : r.axes) place.at.push_back(last ? a.values.size() - 1 : 0);
+            cancel.poll();  // its load can take a tenth of a second
             try {
                 read_started_system(fields_of(r, place));
             } catch (const Problem& problem) {
@@ -184,14 +197,19 @@ void check_fields(
         }
 }
 
-/// Refuses starts with which no point is a valid system. Other points without one have an error in
-/// their line.
+// Points that are looked at before a sweep begins, in tens of milliseconds.
+constexpr std::size_t most_checked = 2000;
+
+/// Refuses starts with which no point is a valid system, as far as most_checked points tell. Other
+/// points without one have an error in their line.
 void check_systems(const SweepRequest& r, std::vector<FieldError>& errors) {
     Grid points{.steps = r.plan.grid.steps};
-    for (std::size_t start = 0; start < r.starts.size(); ++start) {
+    std::size_t checked = 0;
+    for (std::size_t start = 0; start < r.starts.size() && errors.size() < most_errors; ++start) {
         const auto place = [&](std::size_t i) { return Place{start, points.place_of(i).at}; };
         std::size_t i = 0;
-        while (i < points.points() && !r.systems->at(place(i))) ++i;
+        for (; i < points.points() && !r.systems->is_valid(place(i)); ++i)
+            if (++checked > most_checked) return;
         if (i == points.points())
             add_point_errors(r, start, read_started_system(fields_of(r, place(0))).errors, errors);
     }
@@ -336,7 +354,8 @@ Json fields_of(const SweepRequest& r, const Place& place) {
     return object;
 }
 
-SweepRequest read_grid(const Json& given, std::size_t starts, std::size_t most_points) {
+SweepRequest read_grid(
+    const Json& given, std::size_t starts, std::size_t most_points, const CancelCheck& cancel) {
     std::vector<FieldError> errors;
     SweepRequest r;
     r.given = given;
@@ -358,7 +377,7 @@ SweepRequest read_grid(const Json& given, std::size_t starts, std::size_t most_p
               "the sweep has " + std::to_string(computed) + " points; at most " +
                   std::to_string(most_points) + " are computed at once"}});
     const KindsOfStarts kinds = kinds_of_starts(r);
-    check_fields(r, kinds, errors);
+    check_fields(r, kinds, cancel, errors);
     read_options(r, given, errors);
     const std::size_t lines = r.plan.grid.lines();
     r.plan.lines =
@@ -371,7 +390,8 @@ SweepRequest read_grid(const Json& given, std::size_t starts, std::size_t most_p
     return r;
 }
 
-SweepRequest read_sweep_request(const Json& given, std::size_t most_points) {
+SweepRequest read_sweep_request(
+    const Json& given, std::size_t most_points, const CancelCheck& cancel) {
     std::vector<FieldError> errors = check(sweep_fields(), given);
     if (!given.contains("axes") || given["axes"].empty())
         errors.push_back(
@@ -383,7 +403,7 @@ SweepRequest read_sweep_request(const Json& given, std::size_t most_points) {
             {"/starts", given["starts"].size(), Json::array({1, most_points}),
              "there are more starts than a sweep can have points"});
     refuse_any(errors);
-    SweepRequest r = read_grid(given, 0, most_points);
+    SweepRequest r = read_grid(given, 0, most_points, cancel);
     r.plan.system_at = [systems = r.systems](const Place& place) { return systems->at(place); };
     return r;
 }

@@ -47,7 +47,9 @@ AdmissionControl::AdmissionControl(const AdmissionLimits& limits)
       lesser_bodies_{bodies_at_once},
       large_records_{records_at_once, true},
       lesser_records_{lesser_records_at_once, true},
-      lists_{lists_at_once, true, std::chrono::seconds(2), std::chrono::seconds(8)} {}
+      lists_{
+          lists_at_once, true, std::chrono::seconds(2), std::chrono::seconds(8),
+          std::chrono::milliseconds(200)} {}
 
 /// Grants what is free to the next in the queues, and wakes only these threads.
 void AdmissionControl::assign() {
@@ -243,16 +245,26 @@ bool AdmissionControl::uses(std::size_t bytes) const {
 }
 
 AdmissionControl::Slot AdmissionControl::acquire_background(
-    const std::string& client, const std::stop_token& stop) {
+    const std::string& client, const std::stop_token& stop,
+    const std::function<Clients()>& sharing) {
     std::unique_lock lock(mutex_);
     Waiter waiter;
-    background_.waiting.push(client, &waiter);
+    std::string owner = client;
+    background_.waiting.push(owner, &waiter);
     assign();
-    // The wait registers with the token before it checks the condition, so that no stop is missed.
-    // The thread that requests the stop must not hold the mutex, and cannot.
-    waiter.changed.wait(lock, stop, [this, &waiter] { return waiter.granted || sweeps_stopped_; });
+    const auto is_over = [&] { return waiter.granted || sweeps_stopped_; };
+    do {
+        lock.unlock();
+        const Clients clients = sharing ? sharing() : Clients();
+        lock.lock();
+        for (const std::string& other : clients)
+            if (background_.waiting.move(&waiter, other)) owner = other;
+        // The wait registers with the token before it checks the condition, so that no stop is
+        // missed. The thread that requests the stop must not hold the mutex, and cannot.
+    } while (!waiter.changed.wait_for(lock, stop, give_up_check, is_over) &&
+             !stop.stop_requested());
     if (!end_wait(background_.waiting, waiter)) return nullptr;
-    Slot slot(this, {.its = &background_, .client = client});
+    Slot slot(this, {.its = &background_, .client = owner});
     if (foreground_waits_) slot.get_deleter().keeps_until = Clock::now() + time_slice;
     lock.unlock();
     return sweeps_stopped_ ? nullptr : std::move(slot);
@@ -281,7 +293,7 @@ AdmissionControl::SweepSlot AdmissionControl::acquire_sweep(const std::string& c
             }};
 }
 
-bool AdmissionControl::pass_on(const SweepSlot& slot, const std::vector<std::string>& clients) {
+bool AdmissionControl::pass_on(const SweepSlot& slot, const Clients& clients) {
     const std::lock_guard lock(mutex_);
     const auto heir =
         std::ranges::find_if(clients, [this](const auto& client) { return may_sweep(client); });
@@ -354,8 +366,8 @@ bool AdmissionControl::others_need(
     if (own == group.clients.end() || others == 0) return false;
     const std::size_t clients = group.clients.size() + group.waiting.clients(is_idle);
     const bool is_more = own->second > std::max(group.at_once / clients, 2 * immediate_body);
-    return age > (is_more ? 1 : 2) * std::min(group.in_need, group.round / others) &&
-           computed > group.in_need / 10;
+    const Clock::duration most = (is_more ? 1 : 2) * std::min(group.in_need, group.round / others);
+    return age > most && (computed > group.least || age > 4 * most);
 }
 
 void AdmissionControl::stop_sweeps() {

@@ -89,7 +89,12 @@ public:
     /// foreground work should end.
     bool others_are_stuck(const std::string& client) const;
     /// For background work: waits for a slot. Null once `stop` is requested or sweeps are stopped.
-    Slot acquire_background(const std::string& client, const std::stop_token& stop = {});
+    /// sharing(): the clients of the work, looked at every 50 ms; it is that one's whose turn comes
+    /// first.
+    using Clients = std::vector<std::string>;
+    Slot acquire_background(
+        const std::string& client, const std::stop_token& stop = {},
+        const std::function<Clients()>& sharing = {});
     /// True if background work should release its slot and wait again: foreground work waits, or
     /// other background work after a time slice.
     bool must_yield(const Slot& background) const;
@@ -100,7 +105,7 @@ public:
     SweepSlot acquire_sweep(const std::string& client);
     /// From now on the sweep counts as the first of these clients that may have one more; false if
     /// none may.
-    bool pass_on(const SweepSlot& slot, const std::vector<std::string>& clients);
+    bool pass_on(const SweepSlot& slot, const Clients& clients);
     /// True if fewer sweeps run than all clients together may have.
     bool sweeps_left() const { return load().sweeps < limits_.sweeps; }
 
@@ -119,8 +124,9 @@ public:
     SizePermit acquire_lists(
         const std::string& client, std::size_t bytes, const std::function<bool()>& gives_up);
     /// True if other clients wait for permits like this one (may be null), and its work, which has
-    /// it for `age` and has `computed` for a moment at least, is to end for them: after in_need or
-    /// a part of the round; with no more than an equal share after twice the time.
+    /// it for `age`, is to end for them: after in_need or a part of the round; with no more than an
+    /// equal share after twice the time; up to four times later until it has `computed` for the
+    /// group's least time.
     bool others_need(
         const SizePermit& permit, const std::string& client, Clock::duration age,
         Clock::duration computed) const;
@@ -174,6 +180,7 @@ private:
         bool is_exempt = false;  ///< also at once where the process uses all of its memory
         Clock::duration in_need = std::chrono::seconds(5);  ///< see others_need()
         Clock::duration round = std::chrono::hours(1);      ///< time for all that wait, likewise
+        Clock::duration least = std::chrono::milliseconds(2500);  ///< of computing, likewise
         Queue waiting = {};
         std::map<std::string, std::size_t> clients = {};  ///< bytes of each in work
         std::size_t in_work = 0;                          ///< bytes of all

@@ -106,15 +106,19 @@ public:
             return request;
         } catch (const api::Cancelled&) {
             if (!permit_ || is_unwanted()) throw_without();
-            if (needed_)
-                throw Problem::unavailable(
-                    "threads", "others need the thread that reads it; try again in a second");
+            refuse_if_needed();
             throw Problem(
                 413, fmt::format(
                          "the server's time limit of {} s for one request was over before it was "
                          "read: send a smaller one",
                          service_.options.deadline));
         }
+    }
+    /// The problem of a request that ended early since others need what it had.
+    void refuse_if_needed() const {
+        if (needed_)
+            throw Problem::unavailable(
+                "threads", "it takes long, and others need its thread or memory; try again later");
     }
     /// Conditions that end the computation; this object must outlive them.
     api::Stop stop() {
@@ -149,14 +153,16 @@ public:
             listed_ = Clock::now();
         } else if (answer > 0) request_.reserve_memory({answer}, since);
     }
-    /// Gives back what the lists have, and waits for memory for a stream.
+    /// Gives back what the lists have, and waits for memory for a stream, which is reserved.
     void wait_for_stream(std::size_t bytes) {
+        const Clock::time_point since = Clock::now();
         lists_permit_.reset();
-        request_.reserve_memory({}, Clock::now());
+        request_.reserve_memory({}, since);
         permit_.wait_without_slot([&] {
-            wait_for_memory({bytes, bytes}, Clock::now());
+            wait_for_memory({bytes, bytes}, since);
             return false;
         });
+        request_.reserve_memory({bytes, bytes}, since);
     }
     /// Whether the lists are to be freed for others.
     bool others_need_lists() const {
@@ -341,6 +347,9 @@ private:
     bool connected_ = true;
 };
 
+// Text of an impact in a list.
+constexpr std::size_t bytes_of_impact = 240;
+
 // Memory of a run while its lists are made and sent: measured at 22 MB beside 63 others.
 constexpr std::size_t held_by_answer = 22 << 20;
 
@@ -368,6 +377,7 @@ Response stream_answer(
         .headers = {{"Cache-Control", "no-store"}, varies},
         .stream = stream,
         .held = held_by_answer,
+        .length = static_cast<std::size_t>(shared->impacts) * bytes_of_impact,
         .compressible = true};
 }
 
@@ -400,15 +410,21 @@ Response answer(Request& r, const Service& service, Stopwatch& watch) {
     computing.lap("parse");
     const api::Stop stop = computing.stop();
     const bool is_binary = *format == api::Format::cbor || *format == api::Format::npz;
-    api::Answer answer = api::compute_answer(
-        std::move(request), {.stop = stop,
-                             .most_bytes = options.answer_limit,
-                             .most_kept = options.most_kept_impacts,
-                             .most_fitted = most_fitted,
-                             .begins = [&](std::size_t text) {
-                                 computing.wait_for_lists(
-                                     text, text / (is_binary ? over_binary : 1));
-                             }});
+    const api::ComputeOptions limits{
+        .stop = stop,
+        .most_bytes = options.answer_limit,
+        .most_kept = options.most_kept_impacts,
+        .most_fitted = most_fitted,
+        .begins = [&](std::size_t text) {
+            computing.wait_for_lists(text, text / (is_binary ? over_binary : 1));
+        }};
+    api::Answer answer;
+    try {
+        answer = api::compute_answer(std::move(request), limits);
+    } catch (const Problem&) {
+        computing.refuse_if_needed();
+        throw;
+    }
     const bool renewed = computing.renew();
     computing.lap("solve");
     if (!renewed) computing.throw_without();
@@ -434,12 +450,13 @@ Response answer(Request& r, const Service& service, Stopwatch& watch) {
 
 Response sweep(Request& r, const Service& service, Stopwatch& watch) {
     std::optional<api::Format> format;
-    api::SweepRequest request = read_body(r, service, watch, [&](const Json& body, const auto&) {
-        format = api::format_in(body, api::sweep_format_names);
-        const auto read =
-            r.head.path() == "/v1/basins" ? api::read_basins_request : api::read_sweep_request;
-        return read(body, service.options.sweep_points);
-    });
+    api::SweepRequest request =
+        read_body(r, service, watch, [&](const Json& body, const auto& ends) {
+            format = api::format_in(body, api::sweep_format_names);
+            const auto read =
+                r.head.path() == "/v1/basins" ? api::read_basins_request : api::read_sweep_request;
+            return read(body, service.options.sweep_points, api::CancelCheck(ends));
+        });
     if (!format) format = accepted_format(r.head.header("accept"), api::sweep_format_names);
     Response response = stream_sweep(std::move(request), *format, r, service);
     response.headers.push_back(varies);

@@ -127,6 +127,7 @@ bool compress(Response& response, const Request& request, const std::function<bo
     // The tag belongs to the uncompressed body.
     if (response.tag.empty() && head.method != "POST") response.tag = entity_tag(response.body);
     std::optional<std::string> gzipped = gzip(response.body, gives_up);
+    response.stays_plain = !gzipped;
     if (!gzipped) return false;
     response.uncompressed_size = response.body.size();
     response.body = std::move(*gzipped);
@@ -164,7 +165,8 @@ void set_encoding(const Head& head, bool was_304, Response& response) {
     const bool zips = response.compressible || is_zipped || !response.gzipped.empty() ||
                       response.body.size() >= compress_from;
     if (zips || was_304) response.headers.emplace_back("Vary", "Accept-Encoding");
-    response.compressible = zips && accepts_gzip(head.header("accept-encoding"));
+    response.compressible =
+        zips && !response.stays_plain && accepts_gzip(head.header("accept-encoding"));
     if (!response.compressible || response.status == 304) return;
     response.headers.emplace_back("Content-Encoding", "gzip");
     if (response.stream || is_zipped) return;

@@ -191,9 +191,17 @@ void EventLoop::accept(int most) {
     }
 }
 
-/// The connection that is closed first: an idle keep-alive one, else the one that has waited
-/// longest for its client. A well-behaved client never waits long, so a flood closes its own
-/// connections. owner: of its client; empty: any.
+/// The connection that is closed first: of the client with most of them, unless it has only one; an
+/// idle keep-alive one, else the one that has waited longest for its client.
+Connection* EventLoop::eviction_candidate() const {
+    const auto most =
+        std::ranges::max_element(open_, {}, [](const auto& client) { return client.second; });
+    Connection* const chosen =
+        most != open_.end() && most->second > 1 ? eviction_candidate(most->first) : nullptr;
+    return chosen ? chosen : eviction_candidate({});
+}
+
+/// The same of one client; empty: of any.
 Connection* EventLoop::eviction_candidate(const std::string& owner) const {
     Connection* chosen = nullptr;
     const auto before = [](const Connection& a, const Connection& b) {

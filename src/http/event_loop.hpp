@@ -56,7 +56,8 @@ private:
     void wait();
     void queue(int socket);
     void accept(int most);
-    Connection* eviction_candidate(const std::string& owner = {}) const;
+    Connection* eviction_candidate() const;
+    Connection* eviction_candidate(const std::string& owner) const;
     void change_events(int operation, int socket, std::uint32_t events) const;
     void wait_for(int operation, const Connection& connection) const;
     void listen(bool on);

@@ -51,6 +51,14 @@ public:
             if (e.client == client && (moves = moves || e.value == T{} || is_later(e.value)))
                 std::swap(e.value, value);
     }
+    /// The entry becomes this client's, if its turn then comes earlier; returns whether it did.
+    bool move(const T& value, const std::string& client) {
+        const auto found = std::ranges::find(entries_, value, &Entry::value);
+        if (found == entries_.end() || found->turn <= next_turn(client)) return false;
+        const std::size_t cost = found->cost;
+        push(client, take(found), cost);
+        return true;
+    }
     const std::string& last_client() const { return entries_.back().client; }
     T pop_last() { return take(std::prev(entries_.end())); }
     /// The last entry for which may(value) is true of the client that has the most of these, by

@@ -47,17 +47,18 @@ public:
         return is_lacking(client, more, due(client, more, Clock::now()));
     }
     /// The same before the bytes are made, of a client that holds less than half of them, or with
-    /// them up to a 32nd, and has waited since this time; false for any other. Unless they are for
-    /// long, it then has a claim for 3 s. Claims are due in the order of time, later by the longest
-    /// wait times the part of the limit that the client would hold.
+    /// them up to a 32nd, and has waited since this time; false for any other. It then has a claim
+    /// for 3 s; one to bytes for long concerns others that hold as many of these, or more. Claims
+    /// are due in the order of time, later by the longest wait times the part of the limit that the
+    /// client would hold.
     bool must_wait(const std::string& client, Bytes more, Clock::time_point since) {
         const std::lock_guard lock(mutex_);
         const std::size_t held = bytes_of(client).all;
         if (2 * held >= more.all && held + more.all > limit_ / 32) return false;
         const Clock::time_point now = Clock::now(), own = due(client, more, since);
         std::erase_if(claims_, [&](const auto& claim) { return claim.second.until < now; });
-        if (more.for_long == 0 && claims_[client].bytes <= more.all)
-            claims_[client] = {more.all, own, now + std::chrono::seconds(3)};
+        if (claims_[client].bytes.all <= more.all)
+            claims_[client] = {more, own, now + std::chrono::seconds(3)};
         return is_lacking(client, more, own);
     }
     /// Counts these bytes instead of what was counted, unless what they add would have to wait, of
@@ -95,7 +96,7 @@ public:
 
 private:
     struct Claim {
-        std::size_t bytes = 0;
+        Bytes bytes;
         Clock::time_point due, until;
     };
     Bytes bytes_of(const std::string& client) const {
@@ -109,23 +110,29 @@ private:
     }
     bool is_lacking(const std::string& client, Bytes more, Clock::time_point due) {
         const Bytes own = bytes_of(client);
-        std::size_t sharing = 2, claimed = 0;  // the client and one that could come
+        std::size_t sharing = 2;  // the client and one that could come
+        Bytes claimed;
         for (const auto& [other, its] : clients_)
             sharing += other != client && its.all > limit_ / least_part;
         for (const auto& [other, its] : claims_) {
             if (other == client || its.until < Clock::now()) continue;
             sharing += bytes_of(other).all <= limit_ / least_part;
-            if (its.due < due && more.for_long == 0) claimed += std::min(its.bytes, limit_ / 4);
+            if (its.due >= due) continue;
+            if (bytes_of(other).for_long <= own.for_long) claimed.for_long += its.bytes.for_long;
+            if (its.bytes.for_long == 0) claimed.all += std::min(its.bytes.all, limit_ / 4);
         }
         const std::size_t needed = std::min(more.all, limit_ / 4), share = limit_ / sharing;
-        const std::size_t total = own.all + needed, beyond = std::max(own.all, 2 * share) + claimed;
+        if (more.for_long > 0) claimed.all = 0;
+        const std::size_t total = own.all + needed,
+                          beyond = std::max(own.all, 2 * share) + claimed.all;
         const std::size_t kept =
             std::min(4 * total, limit_ / 8) + (total <= std::max(share, limit_ / 32) ? 0 : beyond);
         const std::size_t kept_for_long =
             std::max(own.for_long, std::min(4 * (own.for_long + more.for_long), limit_ / 32));
         const bool is_full_now =
             needed + held_ + kept >= limit_ ||
-            (more.for_long > 0 && kept_for_long + more.for_long + held_for_long_ > limit_ / 2);
+            (more.for_long > 0 &&
+             kept_for_long + claimed.for_long + more.for_long + held_for_long_ > limit_ / 2);
         if (is_full() || (is_full_now && own.all < share)) last_full_ = Clock::now();
         return is_full_now;
     }
@@ -140,7 +147,8 @@ private:
         now.all += bytes.all, now.for_long += bytes.for_long;
         if (now.all == 0) clients_.erase(client);
         const auto claim = claims_.find(client);
-        if (claim != claims_.end() && claim->second.bytes <= 2 * bytes.all) claims_.erase(claim);
+        if (claim != claims_.end() && claim->second.bytes.all <= 2 * bytes.all)
+            claims_.erase(claim);
         counted = {client, bytes};
     }
 

@@ -55,12 +55,14 @@ struct Response {
     std::string body = {};
     std::string_view gzipped = {};      ///< the compressed body, if precomputed
     std::size_t uncompressed_size = 0;  ///< of a compressed body; 0: it is not compressed
+    bool stays_plain = false;           ///< compressing it was given up
     bool immutable = false;             ///< the content of this path never changes
     std::string tag = {};               ///< header ETag; empty: computed from the body
     std::vector<Header> headers = {};
     /// Writes the answer instead of a body; false closes the connection with a reset.
     std::function<bool(Writer&)> stream = {};
     std::size_t held = 0;       ///< bytes a stream holds until its end, approximately
+    std::size_t length = 0;     ///< bytes of the stream, approximately; 0: unknown
     bool compressible = false;  ///< the stream can be sent gzipped; after complete(): it is
     /// The stream sends no body until it is computed: a client that has closed its sending side
     /// counts as one that has left.

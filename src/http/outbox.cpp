@@ -69,8 +69,8 @@ void Outbox::add(std::string bytes) {
     else parts_.push_back(std::move(bytes));
 }
 
-void Outbox::expect(std::size_t held) {
-    while_scarce_.rate = std::max(while_scarce_.rate, static_cast<double>(held) / 30);  // 30 s
+void Outbox::expect(std::size_t bytes) {
+    while_scarce_.rate = std::max(while_scarce_.rate, static_cast<double>(bytes) / 30);  // 30 s
 }
 
 void Outbox::end(bool whole) {

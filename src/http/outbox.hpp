@@ -42,11 +42,12 @@ public:
     /// Nothing more is sent; wait_for_space() returns.
     void cancel();
 
-    /// To be called before the first add() of a stream, with the bytes that it holds.
-    void expect(std::size_t held);
+    /// To be called before the first add() of a stream, with the bytes that it holds or has.
+    void expect(std::size_t bytes);
     /// True if the client reads too slowly: for 30 s less than 8 KiB/s, or while a resource is
     /// scarce for 2 s less than 64 KiB/s or a thirtieth of a complete answer, or of what a stream
-    /// holds, each second. A pause counts only while bytes wait for it. To be called regularly.
+    /// holds or has, each second. A pause counts only while bytes wait for it. To be called
+    /// regularly.
     bool client_is_slow(Clock::time_point now, bool scarce);
 
     /// True if the rest of the answer cannot be sent; by_closing: also if the client has closed its

@@ -117,7 +117,9 @@ Task Server::answer(Connection& connection, Request received) {
     if (response.problem) outcome.lacking = response.problem->lacking;
     if (outcome.lacking == "sweeps" && !response.own_limit) event_loop_.note_scarcity_of_streams();
     connection.hold(request.sender.client(), {response.body.size() + response.held, response.held});
-    delivery->outbox.expect(response.held);
+    // Numbers are compressed to a fourth or so.
+    const std::size_t length = response.length / (response.compressible ? 4 : 1);
+    delivery->outbox.expect(std::max(response.held, length));
     delivery->is_streaming = static_cast<bool>(response.stream);
     // Without chunks only the end of the connection marks the end of a stream.
     delivery->keep_alive = request.head.keep_alive && !request.refused && !closing_ &&

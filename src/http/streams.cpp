@@ -115,7 +115,12 @@ public:
     bool is_cut_off() const { return is_cut_off_ || is_disowned_; }
 
     // Called by the threads that compute.
-    void begin() override { slot() = admission_.acquire_background(owner(), stop_.get_token()); }
+    void begin() override {
+        slot() = admission_.acquire_background(owner(), stop_.get_token(), [this] {
+            const std::lock_guard lock(clients_mutex_);
+            return clients_;
+        });
+    }
     void end() override { slot().reset(); }
     bool stop_or_yield() override {
         if (slot() && (admission_.must_yield(slot()) || lines_.is_full())) {
@@ -235,7 +240,7 @@ private:
     Metrics& metrics_;
     const AdmissionControl::SweepSlot sweep_slot_;
     mutable std::mutex clients_mutex_;
-    std::vector<std::string> clients_;  // to which it sends
+    AdmissionControl::Clients clients_;  // to which it sends
     std::atomic<bool> is_cut_off_ = false;
     std::atomic<bool> is_disowned_ = false;  // its client left, and the others have too many
     LineQueue lines_;
@@ -269,14 +274,16 @@ Response sweep_refusal(const Service& service, bool is_begun) {
 Response stream_lines(
     std::shared_ptr<api::LineStream> stream, const Request& asked, const Service& service,
     bool is_shared) {
-    std::shared_ptr<void> following;  // ends without the lock, which it takes
+    // End without the lock: the first takes it, the other waits for its threads.
+    std::shared_ptr<void> following;
+    std::shared_ptr<LineComputation> lines;
     const std::lock_guard lock(service.running->mutex);
     auto& streams = service.running->streams;
     std::erase_if(streams, [](const auto& entry) { return entry.second.expired(); });
     std::weak_ptr<LineComputation> own;
     // The body of a large sweep is not copied.
     auto& running = is_shared ? streams[std::string(asked.head.path()) + asked.body] : own;
-    auto lines = running.lock();
+    lines = running.lock();
     if (lines && !lines->is_cut_off()) {
         // One client has at most half of the places, a second one a quarter, and then each one.
         auto& followers = service.running->followers;

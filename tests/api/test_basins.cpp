@@ -110,6 +110,14 @@ TEST_CASE("errors of basins are reported at their field") {
     CHECK(
         basins_faults(twin_system + R"(,"axis":{"parameter":"q","values":[1]})") ==
         "/axis/parameter");
+    CHECK(
+        basins_faults(
+            twin_system +
+            R"(,"count":2,"axis":{"parameter":"R","from":0.5,"to":0.6,"count":1001})") == "/axis");
+    CHECK(
+        basins_faults(
+            R"("base":{"m1":4,"f0":8,"damping_ratio":0.01,"mass_ratio":0.01,"forcing":{"kind":"half_sine","force_N":1,"duration_s":0.1}},
+               "box":{"x0":[0,0.001]})") == "/base/forcing");
     CHECK(basins_faults(twin_system + R"(,"count":200000)") == "/count");
     CHECK(basins_faults(twin_system + R"(,"indices":[2000])") == "/indices");
 }

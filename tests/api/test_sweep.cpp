@@ -2,6 +2,7 @@
 #include <doctest/doctest.h>
 
 #include <cstdio>
+#include <ctime>
 #include <map>
 #include <numbers>
 #include <numeric>
@@ -369,6 +370,18 @@ TEST_CASE("an impossible point is an error in its line, at an end of an axis as 
         faults_of_sweep(
             given + R"("axes":[{"parameter":"R","values":[0.5,0.6]}],"starts":[{},{"x0":0.5}]})") ==
         "/base/y0");
+}
+
+TEST_CASE("a start that fits nowhere is refused without making the load of each point") {
+    const std::clock_t began = std::clock();
+    CHECK(
+        faults_of_sweep(
+            R"({"base":{"m1":2,"damping_ratio":0.01,"m2":0.04,"forcing":{"kind":"noise",
+                "rms_m_s2":1,"f_low":1,"f_high":20,"duration_s":400}},"axes":[{"parameter":"f0",
+                "from":8,"to":9,"count":1000}],"starts":[{"y0":0},{"y0":100}]})") ==
+        "/starts/1/y0");
+    // Those of the ends take a second, all of them a minute.
+    CHECK(std::clock() - began < 20 * CLOCKS_PER_SEC);
 }
 
 TEST_CASE("a sweep over x0 starts with the ball at x0 + 0.95 b") {

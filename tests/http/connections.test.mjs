@@ -389,10 +389,18 @@ test("without free file descriptors idle connections are closed, too", async (t)
 
 test("a flood of connections closes its own, not those of other clients", async (t) => {
   const one = await serviceFor(t, ["--connections", "100"]);
+  const body = small.padEnd(10000);
+  const [begun, rest] = [simulation(body).slice(0, -5000), body.slice(-5000)];
+  const upload = await connect(one.url, {localAddress: "127.0.0.2"});
+  upload.socket.write(begun);
   let closed = 0;
   const flood = await connectAll(one.url, 150, () => "G");
   for (const {ended} of flood) ended.then(() => ++closed);
   await until(() => closed >= 50); // the server has accepted all of them
+  upload.socket.write(rest);
+  await until(() => statuses(upload.text()).length === 1);
+  assert.deepEqual(statuses(upload.text()), [200], "an upload that began before");
+  upload.socket.destroy();
   for (let i = 0; i < 20; ++i) {
     const text = await exchange(one.url, get("/livez", "Connection: close\r\n"));
     assert.deepEqual(statuses(text), [200], `call ${i}`);

@@ -554,6 +554,20 @@ TEST_CASE("without memory one large body is in work at a time, and records besid
     CHECK(admission.acquire_body("third", 3 << 20, true, gives_up));
 }
 
+TEST_CASE("of those that wait for memory of a stream the first is next") {
+    MemoryBudget budget(384);
+    std::vector<MemoryBudget::Counted> streams(8);
+    for (std::size_t k = 0; k < streams.size(); ++k)
+        budget.count(streams[k], std::to_string(k), {22, 22});
+    const auto now = MemoryBudget::Clock::now(), earlier = now - std::chrono::seconds(5);
+    CHECK(budget.must_wait("first", {22, 22}, earlier));
+    CHECK(budget.must_wait("second", {22, 22}, now));
+    budget.count(streams[0], "0", {});
+    CHECK(budget.must_wait("second", {22, 22}, now));
+    CHECK(!budget.must_wait("first", {22, 22}, earlier));
+    CHECK(!budget.must_wait("answer", {10, 0}, now));  // their claims concern streams
+}
+
 TEST_CASE("what is held while more is computed leaves half of the memory to answers") {
     MemoryBudget budget(128);
     std::list<MemoryBudget::Counted> lists;
@@ -664,7 +678,7 @@ TEST_CASE("records share what one of the largest takes; of those that wait the s
     auto first = admission.acquire_body("first", 40 << 20, true, {});
     auto second = admission.acquire_body("second", 20 << 20, true, {});
     CHECK(second);
-    constexpr std::chrono::seconds long_enough(6), twice(11), computed(1);
+    constexpr std::chrono::seconds long_enough(6), twice(11), computed(3), little(2);
     CHECK(!admission.others_need(first, "first", twice, computed));
     std::string order;
     std::vector<std::thread> threads;
@@ -685,6 +699,8 @@ TEST_CASE("records share what one of the largest takes; of those that wait the s
     wait_for("small", 45 << 20);
     CHECK(!admission.others_need(first, "first", time_slice, computed));
     CHECK(admission.others_need(first, "first", long_enough, computed));
+    CHECK(!admission.others_need(first, "first", long_enough, little));
+    CHECK(admission.others_need(first, "first", 4 * long_enough, little));
     const auto of_other_size = admission.acquire_body("first", 3 << 20, true, {});
     CHECK(!admission.others_need(of_other_size, "first", twice, computed));
     CHECK(!admission.others_need({}, "first", twice, computed));
@@ -802,6 +818,31 @@ TEST_CASE(
         // On a very busy machine the others can have had more.
         if (others < held) CHECK(order == "oooll");
     }
+}
+
+TEST_CASE("shared background work is that client's whose turn comes first") {
+    AdmissionControl admission({.running = 1});
+    Slot slot = admission.acquire(client);
+    std::string order;
+    std::vector<std::thread> threads;
+    std::atomic<int> looks = 0;
+    const auto sharing = [&looks] {
+        ++looks;
+        return AdmissionControl::Clients{"long", "follower"};
+    };
+    for (const std::string name : {"long", "long", "long", "other", "other", "shared"}) {
+        threads.emplace_back([&, name] {
+            const Slot own = name == "shared" ? admission.acquire_background("long", {}, sharing)
+                                              : admission.acquire_background(name);
+            order += name[0];
+            if (name == "shared") CHECK(own.get_deleter().client == "follower");
+        });
+        wait_until([&] { return admission.load().background == threads.size(); });
+    }
+    wait_until([&] { return looks > 1; });
+    slot.reset();
+    for (std::thread& thread : threads) thread.join();
+    CHECK(order == "losoll");
 }
 
 TEST_CASE(

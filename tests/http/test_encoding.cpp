@@ -2,6 +2,7 @@
 
 #include "http/encoding.hpp"
 
+#include <algorithm>
 #include <set>
 #include <string>
 
@@ -30,6 +31,19 @@ TEST_CASE("a long text is compressed in pieces, and compression stops when it is
     CHECK(polls == 4);
     CHECK_FALSE(gzip(text, [&polls] { return ++polls == 7; }));
     CHECK(polls == 7);
+}
+
+TEST_CASE("an answer whose compression is given up is sent as it is") {
+    Request request;
+    request.head.headers = {{"accept-encoding", "gzip"}};
+    for (const bool gives_up : {false, true}) {
+        Response response{.body = std::string(1 << 20, '0')};
+        CHECK(compress(response, request, [=] { return gives_up; }) == !gives_up);
+        complete(request, response);
+        CHECK((response.body.size() == 1 << 20) == gives_up);
+        CHECK(
+            std::ranges::count(response.headers, Header{"Content-Encoding", "gzip"}) == !gives_up);
+    }
 }
 
 TEST_CASE("gzip is accepted if it is listed with a weight above 0, or everything is") {

@@ -184,7 +184,8 @@ Json line_of(const std::shared_ptr<LineStream>& stream, const char* type) {
 Json point_line(const char* operation, decltype(read_sweep_request)& read, std::size_t index) {
     Json request = first_request(operation);
     request["indices"] = {index};
-    return line_of(std::make_shared<SweepStream>(read(request, 100), Format::json), "point");
+    return line_of(
+        std::make_shared<SweepStream>(read(request, 100, CancelCheck({})), Format::json), "point");
 }
 
 }  // namespace

@@ -36,7 +36,7 @@ FieldTable basins_rows() {
         {"seed", integer({0, 1e9}), 1,
          "shifts the sequence of starts; equal seeds give equal starts"},
         {"axis", json_object(), none,
-         "a parameter of the system and its values: {parameter, from, to, count, scale} or "
+         "a parameter of the system and up to 1000 values: {parameter, from, to, count, scale} or "
          "{parameter, values}"},
         {"pairs", integer({0, 1e5}), 200,
          "for the uncertainty exponent: starts, for each of ten distances, that are run again "

@@ -25,7 +25,7 @@ constexpr double same_statistics = 0.03, same_errors = 4;
 // Starts that are measured to find the motions, for each value.
 constexpr std::size_t explored_starts = 16;
 // A box of starts that meets the cavity in less than this fraction is given up.
-constexpr std::size_t most_tries_per_start = 1000;
+constexpr std::size_t most_tries_per_start = 100;
 // Starts per cell of the entropy, and the fewest with which a cell counts.
 constexpr double starts_per_cell = 25;
 constexpr std::size_t fewest_per_cell = 10;
