@@ -1,7 +1,7 @@
 #!/usr/bin/env -S node
 // scripts/screenshots.mjs FOLDER [QUERY]: takes screenshots of the page, wide and narrow, light, dark and in
 // forced colours: the first screen and the complete page. Without a query it shows the first simulation, the first sweep, a map
-// and a measurement. VINES_WEB_DIR=web selects the page in that folder instead of the compiled one.
+// and a measurement. VINES_WEB_DIR=build/page selects the page in that folder instead of the compiled one.
 import {identified, open, startBrowser} from "../tests/page/browser.mjs";
 import {measured} from "../tests/record.mjs";
 import {startService} from "../tests/service.mjs";
