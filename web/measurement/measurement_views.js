@@ -1,9 +1,10 @@
 // Plots of a measurement: the record with its impacts, and the results identified from it.
+import {bisectLeft} from "d3-array";
 import {$, element} from "../shared/dom.js";
 import {exponentMarks, exponentRange} from "../shared/exponents.js";
 import {rangeOf} from "../shared/frame.js";
 import {bands, beads, dots, layer, levels, line, symbols} from "../shared/marks.js";
-import {firstFrom, mm} from "../shared/numbers.js";
+import {mm} from "../shared/numbers.js";
 import {PlotGroup} from "../shared/plot.js";
 import {verdicts} from "../shared/quantities.js";
 import {Viewport} from "../shared/viewport.js";
@@ -64,7 +65,7 @@ const marksOf = (rows, y, shape, size) =>
 
 /** A column, interpolated linearly. */
 function valueAt({t}, column, moment) {
-  const i = Math.min(Math.max(firstFrom(t, moment), 1), t.length - 1);
+  const i = Math.min(Math.max(bisectLeft(t, moment), 1), t.length - 1);
   const share = (moment - t[i - 1]) / (t[i] - t[i - 1]);
   return column[i - 1] + (column[i] - column[i - 1]) * share;
 }

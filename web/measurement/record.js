@@ -1,7 +1,9 @@
 // Records: read from a file by the rules of the service, simulated from a run, kept by the browser.
+import {bisectLeft, maxIndex, median} from "d3-array";
+import {randomLcg, randomUniform} from "d3-random";
 import {nextTask} from "../shared/dom.js";
 import {Motion} from "../shared/motion.js";
-import {firstFrom, lastUpTo} from "../shared/numbers.js";
+import {lastUpTo} from "../shared/numbers.js";
 import {read, write} from "../shared/store.js";
 
 const atOnce = 50000; // lines between two progress reports
@@ -234,15 +236,11 @@ const medianReach = 8; // samples before and after the interval, for the local m
 
 /** Index of the sample of the visible spike within `reach` of a time; null without acceleration. */
 export function spikeNear({t, a}, time, reach) {
-  const from = firstFrom(t, time - reach);
-  const to = Math.max(firstFrom(t, time + reach), from + 1);
+  const from = bisectLeft(t, time - reach);
+  const to = Math.max(bisectLeft(t, time + reach), from + 1);
   if (!a || from >= t.length) return null;
-  const around = a.slice(Math.max(0, from - medianReach), to + medianReach).sort();
-  const centre = around[around.length >> 1];
-  let best = from;
-  for (let i = from; i < Math.min(to, t.length); ++i)
-    if (Math.abs(a[i] - centre) > Math.abs(a[best] - centre)) best = i;
-  return best;
+  const centre = median(a.slice(Math.max(0, from - medianReach), to + medianReach));
+  return from + maxIndex(a.slice(from, to), (v) => Math.abs(v - centre));
 }
 
 /** Keeps a file in place of the previous one. */
@@ -258,15 +256,6 @@ const samplesPerCycle = 245; // about 2 kHz at 8.35 Hz, the forcing of Li et al.
 const maxSamples = 200000;
 const settling = 20; // cycles skipped: a recorder is started later than the motion
 const pulse = 1 / 150; // duration in cycles
-
-// Linear congruential generator (Numerical Recipes) with values in [-1, 1).
-function noiseFrom(seed) {
-  let state = seed;
-  return () => {
-    state = (Math.imul(state, 1664525) + 1013904223) >>> 0;
-    return state / 2 ** 31 - 1;
-  };
-}
 
 /** The oscillator of a run as fields of /v1/identify; m1 = 1 kg, k1 = 1 N/m if dimensionless. */
 export function oscillatorOf({si, b, epsilon, Omega, derived}) {
@@ -285,7 +274,7 @@ export function recordOfRun(answer) {
   const from = motion.end > 3 * settling * cycle ? settling * cycle : 0;
   const count = Math.min(Math.floor(((motion.end - from) / cycle) * samplesPerCycle), maxSamples);
   const width = pulse * cycle;
-  const noise = noiseFrom(1);
+  const noise = randomUniform.source(randomLcg(1))(-1, 1); // the same in each record
   // Amplitudes of uniform noise, in m and m/s^2.
   const [noiseX, noiseA] = [1.3e-4 * parameters.b, 1.2e-3 * parameters.b * omega0 ** 2];
   const lines = ["time_s,displacement_m,acceleration_m_s2"];

@@ -1,4 +1,5 @@
 // Lyapunov exponents of an estimator as lines of a plot.
+import {quantile} from "d3-array";
 import {line} from "./marks.js";
 import {shortTo} from "./numbers.js";
 
@@ -31,9 +32,7 @@ export function exponentRange(histories) {
   const late = ({tau, ...columns}) =>
     names.flatMap((name) => columns[name].slice(Math.floor(tau.length / 4)));
   const known = histories.filter(Boolean).flatMap(late);
-  const values = [0, ...known].filter((v) => v !== null).sort((a, b) => a - b);
-  const low = values[Math.floor(values.length * 0.01)];
-  const high = values[Math.ceil(values.length * 0.99) - 1];
+  const [low, high] = [0.01, 0.99].map((share) => quantile([0, ...known], share));
   const margin = (high - low || 0.1) * 0.15;
   return [low - margin, high + margin];
 }

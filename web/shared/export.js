@@ -1,4 +1,5 @@
 // Export of a plot: a dialog with its numbers as a table and CSV, its picture as PNG and SVG.
+import {pathRound} from "d3-path";
 import {$, attributes, button, save, setTexts, tableOf} from "./dom.js";
 import {font} from "./frame.js";
 import {drawText, ink} from "./ink.js";
@@ -101,7 +102,7 @@ class SvgPen {
   root = svg("svg", {...size, viewBox: `0 0 ${size.width} ${size.height}`});
   group = this.root;
   globalAlpha = 1;
-  path = "";
+  path = pathRound(2);
   saved = [];
 
   /** Puts what follows into a group, until restore(). */
@@ -109,10 +110,6 @@ class SvgPen {
     const group = svg("g", all);
     this.group.append(group);
     this.group = group;
-  }
-
-  to(command, ...numbers) {
-    this.path += command + numbers.map(fixed).join(" ");
   }
 
   /** Adds an element with the current opacity. */
@@ -127,15 +124,12 @@ class SvgPen {
   translate = (x, y) => this.within({transform: `translate(${x} ${y})`});
   rotate = (angle) => this.within({transform: `rotate(${(angle * 180) / Math.PI})`});
   setLineDash = (dash) => Object.assign(this, {dash: dash.join(" ") || null});
-  beginPath = () => Object.assign(this, {path: ""});
-  moveTo = (x, y) => this.to("M", x, y);
-  lineTo = (x, y) => this.to(this.path ? "L" : "M", x, y); // the first call starts the path
-  closePath = () => this.to("z");
-  rect = (x, y, width, height) => {
-    const [right, bottom] = [x + width, y + height];
-    this.to("M", x, y, right, y, right, bottom, x, bottom);
-    this.closePath();
-  };
+  beginPath = () => Object.assign(this, {path: pathRound(2)});
+  moveTo = (...place) => this.path.moveTo(...place);
+  lineTo = (...place) => this.path.lineTo(...place);
+  closePath = () => this.path.closePath();
+  rect = (...box) => this.path.rect(...box);
+  arc = (...circle) => this.path.arc(...circle);
   fill = () => this.add("path", {d: this.path, fill: this.fillStyle});
   fillRect = (x, y, width, height) => this.add("rect", {x, y, width, height, fill: this.fillStyle});
 
@@ -143,12 +137,6 @@ class SvgPen {
     const id = `clip${this.root.querySelectorAll("clipPath").length}`;
     this.group.append(svg("clipPath", {id}, svg("path", {d: this.path})));
     this.within({"clip-path": `url(#${id})`});
-  }
-
-  /** A full circle. */
-  arc(x, y, r) {
-    this.to("M", x + r, y);
-    for (const to of [x - r, x + r]) this.to("A", r, r, 0, 0, 1, to, y);
   }
 
   stroke() {

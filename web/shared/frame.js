@@ -1,4 +1,5 @@
 // Frame of a plot: the mapping from values to pixels, grid lines and labels.
+import {extent, ticks as roundValues} from "d3-array";
 import {colour, drawText, drawTextUpwards, ink, stroke} from "./ink.js";
 import {clamp, minus, shortTo} from "./numbers.js";
 
@@ -13,20 +14,10 @@ function scaleOf({range, log}, from, to) {
   return (v) => from + ((at(v) - low) / (high - low)) * (to - from);
 }
 
-function multiples(step, min, max) {
-  const list = [];
-  for (let k = Math.ceil(min / step); k * step <= max; ++k) list.push(k * step);
-  return list;
-}
-
-/** Multiples of 1, 2 or 5 times a power of ten: about `count`, but at least two where possible. */
+/** Multiples of 1, 2 or 5 times a power of ten: about `count`, but at least two. */
 export function ticks(min, max, count) {
-  const raw = (max - min) / count;
-  const power = 10 ** Math.floor(Math.log10(raw));
-  const round = [1, 2, 5, 10].find((m) => m * power >= raw);
-  const steps = [round, ...[5, 4, 2, 1, 0.5].filter((m) => m < round)];
-  const lists = steps.map((m) => multiples(m * power, min, max));
-  return lists.find((list) => list.length > 1) ?? lists[0];
+  const list = roundValues(min, max, count);
+  return list.length > 1 ? list : roundValues(min, max, 2 * count);
 }
 
 /** Powers of ten, every n-th where they are many; with 2 and 5 between where they are few. */
@@ -40,13 +31,13 @@ function logTicks(min, max) {
   return list.filter((v) => v >= min && v <= max);
 }
 
-/** Labels {at, text}, at most `most`, with enough digits to distinguish neighbours. */
-function labelsOf({range, log, factor = 1, labels}, most) {
+/** Labels {at, text}, about `count`, with enough digits to distinguish neighbours. */
+function labelsOf({range, log, factor = 1, labels}, count) {
   if (labels) return labels.filter(({at}) => at >= range[0] - 1e-9 && at <= range[1] + 1e-9);
   const [min, max] = range.map((v) => v * factor);
   const powers = log ? logTicks(min, max) : [];
   const round = powers.length < 2; // fewer than two powers of ten in range
-  const list = round ? ticks(min, max, most) : powers;
+  const list = round ? ticks(min, max, count) : powers;
   const step = list[1] - list[0];
   const text = (v) =>
     round && Math.abs(v) > 2e4 * step
@@ -119,12 +110,12 @@ export class Frame {
       const half = letter * text.length;
       if (!bare) drawText(c, text, Math.min(at, end - half), bottom + down, "center", "top");
     };
-    for (const {at, text} of labelsOf(x, clamp(Math.floor(this.width / 70), 2, 10))) {
+    for (const {at, text} of labelsOf(x, clamp(this.width / 100, 2, 7))) {
       this.upright(c, at);
       below(text, px(at), 4);
     }
     below(x.label ?? "", (left + right) / 2, 17);
-    for (const {at, text} of labelsOf(y, clamp(Math.floor(this.height / 22), 2, 8))) {
+    for (const {at, text} of labelsOf(y, clamp(this.height / 31, 2, 6))) {
       this.across(c, at);
       drawText(c, text, left - 5, py(at), "right");
     }
@@ -134,15 +125,9 @@ export class Frame {
 
 /** The range of all values with a margin on both sides; null without values. */
 export function rangeOf(columns, log = false) {
-  let min = Infinity;
-  let max = -Infinity;
-  for (const column of columns)
-    for (const v of column) {
-      if (v === null || (log && v <= 0)) continue;
-      if (v < min) min = v;
-      if (v > max) max = v;
-    }
-  if (!(min <= max)) return null;
+  const shown = log ? (v) => (v > 0 ? v : null) : undefined;
+  const [min, max] = extent(columns.flatMap((column) => extent(column, shown)));
+  if (min === undefined) return null;
   if (log) return [min / 1.3, max * 1.3];
   const more = (max - min || Math.abs(max)) * 0.06 || 1;
   return [min - more, max + more];

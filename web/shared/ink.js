@@ -9,7 +9,7 @@ export function ink(c, name, width = 1, dash = []) {
 /** Draws a polyline through points [x, y]. */
 export function stroke(c, ...points) {
   c.beginPath();
-  for (const [x, y] of points) c.lineTo(x, y);
+  for (const [i, [x, y]] of points.entries()) c[i ? "lineTo" : "moveTo"](x, y);
   c.stroke();
 }
 

@@ -1,10 +1,11 @@
 // Marks: what a plot draws over its frame. A mark is its options and draw(c, frame), where c is a
 // canvas context or an SvgPen. All have `alpha`, a `label` in legend and table, and `above`: drawn
 // last, not clipped.
+import {bisectLeft} from "d3-array";
 import {element} from "./dom.js";
 import {font} from "./frame.js";
 import {drawText, ink, rgb, stroke} from "./ink.js";
-import {clamp, firstFrom} from "./numbers.js";
+import {clamp} from "./numbers.js";
 
 /** A kind of mark from draw(c, frame, options). */
 export const kind = (draw) => (options) => ({
@@ -20,8 +21,8 @@ export const kind = (draw) => (options) => ({
 export const line = kind((c, frame, {x, y, colour, width = 1, dash, dense}) => {
   const [min, max] = frame.x.range;
   // Visible points and one more on either side.
-  const from = Math.max(firstFrom(x, min) - 1, 0);
-  const to = Math.min(firstFrom(x, max) + 1, x.length);
+  const from = Math.max(bisectLeft(x, min) - 1, 0);
+  const to = Math.min(bisectLeft(x, max) + 1, x.length);
   const ends = []; // of each pixel column: spikes stay
   const widen = (column, py) => {
     const last = ends.at(-1);
@@ -180,19 +181,15 @@ export const dots = kind((c, frame, options) => {
     stroke(c, ...[-1, 1].map((sign) => [frame.px(x[i]), end(sign)]));
   });
   c.globalAlpha = alpha;
-  let colour = null;
-  for (const i of visible) {
-    const own = tints?.[i] ?? options.colour;
-    if (own !== colour) {
-      if (colour) finish(c, shape);
-      ink(c, own, width);
-      c.beginPath();
-      colour = own;
+  for (const [colour, own] of Map.groupBy(visible, (i) => tints?.[i] ?? options.colour)) {
+    ink(c, colour, width);
+    c.beginPath();
+    for (const i of own) {
+      const py = frame.py(y[i]);
+      symbol(c, shape, frame.px(x[i]), fitted ? clamp(py, top, bottom) : py, r);
     }
-    const py = frame.py(y[i]);
-    symbol(c, shape, frame.px(x[i]), fitted ? clamp(py, top, bottom) : py, r);
+    finish(c, shape);
   }
-  if (colour) finish(c, shape);
 });
 
 /** Symbols of a series over x, such as impacts. */

@@ -1,12 +1,13 @@
 // All plots: a frame and marks on a canvas, which is redrawn when its size changes, and a ring
 // around one point.
+import {bisectCenter, minIndex} from "d3-array";
 import {element, keyOf, on} from "./dom.js";
 import {addExportButton, captionOf} from "./export.js";
 import {blank, Frame, font, rangeOf, sizeOf} from "./frame.js";
 import {listen, makeAccessible} from "./gestures.js";
 import {drawText, ink} from "./ink.js";
 import {names} from "./marks.js";
-import {lastUpTo, nearest, short} from "./numbers.js";
+import {lastUpTo, short} from "./numbers.js";
 import {Viewport} from "./viewport.js";
 
 const reach = 14; // px within which a point is picked
@@ -103,7 +104,7 @@ export class Plot {
     const {x, y, t = x} = this.last?.points ?? {};
     const {cursor} = this.viewport ?? {};
     if (!x || cursor == null) return;
-    const i = nearest(t, cursor);
+    const i = bisectCenter(t, cursor);
     this.light(x[i], y[i]);
   }
 
@@ -119,14 +120,11 @@ export class Plot {
   /** Index of the point nearest to a place in px, preferably one with t in view; -1 if none is near. */
   pick({x, y, t = x}, left, top) {
     const {px, py} = this.frame;
-    let best = 2 * reach;
-    let found = -1;
-    x.forEach((v, i) => {
+    return minIndex(x, (v, i) => {
       const distance = Math.hypot(px(v) - left, py(y[i]) - top);
-      const away = distance + (this.viewport.holds(t[i]) ? 0 : reach);
-      if (distance < reach && away < best) [best, found] = [away, i];
+      const outOfView = this.viewport.holds(t[i]) ? 0 : reach;
+      return distance < reach ? distance + outOfView : null;
     });
-    return found;
   }
 }
 

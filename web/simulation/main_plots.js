@@ -1,9 +1,10 @@
 // Plots of the first screen. They share a cursor, and ring the impact nearest to it.
+import {bisectCenter, bisectLeft} from "d3-array";
 import {$, attributes, setTexts} from "../shared/dom.js";
 import {exponentRange} from "../shared/exponents.js";
 import {rangeOf} from "../shared/frame.js";
 import {beads, curve, dots, levels, line, symbols} from "../shared/marks.js";
-import {firstFrom, inMm, lastUpTo, mm, nearest, short} from "../shared/numbers.js";
+import {inMm, lastUpTo, mm, short} from "../shared/numbers.js";
 import {unitsOf} from "../shared/units.js";
 import {commonOptions, exponentLines, halves, picked} from "./plot_options.js";
 import {inUnits, largestMagnitude, run, viewport} from "./run.js";
@@ -198,9 +199,9 @@ function tell(by) {
   if (!run || cursor === null) return;
   const {motion} = run;
   const {tau: moments} = motion.impacts;
-  const impact = moments[nearest(moments, cursor)];
+  const impact = moments[bisectCenter(moments, cursor)];
   const {tau: known, T} = run.deferred?.eigenvalues ?? {tau: []};
-  const k = firstFrom(known, impact);
+  const k = bisectLeft(known, impact);
   const modulus = known[k] === impact ? T?.[k]?.[0] : null;
   const {x, y} = motion.at(cursor);
   const at = run.units.at(cursor);

@@ -1,12 +1,14 @@
 // The regime strip: a bifurcation diagram along the parameter moved last, computed by a sweep from
 // coarse to fine: the regimes, and lambda1, the largest |x| or x at the impacts. Its marker acts as
 // the slider.
+import {bisectCenter, quantile} from "d3-array";
+import delay from "delay";
 import {$, countUp, setTexts} from "../shared/dom.js";
 import {rangeOf} from "../shared/frame.js";
 import {Job} from "../shared/job.js";
 import {Marker} from "../shared/marker.js";
 import {levels} from "../shared/marks.js";
-import {clamp, digits, joined, nearest, withError} from "../shared/numbers.js";
+import {clamp, digits, joined, withError} from "../shared/numbers.js";
 import {Plot} from "../shared/plot.js";
 import * as q from "../shared/quantities.js";
 import {read, write} from "../shared/store.js";
@@ -28,19 +30,13 @@ const say = (text) => setTexts({"strip-trouble": text});
 /** The key in the browser's store: a build's address is its own. */
 const stored = (key) => `${import.meta.url} ${key}`;
 
-/** Resolves after the pause; rejects when the signal is aborted. */
-const paused = (signal) =>
-  new Promise((resolve, reject) => {
-    setTimeout(resolve, pause);
-    signal.onabort = reject;
-  });
-
 /** The range of lambda1 without outliers. */
 function usualRange(places) {
-  const values = places.flatMap(({p}) => q.lambda1(p) ?? []).sort((a, b) => a - b);
-  const quantile = (share) => values[Math.floor(values.length * share)];
-  const most = Math.max(quantile(0.98) ?? 0.1, 0.02) * 1.15;
-  return [Math.min(quantile(0.05) ?? 0, -0.15 * most), most];
+  const [low = 0, high = 0.1] = [0.05, 0.98].map((share) =>
+    quantile(places, share, ({p}) => q.lambda1(p)),
+  );
+  const most = Math.max(high, 0.02) * 1.15;
+  return [Math.min(low, -0.15 * most), most];
 }
 
 /** Axis and marks of each quantity of the menu, from places on an axis. */
@@ -81,7 +77,7 @@ export class Strip extends Plot {
     ask: async ({key, data}, signal) => {
       const file = await read("strips", stored(key));
       const text = await file?.text();
-      if (!text) await paused(signal);
+      if (!text) await delay(pause, {signal});
       if (signal.aborted) return;
       if (text) data.takeAll(text);
       else await receive(data, signal, () => this.take(data));
@@ -170,7 +166,7 @@ export class Strip extends Plot {
     const [from, to] = this.range;
     const step = (to - from) / (points - 1);
     const values = Array.from({length: points}, (_, i) => (i ? from + i * step : this.least));
-    const first = values[nearest(values, this.value)];
+    const first = values[bisectCenter(values, this.value)];
     const given = [...new Set([first, ...values])].map((value) => this.toParameter(value));
     const axes = [{parameter: this.parameter, values: given}];
     return new SweepData({...fields, axes, cycles, transient_cycles: transient});
@@ -179,7 +175,7 @@ export class Strip extends Plot {
   /** The point at a value of the slider, if it has been computed. */
   pointAt(value) {
     const {data} = this;
-    return data?.points[data.index(nearest(data.axes[0].values, this.toParameter(value)))];
+    return data?.points[data.index(bisectCenter(data.axes[0].values, this.toParameter(value)))];
   }
 
   content() {

@@ -1,4 +1,5 @@
 // A sweep over one axis: its section, lambda1, and another quantity with the regimes, stacked.
+import {extent, least} from "d3-array";
 import {rangeOf} from "../shared/frame.js";
 import {levels} from "../shared/marks.js";
 import {clamp, short} from "../shared/numbers.js";
@@ -39,9 +40,9 @@ function section(view) {
   const {data, choice} = view;
   const own = q.coordinates[data.section]?.[choice.coordinate];
   const chosen = {...own, ...(data.parameters.si && inSeconds() && own?.seconds)};
-  const {title, label, range, log, least = -Infinity, levels: y = []} = chosen;
+  const {title, label, range, log, least: lowest = -Infinity, levels: y = []} = chosen;
   const of = q.valuesOf(chosen);
-  const large = (p) => of(p).filter((v) => !(v <= least));
+  const large = (p) => of(p).filter((v) => !(v <= lowest));
   const held = range ?? rangeOf(view.values(large), log) ?? (log ? [0.1, 10] : [-1, 1]);
   const ofStart = (places, s) => sectionOf(places, data.axes[0], of, view.tint(s, "c1"));
   return {
@@ -75,9 +76,8 @@ function lambda(view) {
   };
   const points = view.points.filter((p) => p.lambda);
   const chaotic = points.filter((p) => p.verdict === "chaotic").length;
-  const values = points.map(lambda1).filter((v) => v !== null);
-  const [least, most] = [Math.min(...values), Math.max(...values)].map(short);
-  const ends = values.length ? `λ₁ from ${least} to ${most}; ` : "";
+  const [from, to] = extent(points, lambda1);
+  const ends = from === undefined ? "" : `λ₁ from ${short(from)} to ${short(to)}; `;
   return {
     title: "Largest exponent λ₁",
     summary: `${ends}chaotic over the measured cycles at ${chaotic} of ${points.length} points`,
@@ -147,10 +147,6 @@ const steps = {
   End: Infinity,
 };
 
-/** The first place with the smallest distance away(place). */
-const closest = (places, away) =>
-  places.reduce((best, place) => (away(place) < away(best) ? place : best), places[0]);
-
 export class DiagramView extends SweepView {
   constructor(root, ...rest) {
     super(root, [new Viewport()], steps, ...rest);
@@ -214,13 +210,13 @@ export class DiagramView extends SweepView {
 
   /** The nearest point of the first start or, given a height, of the start drawn nearest to it. */
   nearest({plot, at, top}) {
-    const place = closest(this.byStart[0], (other) => Math.abs(other.at[0] - at[0]));
+    const place = least(this.byStart[0], (other) => Math.abs(other.at[0] - at[0]));
     if (!place || top === undefined) return place;
     const away = (other) => {
       const v = other.p.error ? null : plot.shown.height(other);
       return v == null ? Infinity : Math.abs(plot.frame.py(v) - plot.frame.box.top - top);
     };
-    return closest(this.placesAt(place).filter(Boolean), away);
+    return least(this.placesAt(place).filter(Boolean), away);
   }
 
   /** Tooltip rows of each start; at most five each when there are several. */

@@ -1,4 +1,6 @@
 // A map: a quantity over two axes, as colours. Missing points look like a coarser neighbour.
+import {nice, quantile} from "d3-array";
+import {interpolateNumberArray, piecewise} from "d3-interpolate";
 import {font, ticks} from "../shared/frame.js";
 import {colour, drawText, drawTextUpwards, hex, ink, rgb} from "../shared/ink.js";
 import {kind, pixel, raster} from "../shared/marks.js";
@@ -203,41 +205,27 @@ function fillGaps(cells, n) {
 }
 
 // The colour scale of a map, and the bar that shows it.
-/** The colour at fraction t in [0, 1] of a list of colour stops. */
-function between(list, t) {
-  const at = clamp(t, 0, 1) * (list.length - 1);
-  const i = Math.min(Math.floor(at), list.length - 2);
-  const part = at - i;
-  return list[i].map((v, k) => Math.round(v + (list[i + 1][k] - v) * part));
-}
-
 const spare = 0.02; // fraction of the values at either end that can lie beyond the scale
 
 /** Round ends of the colour scale, beyond which a few outliers can lie. */
 function endsOf({from0 = true}, values) {
-  const sorted = Float64Array.from(values).sort();
-  const [least, most] = [spare, 1 - spare].map((q) => sorted[Math.round(q * (sorted.length - 1))]);
-  const known = [least ?? 0, most ?? 0, ...(from0 ? [0] : [])];
-  const low = Math.min(...known);
-  const high = Math.max(...known) === low ? low + (Math.abs(low) || 1) : Math.max(...known);
-  const [first, second] = ticks(low, high, 10);
-  const step = second - first;
-  return [Math.floor(low / step + 1e-9) * step, Math.ceil(high / step - 1e-9) * step];
+  const [least = 0, most = 0] = [spare, 1 - spare].map((share) => quantile(values, share));
+  const [low, high] = from0 ? [Math.min(least, 0), Math.max(most, 0)] : [least, most];
+  return nice(low, low === high ? low + (Math.abs(low) || 1) : high, 10);
 }
 
 /** {at(value): colour as bytes, ends, beyond: whether at() got values below and above the ends}. */
 function scaleOf({diverging}, ends) {
   const [low, high] = ends;
-  const stops = colour(diverging ? "diverging" : "sequential")
-    .split(/\s+/)
-    .map(hex);
+  const stops = colour(diverging ? "diverging" : "sequential").split(/\s+/);
+  const between = piecewise(interpolateNumberArray, stops.map(hex));
   const most = Math.max(-low, high);
   const [first, last] = diverging ? [-most, most] : ends;
   const beyond = [false, false];
   const at = (v) => {
     beyond[0] ||= v < low;
     beyond[1] ||= v > high;
-    return between(stops, (v - first) / (last - first));
+    return between(clamp((v - first) / (last - first), 0, 1)).map(Math.round);
   };
   return {ends, beyond, at};
 }
