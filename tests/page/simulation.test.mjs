@@ -1097,7 +1097,7 @@ test("a page of an allowed origin can embed the plots, also without storage; ano
     const get = () => {
       throw new DOMException("storage is denied", "SecurityError");
     };
-    for (const name of ["localStorage", "sessionStorage"])
+    for (const name of ["localStorage", "sessionStorage", "indexedDB"])
       Object.defineProperty(window, name, {get});
   });
   await page.goto(allowed.origin);

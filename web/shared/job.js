@@ -1,17 +1,11 @@
 // Runs one computation at a time, that of the newest request; older ones are aborted.
+import delay from "delay";
 import {TemporaryError} from "./api.js";
 import {$, attributes, countUp, sayIn} from "./dom.js";
 import {queryOf, unknownText} from "./form.js";
 
 const lateAfter = 120; // ms after which a computation is reported as busy
 const retryInterval = 2; // s between attempts while the service is unreachable or busy
-
-/** Waits some seconds, or until the signal is aborted. */
-const sleep = (seconds, signal) =>
-  new Promise((resolve) => {
-    setTimeout(resolve, seconds * 1000);
-    signal.onabort = resolve;
-  });
 
 /** True for temporary failures: no answer, a broken answer or 503. */
 const isTemporary = (error) => error instanceof TemporaryError || error.status === 503;
@@ -81,7 +75,7 @@ export class Job {
         if (signal.aborted || !isTemporary(error)) throw error;
         this.#running.answers = false;
         this.later?.(`${error.message}; retrying every ${retryInterval} s`);
-        await sleep(retryInterval, signal);
+        await delay(retryInterval * 1000, {signal});
       }
   }
 }

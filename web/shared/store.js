@@ -1,6 +1,7 @@
 // Files, results and texts that the browser keeps over reloads. Without permission to store, for
 // example in a frame of another site, it keeps no files and results, and reading them resolves to
 // undefined; texts are then kept until the page is left.
+import {clear, createStore, get, keys, set} from "idb-keyval";
 
 /** The storage of texts of this name, localStorage or sessionStorage. */
 export function textsIn(name) {
@@ -14,26 +15,23 @@ export function textsIn(name) {
 
 const most = 50; // entries of a name, after which all of them are dropped
 
-/** Runs act(store) on a store and resolves to the result of the request it returns. */
-const within = (name, mode, act) =>
-  new Promise((resolve, reject) => {
-    const opening = indexedDB.open(`vines-${name}`);
-    opening.onupgradeneeded = () => opening.result.createObjectStore(name);
-    opening.onerror = () => reject(opening.error);
-    opening.onsuccess = () => {
-      const request = act(opening.result.transaction(name, mode).objectStore(name));
-      request.onsuccess = () => resolve(request.result);
-      request.onerror = () => reject(request.error);
-      request.transaction.oncomplete = () => opening.result.close();
-    };
-  });
+const stores = {}; // by name
 
-export const read = (name, key) =>
-  within(name, "readonly", (store) => store.get(key)).catch(() => undefined);
+/** The result of act(store) on a store; undefined without permission or space. */
+async function within(name, act) {
+  try {
+    stores[name] ??= createStore(`vines-${name}`, name);
+    return await act(stores[name]);
+  } catch {
+    return undefined;
+  }
+}
+
+export const read = (name, key) => within(name, (store) => get(key, store));
 
 /** Stores a value, a Blob or what can be cloned, in place of the previous one of its key. */
 export const write = (name, key, value) =>
-  within(name, "readonly", (store) => store.count())
-    .then((count) => count >= most && within(name, "readwrite", (store) => store.clear()))
-    .then(() => within(name, "readwrite", (store) => store.put(value, key)))
-    .catch(() => {}); // not permitted, or no space
+  within(name, async (store) => {
+    if ((await keys(store)).length >= most) await clear(store);
+    await set(key, value, store);
+  });
