@@ -14,11 +14,17 @@ file(RENAME ${program}/usr/share/zsh/site-functions ${program}/usr/share/zsh/ven
 file(MAKE_DIRECTORY ${program}/etc/default)
 file(COPY_FILE ${debian}/vines.default ${program}/etc/default/vines)
 
-# Copyright of vines, and of the header-only libraries that it is built with.
+# Copyright of vines, of the header-only libraries that it is built with, and of the page's npm packages.
 file(READ ${debian}/copyright copyright)
 foreach(library libcli11-dev libcpp-httplib-dev libeigen3-dev libspdlog-dev nlohmann-json3-dev)
     file(READ /usr/share/doc/${library}/copyright text)
     string(APPEND copyright "\n---- ${library}\n\n${text}")
+endforeach()
+set(modules ${CMAKE_CURRENT_LIST_DIR}/../web/node_modules)
+file(GLOB licences RELATIVE ${modules} ${modules}/d3-*/LICENSE ${modules}/delay/license ${modules}/idb-keyval/LICENCE)
+foreach(licence IN LISTS licences)
+    file(READ ${modules}/${licence} text)
+    string(APPEND copyright "\n---- ${licence}\n\n${text}")
 endforeach()
 
 # Uses SOURCE_DATE_EPOCH if set.
