@@ -766,16 +766,6 @@ test("the machine plays, pauses and scrubs; with reduced motion it does not star
   await quiet.close();
 });
 
-test("the playing machine is saved as a video", async () => {
-  const page = await visit("?preset=fig11", wide);
-  const {name, bytes} = await downloaded(page, "#record");
-  assert.equal(name, "vines.webm");
-  assert.equal(bytes.readUInt32BE(), 0x1a45dfa3); // Matroska
-  assert.ok(bytes.length > 10_000, `${bytes.length} bytes`); // more than an empty film
-  await page.waitForSelector("#record:not([aria-pressed])");
-  await page.close();
-});
-
 test("the regime strip is a slider of the parameter changed last: a click and the keys set it", async () => {
   const page = await still("?preset=fig11");
   await page.waitForFunction(() => document.getElementById("strip").dataset.done);

@@ -1,11 +1,10 @@
 // The player: moves the cursor through the visible range in a loop, with a knock at each impact.
-import {$, attributes, save, setTexts} from "../shared/dom.js";
+import {$, attributes, setTexts} from "../shared/dom.js";
 import {count, shortTo} from "../shared/numbers.js";
 import * as machine from "./machine.js";
 import {run, viewport} from "./run.js";
 
 const holdTime = 150; // ms of pause after an edit
-const filmTime = 5000; // ms of a video
 
 let frame = 0;
 let held = 0;
@@ -63,16 +62,6 @@ function toggleSound() {
   attributes($("sound"), {"aria-pressed": audio !== null});
 }
 
-function film() {
-  const recorder = new MediaRecorder($("machine").captureStream());
-  recorder.ondataavailable = ({data}) => save(data, "vines.webm");
-  recorder.onstop = () => $("record").removeAttribute("aria-pressed");
-  attributes($("record"), {"aria-pressed": true});
-  if (!frame) play();
-  recorder.start();
-  setTimeout(() => recorder.stop(), filmTime);
-}
-
 /** Pauses briefly while a slider is dragged. */
 export function hold() {
   held = performance.now() + holdTime;
@@ -117,8 +106,6 @@ function showPlace() {
 $("play").onclick = () => (frame ? pause() : play());
 $("restart").onclick = () => restart();
 $("sound").onclick = toggleSound;
-$("record").onclick = film;
-$("full-screen").onclick = () => $("results").requestFullscreen();
 $("scrub").oninput = () => {
   const [from, to] = viewport.range;
   viewport.point(from + ($("scrub").value / 1000) * (to - from));
