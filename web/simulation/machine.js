@@ -7,7 +7,6 @@ import {clamp, inMm, percent, shortTo} from "../shared/numbers.js";
 import {run, viewport} from "./run.js";
 
 const flashDuration = 0.12; // cycles
-const trail = [0.12, 0.08, 0.04, 0]; // positions of the trail, cycles ago
 
 const anchor = 14; // px
 const ballRadius = 11; // px
@@ -134,7 +133,10 @@ function drawWith(canvas, size, cursor) {
   fill("panel", left - 3, right - left + 6);
   fill("plus", left - 6, 3);
   fill("minus", right + 3, 3);
-  ball(drawing, x);
+  ink(c, "mass");
+  c.beginPath();
+  c.arc(px(y), level, ballRadius, 0, 2 * Math.PI);
+  c.fill();
   const {impacts, cycle} = motion;
   const i = motion.impactBefore(cursor);
   const side = impacts.side[i];
@@ -144,20 +146,6 @@ function drawWith(canvas, size, cursor) {
   label(c, "plus", "x − y = b", left + 30, bottom - 1, "bottom");
   label(c, "minus", "−b", right - 10, bottom - 1, "bottom");
   label(c, "mass", "ball", px(y), level - ballRadius - 1, "bottom");
-}
-
-/** The ball and its trail, relative to the current position of the cavity. */
-function ball({c, px, level}, x) {
-  ink(c, "mass");
-  trail.forEach((cycles, k) => {
-    const moment = viewport.cursor - cycles * run.motion.cycle;
-    if (moment < 0) return;
-    c.globalAlpha = cycles ? 0.1 + 0.08 * k : 1;
-    c.beginPath();
-    const then = run.motion.at(moment);
-    c.arc(px(x + then.y - then.x), level, ballRadius, 0, 2 * Math.PI);
-    c.fill();
-  });
 }
 
 function drawWithout(canvas, size, cursor) {
