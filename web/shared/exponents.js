@@ -31,8 +31,12 @@ export function exponentMarks({history, status = []} = {}, x = history?.tau ?? [
 export function exponentRange(histories) {
   const late = ({tau, ...columns}) =>
     names.flatMap((name) => columns[name].slice(Math.floor(tau.length / 4)));
-  const known = histories.filter(Boolean).flatMap(late);
-  const [low, high] = [0.01, 0.99].map((share) => quantile([0, ...known], share));
+  return usualRange(histories.filter(Boolean).flatMap(late));
+}
+
+/** The range of 0 and of exponents without outliers. */
+export function usualRange(exponents) {
+  const [low, high] = [0.01, 0.99].map((share) => quantile([0, ...exponents], share));
   const margin = (high - low || 0.1) * 0.15;
   return [low - margin, high + margin];
 }

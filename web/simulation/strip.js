@@ -4,6 +4,7 @@
 import {bisectCenter, quantile} from "d3-array";
 import delay from "delay";
 import {$, countUp, setTexts} from "../shared/dom.js";
+import {usualRange} from "../shared/exponents.js";
 import {rangeOf} from "../shared/frame.js";
 import {Job} from "../shared/job.js";
 import {Marker} from "../shared/marker.js";
@@ -30,19 +31,10 @@ const say = (text) => setTexts({"strip-trouble": text});
 /** The key in the browser's store: a build's address is its own. */
 const stored = (key) => `${import.meta.url} ${key}`;
 
-/** The range of lambda1 without outliers. */
-function usualRange(places) {
-  const [low = 0, high = 0.1] = [0.05, 0.98].map((share) =>
-    quantile(places, share, ({p}) => q.lambda1(p)),
-  );
-  const most = Math.max(high, 0.02) * 1.15;
-  return [Math.min(low, -0.15 * most), most];
-}
-
 /** Axis and marks of each quantity of the menu, from places on an axis. */
 const drawn = {
   lambda1(places) {
-    const range = usualRange(places);
+    const range = usualRange(places.map(({p}) => q.lambda1(p)));
     // Outliers lie at the edge of the range.
     const of = (p) => (q.lambda1(p) == null ? null : clamp(q.lambda1(p), ...range));
     const style = {tint: q.verdictColour, error: q.errorOf, size: 1.5, above: true};
