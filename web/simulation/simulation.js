@@ -334,7 +334,6 @@ export class SimulationTab extends RequestTab {
 /** One plot is large, by a click on it, Enter or its chip; on small screens the others are hidden. */
 function startPlots() {
   const figures = [...document.querySelectorAll("#plots figure")];
-  for (const figure of figures) figure.querySelector("b").dataset.short = figure.dataset.short;
   const buttons = figures.map((figure) =>
     dom.button(figure.dataset.short, () => enlarge(figure), {className: "chip"}),
   );

@@ -15,11 +15,10 @@ const factors = {mm: 1000, "°": 180 / Math.PI};
 function slider(name, more) {
   const number = $(`slider-${name}`);
   const node = number.parentNode;
-  const [heading, , ofUnit, range, note] = node.children;
+  const [heading, , {textContent: unit}, range] = node.children;
   const [label] = heading.textContent.split(" ");
-  const [unit, about] = [ofUnit.textContent, note.textContent];
   return {
-    ...{name, unit, node, number, range, note, label, about},
+    ...{name, unit, node, number, range, label},
     symbol: symbolOf(name),
     factor: factors[unit] ?? 1,
     of: (p) => p[name] ?? p.si[name],
@@ -200,8 +199,6 @@ function set(one, fresh, dragged) {
   attributes(number, {"aria-invalid": false});
   number.defaultValue = textAt(one, shown, one.span);
   put(number, number.defaultValue);
-  const both = one.textOf?.(shown);
-  one.note.textContent = both ? `mean of ${both}` : one.about;
 }
 
 /** Marks sliders with invalid values; returns messages in their units. */

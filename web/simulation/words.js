@@ -72,9 +72,7 @@ export function describe(answer, system) {
   setTexts({"key-stuck": answer.sticking.tau_start.length ? ", orange: sticking" : ""});
   for (const figure of document.querySelectorAll("#instrument figure")) {
     const name = figure.id.replace("figure-", "");
-    const params = figure.querySelector(".params");
-    Object.assign(params, {textContent: system, title: caption});
-    params.dataset.all = system === caption ? "" : `: ${caption}`;
+    Object.assign(figure.querySelector(".params"), {textContent: system, title: caption});
     attributes($(`plot-${name}`), {"aria-label": `${aboutFigure(name).summary}. ${caption}`});
   }
 }

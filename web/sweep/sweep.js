@@ -74,12 +74,9 @@ function showRegimes({points}) {
   }
 }
 
-/** Legend entry with a mark, both in a colour; `more` follows it. */
-function legendEntry(text, {mark, colour}, ...more) {
-  const key = dom.keyOf(mark, colour, text);
-  key.dataset.colour = colour;
-  return dom.element("li", {}, key, ...more);
-}
+/** Legend entry with a mark in a colour; `more` follows it. */
+const legendEntry = (text, {mark, colour}, ...more) =>
+  dom.element("li", {}, dom.keyOf(mark, colour, text), ...more);
 
 /** Shows the legend of a map of attractors, the most frequent first; empty for other plots. */
 function showAttractors(map) {
@@ -89,7 +86,7 @@ function showAttractors(map) {
     .map(([name, {length}]) => {
       const share = dom.element("small", {}, percent(length / names.length));
       const style = {mark: "■", colour: map.colourOf(name)};
-      return legendEntry(name.replace("_", " "), style, share);
+      return legendEntry(name.replace("_", " "), style, " ", share);
     });
   $("sweep-attractors").replaceChildren(...items);
 }
