@@ -131,13 +131,13 @@ const inMilli = (title, column, unit = "mm") => ({
 /** A velocity, after impacts or at any time. */
 const velocity = (of, after = "") => {
   const title = `${of}′${after && " after"}`;
-  const seconds = inMilli(title, `${of}_velocity${after}`, "mm/s");
-  return {...inMilli(title, `${of}_dot${after}`), seconds};
+  const si = inMilli(title, `${of}_velocity${after}`, "mm/s");
+  return {...inMilli(title, `${of}_dot${after}`), si};
 };
 
 /**
  * Coordinates of a section. values(section, half): from its columns, where half is half a forcing
- * period; seconds: what differs per second; turns: labels at quarter turns; least: the smallest
+ * period; si: what differs for a system in SI; turns: labels at quarter turns; least: the smallest
  * value drawn, since chatter tends to zero.
  */
 export const coordinates = {

@@ -1,41 +1,11 @@
-// Units of the results: SI (s, mm/s, m/s², N s, J) or, by choice or without SI, of tau = omega0 t.
-import {textsIn} from "./store.js";
-
-const key = "vines-units";
-const tau = "τ";
-const seconds = "s, mm/s";
-
-const store = textsIn("localStorage");
-let chosen = store.getItem(key) === tau ? tau : seconds;
-const listeners = [];
-
-/** True when seconds are chosen; they apply to systems in SI only. */
-export const inSeconds = () => chosen === seconds;
-
-/** f() is called when the choice changes. */
-export const onUnits = (f) => listeners.push(f);
-
-/** Makes a menu with the entries `seconds` and `tau` the switch of the units. */
-export function unitsSwitch(menu) {
-  menu.value = chosen;
-  menu.onchange = () => {
-    chosen = menu.value;
-    store.setItem(key, chosen);
-    for (const f of listeners) f();
-  };
-  onUnits(() => {
-    menu.value = chosen;
-  });
-}
-
+// Units of the results: SI (s, mm/s, m/s², N s, J) or, of a system without SI, of tau = omega0 t.
 /** of(value) converts a value to `unit`. */
 const quantity = (unit, factor) => ({unit, of: (v) => (v == null ? v : v * factor)});
 
 // A velocity per unit of tau is a length, an energy over m1 omega0² a squared length.
 const length = quantity("mm", 1000);
 const ofTau = {
-  si: false,
-  x: {label: tau, factor: 1},
+  x: {label: "τ", factor: 1},
   time: quantity("", 1),
   at: (t) => `τ = ${t.toFixed(1)}`,
   velocity: length,
@@ -46,9 +16,8 @@ const ofTau = {
 
 /** Units for an answer with these parameters. x: the time axis; at(tau): a time as text. */
 export function unitsOf({si, derived: {omega0}}) {
-  if (!si || !inSeconds()) return ofTau;
+  if (!si) return ofTau;
   return {
-    si: true,
     x: {label: "t (s)", factor: 1 / omega0},
     time: quantity("s", 1 / omega0),
     at: (t) => `t = ${(t / omega0).toFixed(2)} s`,

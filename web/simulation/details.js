@@ -151,7 +151,7 @@ function summarise(answer, units) {
     ["impacts", String(impacts.tau.length), "chatter included"],
     ["sticking phases", String(stuck), stuck ? "shaded in the plots" : ""],
     ["damping ζ", digits(parameters.derived.zeta, 5), parameters.damping.replaceAll("_", " ")],
-    ...(units.si ? engineeringCards(answer, units) : []),
+    ...(parameters.si ? engineeringCards(answer, units) : []),
   ]);
 }
 
@@ -196,7 +196,7 @@ function accountEnergy(energy, units) {
     decay && decayTime(what, decay[name], decay.without_absorber[name], units);
   const times = [left("tau_half", "half of the energy"), left("tau_tenth", "a tenth")];
   setTexts({"energy-note": joined([supply, ...times], "; ")});
-  reveal({"energy-scale": !units.si});
+  reveal({"energy-scale": !run.answer.parameters.si});
 }
 
 // Derived parameters: unit and what they follow from.

@@ -54,7 +54,9 @@ export function pin(other) {
 
 /** Ratio of the pinned run's tau to the shown run's; on a common axis in seconds the two differ. */
 const rate = () =>
-  run.units.si ? (pinned.answer.parameters.derived.omega0 ?? 1) * run.units.x.factor : 1;
+  run.answer.parameters.si
+    ? (pinned.answer.parameters.derived.omega0 ?? 1) * run.units.x.factor
+    : 1;
 
 /** Motions over from..to in mm, that of the pinned run first. */
 function traces(from, to, columns) {

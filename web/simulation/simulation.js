@@ -6,7 +6,7 @@ import {Form, unknownText} from "../shared/form.js";
 import {Job, RequestTab} from "../shared/job.js";
 import {isSampled, motionOf} from "../shared/motion.js";
 import {joined, roundedRange} from "../shared/numbers.js";
-import {onUnits, unitsOf, unitsSwitch} from "../shared/units.js";
+import {unitsOf} from "../shared/units.js";
 import * as details from "./details.js";
 import * as machine from "./machine.js";
 import * as mainPlots from "./main_plots.js";
@@ -118,13 +118,6 @@ export class SimulationTab extends RequestTab {
       const ariaExpanded = $("form").classList.toggle("open");
       Object.assign($("sheet"), {ariaExpanded, textContent: `All ${ariaExpanded ? "▾" : "▴"}`});
     };
-    unitsSwitch($("units"));
-    onUnits(() => {
-      if (!run) return;
-      run.units = unitsOf(run.answer.parameters);
-      for (const step of this.drawing()) step();
-      details.show();
-    });
     dom.onFile($("panel-simulation"), $("load"), (file) => this.readLoad(file));
     $("measure-this").onclick = () => run && measure(run.answer);
     const texts = formsOf("v1/simulate", () => this.request.fields());
@@ -192,7 +185,6 @@ export class SimulationTab extends RequestTab {
     // The identification assumes straight flights and one R.
     $("measure-this").disabled = Boolean(answer.series || answer.parameters.restitution_plus);
     remark(answer);
-    dom.reveal({units: answer.parameters.si});
     viewport.span(0, answer.status.tau, homeOf(answer), fresh);
     if (this.wantedView) viewport.range = this.wantedView;
     this.wantedView = null;
@@ -212,8 +204,8 @@ export class SimulationTab extends RequestTab {
     this.deferred.start({fields, parts: details.wanted() ?? deferredParts});
   }
 
-  /** The steps that draw the run in the chosen units. */
-  drawing(fresh = false) {
+  /** The steps that draw the run. */
+  drawing(fresh) {
     const {request} = this;
     const {answer, fields, units} = run;
     const {parameters} = answer;

@@ -1,7 +1,7 @@
 // The regime strip: a bifurcation diagram along the parameter moved last, computed by a sweep from
 // coarse to fine: the regimes, and lambda1, the largest |x| or x at the impacts. Its marker acts as
 // the slider.
-import {bisectCenter, quantile} from "d3-array";
+import {bisectCenter} from "d3-array";
 import delay from "delay";
 import {$, countUp, setTexts} from "../shared/dom.js";
 import {usualRange} from "../shared/exponents.js";

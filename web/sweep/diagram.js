@@ -4,7 +4,6 @@ import {rangeOf} from "../shared/frame.js";
 import {levels} from "../shared/marks.js";
 import {clamp, short} from "../shared/numbers.js";
 import * as q from "../shared/quantities.js";
-import {inSeconds} from "../shared/units.js";
 import {Viewport} from "../shared/viewport.js";
 import * as labels from "./axis_labels.js";
 import {placesOf} from "./data.js";
@@ -39,7 +38,7 @@ const quarters = ["0", "π/2", "π", "3π/2", "2π"].map((text, i) => ({at: (i *
 function section(view) {
   const {data, choice} = view;
   const own = q.coordinates[data.section]?.[choice.coordinate];
-  const chosen = {...own, ...(data.parameters.si && inSeconds() && own?.seconds)};
+  const chosen = {...own, ...(data.parameters.si && own?.si)};
   const {title, label, range, log, least: lowest = -Infinity, levels: y = []} = chosen;
   const of = q.valuesOf(chosen);
   const large = (p) => of(p).filter((v) => !(v <= lowest));

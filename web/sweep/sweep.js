@@ -5,7 +5,6 @@ import {$} from "../shared/dom.js";
 import {RequestTab} from "../shared/job.js";
 import {joined, percent} from "../shared/numbers.js";
 import * as q from "../shared/quantities.js";
-import {onUnits, unitsSwitch} from "../shared/units.js";
 import * as labels from "./axis_labels.js";
 import {receive, SweepData} from "./data.js";
 import {countRegimes, DiagramView, startStyle} from "./diagram.js";
@@ -41,7 +40,7 @@ function remarksOn({points}) {
 }
 
 /** Shows the elements whose data-if names something that holds for the sweep. */
-function showParts({axes, section, defaultSet, starts, parameters, reduced, points}) {
+function showParts({axes, section, defaultSet, starts, reduced, points}) {
   const several = starts > 1;
   const holds = {
     begun: true,
@@ -52,7 +51,6 @@ function showParts({axes, section, defaultSet, starts, parameters, reduced, poin
     impact: section === "impact",
     stroboscopic: section === "stroboscopic",
     lambda: reduced === null,
-    si: parameters.si,
     free: menus.beside.value === "x_max",
     several,
     verdicts: !several, // the colours otherwise distinguish the starts
@@ -146,8 +144,6 @@ export class SweepTab extends RequestTab {
         changed({soon: true});
         this.refiner.schedule();
       });
-    unitsSwitch($("sweep-units"));
-    onUnits(() => this.redraw());
     this.listen();
   }
 
