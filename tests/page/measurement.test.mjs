@@ -256,7 +256,7 @@ test("fields too long for an address are sent as JSON", async () => {
   await page.close();
 });
 
-test("errors of a file are shown with its line, errors of a field at the field", async () => {
+test("errors of a file name its line, errors of a field are shown at the field", async () => {
   const page = await visit("?tab=measurement&preset=fig15");
   await page.click("#measure-run");
   assert.match(await page.textContent("#measure-message"), /choose a file/);
@@ -264,14 +264,9 @@ test("errors of a file are shown with its line, errors of a field at the field",
   lines[6] = "0.003,abc,1";
   await page.setInputFiles("#measure-file", asFile(lines.join("\n")));
   await page.click("#measure-run");
-  await page.waitForSelector("#measure-lines:not([hidden])");
-  assert.equal(
-    await page.textContent("#measure-message"),
-    'line 7, column displacement_m: "abc" is not a number',
-  );
-  assert.match(await page.textContent("#measure-lines .at-fault"), /^ +7 {2}0\.003,abc,1\n$/);
+  const fault = 'line 7, column displacement_m: "abc" is not a number';
+  await page.locator("#measure-message.fault", {hasText: fault}).waitFor();
   await page.setInputFiles("#measure-file", asFile(await regular()));
-  assert.equal(await page.isVisible("#measure-lines"), false);
   const b = page.locator("#measure-group-system label:has-text('b, mm') input");
   await b.fill("-1");
   await page.click("#measure-run");

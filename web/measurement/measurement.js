@@ -152,7 +152,6 @@ export class MeasurementTab extends RequestTab {
     }
     if (!this.parsed) return; // identified after reading
     this.form.showErrors([]);
-    this.quoteLine();
     this.say("identifying …");
     const {name, size, lastModified} = this.file;
     this.start({fields: {...this.form.values(), ...more}, file: [name, size, lastModified]});
@@ -175,11 +174,6 @@ export class MeasurementTab extends RequestTab {
     this.drawFile(fields);
     if (this.record) views.draw(answer);
     dom.countUp(this.results);
-  }
-
-  fail(error) {
-    super.fail(error);
-    this.quoteLine(error.message);
   }
 
   busy(is, cancelled) {
@@ -221,20 +215,6 @@ export class MeasurementTab extends RequestTab {
     if (i !== null && this.list.add(t[i])) this.say(`added an impact at ${t[i].toFixed(4)} s`);
   }
 
-  /** Quotes the lines around one with an error. */
-  quoteLine(detail = "") {
-    const line = Number(/^line (\d+)/.exec(detail)?.[1]);
-    const first = Math.max(line - 1, 1);
-    const around = this.parsed?.text.split("\n", line + 1).slice(first - 1) ?? [];
-    const lines = around.map((text, k) => {
-      const n = first + k;
-      const textContent = `${String(n).padStart(7)}  ${text.slice(0, 120).trimEnd()}\n`;
-      return dom.element("span", {className: n === line ? "at-fault" : "", textContent});
-    });
-    $("measure-lines").replaceChildren(...lines);
-    dom.reveal({"measure-lines": lines.length});
-  }
-
   /** Gives up the previous record for the file to which source() resolves, if any. */
   async read(source) {
     this.cancel();
@@ -262,7 +242,6 @@ export class MeasurementTab extends RequestTab {
     this.setAnswer(null, null);
     const about = `${file.name}, ${(file.size / 1e6).toFixed(file.size < 1e5 ? 3 : 1)} MB`;
     dom.setTexts({"measure-about": about});
-    this.quoteLine();
     this.say("reading …");
     const parsed = await records.parse(file, (share) => {
       if (isNewest()) this.say(`reading … ${(100 * share).toFixed(0)} %`);

@@ -80,7 +80,7 @@ function headingOf(above, count, separator) {
 }
 
 /**
- * Parses a CSV file into {text, names, units, columns}; names is empty without a heading. Skips
+ * Parses a CSV file into {names, units, columns}; names is empty without a heading. Skips
  * lines that the service would reject. onProgress(fraction) reports progress.
  */
 export async function parse(file, onProgress = () => {}) {
@@ -119,7 +119,7 @@ export async function parse(file, onProgress = () => {}) {
     for (const [k, column] of columns.entries()) column.push(values[k]);
   }
   const [names = [], units = []] = heading ?? [];
-  return {text, names, units, columns: columns.map((column) => Float64Array.from(column))};
+  return {names, units, columns: columns.map((column) => Float64Array.from(column))};
 }
 
 /** Usual column names: the first as a whole, the others before a space, underscore or bracket. */
