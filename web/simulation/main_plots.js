@@ -28,28 +28,28 @@ export const redraw = () => plots.refresh();
 const optionsOf = {load, x: displacement, relative, lambda: exponents, section, largest, manifold};
 const deferredPlots = ["largest", "manifold"];
 
-/** Functions that draw the plots; those that need the deferred answer are marked until then. */
-function stepsOf(...names) {
+/** Draws some plots; those that need the deferred answer are marked until then. */
+function drawPlots(...names) {
   for (const name of deferredPlots) $(`figure-${name}`).classList.toggle("pending", !run.deferred);
-  return [...names.map((name) => () => plots.draw(name, optionsOf[name]())), tell];
+  for (const name of names) plots.draw(name, optionsOf[name]());
+  tell();
 }
 
-export function drawing() {
+/** Draws the run. */
+export function draw() {
   traced = null;
   plots.common = commonOptions(run.answer);
   const deferred = run.deferred ? deferredPlots : [];
-  return stepsOf("load", "x", "relative", "lambda", "section", ...deferred);
+  drawPlots("load", "x", "relative", "lambda", "section", ...deferred);
 }
 
 /** Draws the deferred answer: eigenvalues, raw product, manifold. */
-export function showDeferred() {
-  for (const step of stepsOf("lambda", ...deferredPlots)) step();
-}
+export const showDeferred = () => drawPlots("lambda", ...deferredPlots);
 
 /** Sets or clears the run to compare with. */
 export function pin(other) {
   pinned = other;
-  if (run) for (const step of drawing()) step();
+  if (run) draw();
 }
 
 /** Ratio of the pinned run's tau to the shown run's; on a common axis in seconds the two differ. */

@@ -28,7 +28,6 @@ const deferredParts = {
 };
 
 const mostSamples = 60000; // of a run that is drawn from samples
-const large = 20000; // impacts above which a run is drawn in several tasks
 const idle = 100; // ms without an edit before the deferred parts are requested
 
 /** The range first in view: the last cycles of a periodic motion, or else the window. */
@@ -169,10 +168,7 @@ export class SimulationTab extends RequestTab {
     if ($("more").open) this.form.showOrigins(run.answer.parameters);
   }
 
-  /** Draws a run; a large one in several tasks, between which the browser handles events. */
-  async show(answer, fields) {
-    const pause = answer.impacts.tau.length > large ? dom.nextTask : null;
-    if (pause) await pause();
+  show(answer, fields) {
     const fresh = run === null || fields.fresh;
     const {forcing} = this.request.merged(fields);
     const load = [answer.parameters.forcing, forcing].find((given) => given?.time_s);
@@ -189,11 +185,7 @@ export class SimulationTab extends RequestTab {
     if (this.wantedView) viewport.range = this.wantedView;
     this.wantedView = null;
     dom.reveal({whole: viewport.zoomed});
-    for (const step of this.drawing(fresh)) {
-      if (pause) await pause();
-      if (run.answer !== answer) return;
-      step();
-    }
+    this.drawRun(fresh);
     dom.countUp(this.results, "shown");
     clearTimeout(this.deferring);
     this.deferring = setTimeout(() => this.requestMore(fields), idle);
@@ -204,28 +196,21 @@ export class SimulationTab extends RequestTab {
     this.deferred.start({fields, parts: details.wanted() ?? deferredParts});
   }
 
-  /** The steps that draw the run. */
-  drawing(fresh) {
+  drawRun(fresh) {
     const {request} = this;
     const {answer, fields, units} = run;
     const {parameters} = answer;
     const slider = sliders.sliderOf(this.lastMoved, parameters);
-    return [
-      () => {
-        sliders.show(parameters, {fresh, dragged: fields.dragged}, slider);
-        showSentence(answer, slider, units);
-        machine.showReduction(answer.energy);
-        pin.compare();
-      },
-      ...mainPlots.drawing(),
-      () => {
-        player.show();
-        describe(answer, request.textOf(fields, parameters));
-        presetMenu.markPlots(request.edited ? null : request.preset);
-        dom.reveal({regimes: !parameters.forcing}); // which need a period
-        if (!parameters.forcing) this.strip.show(request.systemOf(fields), parameters, slider);
-      },
-    ];
+    sliders.show(parameters, {fresh, dragged: fields.dragged}, slider);
+    showSentence(answer, slider, units);
+    machine.showReduction(answer.energy);
+    pin.compare();
+    mainPlots.draw();
+    player.show();
+    describe(answer, request.textOf(fields, parameters));
+    presetMenu.markPlots(request.edited ? null : request.preset);
+    dom.reveal({regimes: !parameters.forcing}); // which need a period
+    if (!parameters.forcing) this.strip.show(request.systemOf(fields), parameters, slider);
   }
 
   submit() {
