@@ -43,10 +43,10 @@ test("motions from several starts, stable and unstable branches and named specia
 test("the marker lists the motions at its place, and each opens in Simulation from its state", async () => {
   const page = await visit(`?${query}`);
   const at = () => page.textContent("#motions-at");
-  assert.match(await at(), /^At b = 15 mm: *stable, largest \|x\| 2\.6\d* mm/);
+  assert.match(await at(), /^At b = 15 mm: *stable, largest \|x\| \(mm\): 2\.6/);
   await page.focus("#plot-motions .grip");
   for (let k = 0; k < 150; ++k) await page.keyboard.press("ArrowRight");
-  assert.match(await at(), /^At b = 16\.2 mm:.*stable.*unstable, largest \|x\| 5\.\d+ mm/);
+  assert.match(await at(), /^At b = 16\.2 mm:.*stable.*unstable, largest \|x\| \(mm\): 5\.\d/);
   await page.click("#motions-at button:has-text('unstable')");
   await drawn(page, 1);
   const fields = new URL(page.url()).searchParams;

@@ -151,10 +151,10 @@ export class MotionsTab extends RequestTab {
   place(value) {
     const {parameter} = this.motions.request;
     if (value == null) return;
-    const {title, unit, of} = quantities[this.quantity.value];
+    const {label, of} = quantities[this.quantity.value];
     const found = this.motions.distinctAt(value).map((orbit) => {
       const stability = orbit.stable ? "stable" : "unstable";
-      const text = `${stability}, ${title} ${short(of(orbit))} ${unit}`.trim();
+      const text = `${stability}, ${label}: ${short(of(orbit))}`;
       return Object.assign(button(text, null, {className: "small"}), {orbit});
     });
     const where = `At ${labels.fields({[parameter]: value})}:`;

@@ -4,15 +4,11 @@ import {Marker} from "../shared/marker.js";
 import {curve, dots, texts} from "../shared/marks.js";
 import {joined, short} from "../shared/numbers.js";
 import {ZoomablePlot} from "../shared/plot.js";
-import {verdictColour} from "../shared/quantities.js";
+import * as q from "../shared/quantities.js";
 import * as labels from "../sweep/axis_labels.js";
 
-const inMm = (name) => (orbit) => (orbit[name] == null ? null : 1000 * orbit[name]);
-export const quantities = {
-  x_max: {title: "largest |x|", unit: "mm", label: "largest |x| (mm)", of: inMm("x_max")},
-  x_rms: {title: "rms of x", unit: "mm", label: "rms of x (mm)", of: inMm("x_rms")},
-  z: {title: "z", unit: "", label: "impacts per cycle z", of: ({z}) => z ?? null},
-};
+const {x_max, x_rms, z} = q.quantities;
+export const quantities = {x_max, x_rms, z};
 
 const names = {symmetry_breaking: "symmetry", end: ""};
 const stability = ({stable}) => `${stable ? "" : "un"}stable`;
@@ -57,7 +53,7 @@ export class MotionsPlot extends ZoomablePlot {
       beside: 14,
       empty: "no motion yet",
       marks: [
-        dots({...place(attractors), tints: attractors.map(verdictColour), shape: "dot", size: 2}),
+        dots({...place(attractors), tints: attractors.map(q.verdictColour), shape: "dot", size: 2}),
         ...branches.flatMap((branch) =>
           stretchesOf(branch).map((part) => curve({...part, ...place(part.list)})),
         ),

@@ -51,6 +51,7 @@ export const quantities = {
     title: "rms of x relative to that without absorber",
     levels: [1],
   },
+  x_rms: {label: "rms of x (mm)", title: "rms of x", of: (p) => mm(p.x_rms)},
   x_max: {
     label: "largest |x| (mm)",
     title: "largest |x|",
