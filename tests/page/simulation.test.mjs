@@ -1003,6 +1003,7 @@ test("a pinned run is drawn with the runs that follow, and can be swapped and un
 
 test("each plot exports its numbers as table and CSV, and its picture as SVG and PNG, with its parameters", async () => {
   const page = await still("?preset=fig9&view=100,140");
+  await enlarge(page, "relative");
   await page.click("#figure-relative .menu");
   assert.match(await page.textContent("#data h2"), /Relative motion x − y/);
   assert.match(await page.textContent("#data"), /b = 22\.0 mm, R = 0\.60, G = 20\.0 mm/);
