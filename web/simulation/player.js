@@ -4,10 +4,7 @@ import {count, shortTo} from "../shared/numbers.js";
 import * as machine from "./machine.js";
 import {run, viewport} from "./run.js";
 
-const holdTime = 150; // ms of pause after an edit
-
 let frame = 0;
-let held = 0;
 let audio = null;
 
 /** A short knock; strength: 0 to 1. */
@@ -62,14 +59,8 @@ function toggleSound() {
   attributes($("sound"), {"aria-pressed": audio !== null});
 }
 
-/** Pauses briefly while a slider is dragged. */
-export function hold() {
-  held = performance.now() + holdTime;
-}
-
 function advance(seconds) {
   if (!run || seconds > 1) return; // the browser tab was in the background
-  if (performance.now() < held) return;
   const {cursor} = viewport;
   const next = cursor + seconds * $("speed").value * run.motion.cycle;
   if (!inView(next)) return restart("play");

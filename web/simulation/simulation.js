@@ -226,7 +226,6 @@ export class SimulationTab extends RequestTab {
     this.note();
     const {name, edited} = this.request;
     presetMenu.markChip(name, edited, !name && "m1" in fields);
-    if (dragging) player.hold();
     const query = toQuery(fields);
     const isNew = query !== this.asked;
     const edit = isNew && this.asked !== null; // Back undoes it

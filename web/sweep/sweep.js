@@ -22,12 +22,8 @@ const ofQuery = {
 };
 const menus = {...ofQuery, start: $("sweep-start"), slice: $("sweep-slice")};
 
-function time(seconds) {
-  if (seconds < 1) return "less than a second";
-  if (seconds < 90) return `${seconds.toFixed(0)} s`;
-  if (seconds < 5400) return `${(seconds / 60).toFixed(0)} min`;
-  return `${(seconds / 3600).toFixed(1)} h`;
-}
+const time = (seconds) =>
+  seconds < 90 ? `${seconds.toFixed(0)} s` : `${(seconds / 60).toFixed(0)} min`;
 
 /** Failed and truncated points of a complete sweep, as text. */
 function remarksOn({points}) {
