@@ -275,7 +275,7 @@ test("a map of attractors over two initial values has a colour for each twin, an
   );
   await swept(page, 1);
   const twins = await page.$$eval("#sweep-attractors li", (items) =>
-    items.map(({textContent}) => textContent.match(/^(p1-[0-9a-f]{8})(\d+) %$/).slice(1)),
+    items.map(({textContent}) => textContent.match(/^(p1-[0-9a-f]{8}) (\d+) %$/).slice(1)),
   );
   assert.equal(twins.length, 2);
   assert.notEqual(twins[0][0], twins[1][0]);
