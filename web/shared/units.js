@@ -1,4 +1,5 @@
 // Units of the results: SI (s, mm/s, m/s², N s, J) or, of a system without SI, of tau = omega0 t.
+
 /** of(value) converts a value to `unit`. */
 const quantity = (unit, factor) => ({unit, of: (v) => (v == null ? v : v * factor)});
 
