@@ -16,31 +16,28 @@ constexpr double similar_half = 0.3;
 // Terms of the series over a step of at most 1 over the fastest rate: the next is below 1e-19.
 constexpr int arc_terms = 20;
 
-/// A solution, or a derivative of one: both obey the same linear equations.
-struct ArcColumn {
-    double x, x_dot, sin, cos;
-};
-
-/// Advances a column over h. Adds up what exceeds x + x' h and x'.
+/// Advances a solution over h, or a derivative of one: both obey the same linear equations. Adds up
+/// what exceeds x + x' h and x'.
 struct Excess {
     double x = 0, x_dot = 0;
 };
-Excess advance(ArcColumn& c, const Flow::Coefficients& law, double h) {
+Excess advance(Oscillation& o, const Flow::Coefficients& law, double h) {
     const auto [stiffness, damping, forcing, Omega] = law;
-    ArcColumn term = c;
+    Oscillation term = o;
     Excess excess;
     for (int n = 1; n <= arc_terms; ++n) {
         const double f = h / n;
         term = {
-            f * term.x_dot, f * (forcing * term.sin - stiffness * term.x - damping * term.x_dot),
-            f * Omega * term.cos, -f * Omega * term.sin};
+            f * term.x_dot,
+            f * (forcing * term.sin_theta - stiffness * term.x - damping * term.x_dot),
+            f * Omega * term.cos_theta, -f * Omega * term.sin_theta};
         if (n > 1) excess.x += term.x;
         excess.x_dot += term.x_dot;
-        c.sin += term.sin;
-        c.cos += term.cos;
+        o.sin_theta += term.sin_theta;
+        o.cos_theta += term.cos_theta;
     }
-    c.x += c.x_dot * h + excess.x;
-    c.x_dot += excess.x_dot;
+    o.x += o.x_dot * h + excess.x;
+    o.x_dot += excess.x_dot;
     return excess;
 }
 
@@ -126,8 +123,7 @@ Arc arc_over(const Flow::Coefficients& law, const Oscillation& start, double s) 
     const double rate = std::max({1.0, stiffness, damping, Omega});
     const double steps = std::ceil(s * rate), h = s / std::max(steps, 1.0);
     // The motion; the unforced motion from x' = 1; the derivative with respect to the phase.
-    ArcColumn motion{start.x, start.x_dot, start.sin_theta, start.cos_theta}, free{0, 1, 0, 0},
-        phase{0, 0, start.cos_theta, -start.sin_theta};
+    Oscillation motion = start, free{0, 1, 0, 0}, phase{0, 0, start.cos_theta, -start.sin_theta};
     Arc arc{};
     double before = 0;  // x' - x0' at the start of the step
     for (double k = 0; k < std::max(steps, 1.0); ++k) {
@@ -137,7 +133,7 @@ Arc arc_over(const Flow::Coefficients& law, const Oscillation& start, double s) 
         arc.bend += before * h + excess.x;
         before += excess.x_dot;
     }
-    arc.end = {motion.x, motion.x_dot, motion.sin, motion.cos};
+    arc.end = motion;
     arc.bend /= s;
     arc.gain = before;
     // The unforced motion from (x', x) = (0, 1) is u' + damping u.
