@@ -117,9 +117,9 @@ inline constexpr Property<std::vector<StickingPhase>> sticking_columns[] = {
      at<&StickingPhase::start, &StickStart::impacts>},
 };
 
-inline constexpr Property<std::vector<GrazingEvent>> touch_columns[] = {
-    {quantity.tau, at<&GrazingEvent::tau>},
-    {quantity.side, at<&GrazingEvent::side>},
+inline constexpr Property<std::vector<ContactEvent>> touch_columns[] = {
+    {quantity.tau, at<&ContactEvent::tau>},
+    {quantity.side, at<&ContactEvent::side>},
 };
 
 /// Moduli of the eigenvalues of J, M, T at each impact.

@@ -40,7 +40,7 @@ struct Record {
     Outcome outcome;
     std::vector<Impact> impacts;
     std::vector<StickingPhase> sticks;
-    std::vector<GrazingEvent> touches;
+    std::vector<ContactEvent> touches;
 };
 /// Simulates to tau_end or max_impacts, with additional observers.
 Record record(

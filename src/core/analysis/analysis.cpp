@@ -270,9 +270,7 @@ struct AnalysisConclusion {
 
     void sections() {
         const StroboscopicRecord& record = o.at_section_phase;
-        std::size_t first = 0, end = record.states.size();
-        while (first < end && record.tau(first) < w.window.from) ++first;
-        while (end > first && record.tau(end - 1) > w.window.to) --end;
+        auto [first, end] = record.range(w.window);
         const std::size_t cycles = end - first, most = w.most_points;
         if (o.section.seen > static_cast<long>(most) || cycles > most)
             warn(warning::SectionsCut{most, o.section.seen, cycles});

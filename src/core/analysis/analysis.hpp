@@ -203,7 +203,7 @@ struct Analysis {
     std::optional<ImpactRange> unkept_impacts;
     double typical_speed = 1;  ///< median of the impacts' relative speeds
     std::vector<StickingPhase> sticks;
-    std::vector<GrazingEvent> touches;
+    std::vector<ContactEvent> touches;
     std::optional<WindowExponents> exponents;
     std::vector<WindowExponents> windows;
     std::optional<TransferModuli> moduli;

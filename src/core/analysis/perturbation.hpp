@@ -104,7 +104,7 @@ struct Perturbation {
     State start;      ///< initial difference of the second run
     Outcome outcome;  ///< of the second run
     Series series;    ///< of the second run, at the reference's times
-    std::vector<GrazingEvent> impacts;
+    std::vector<ContactEvent> impacts;
     /// At the times of the series: the distance as defined above, and the tangent vector's length.
     std::vector<double> distance, tangent;
     /// Time from which the impacts of both runs no longer correspond (opposite walls, or one

@@ -37,20 +37,6 @@ constexpr long most_impacts_per_cycle = 1000;  // exceeded by endless chatter (R
 // Longest time, in cycles, in which the next contact of a flying ball is searched.
 constexpr double longest_flight = 10000;
 
-/// States at whole cycles up to tau_end.
-std::span<const State> states_before(const StroboscopicRecord& record, double tau_end) {
-    std::size_t end = record.states.size();
-    while (end > 0 && record.tau(end - 1) > tau_end) --end;
-    return std::span(record.states).first(end);
-}
-
-/// Those of the states that lie in the window.
-std::span<const State> in_window(const RegimeEvidence& e, std::span<const State> states) {
-    std::size_t first = 0;
-    while (first < states.size() && e.stroboscopic.tau(first) < e.tau_start) ++first;
-    return states.subspan(first);
-}
-
 /// A possible period: the power of ten of its miss, and its cycles.
 using Return = std::pair<int, std::size_t>;
 
@@ -376,7 +362,8 @@ Regime regime_of(
     r.z = r.z_overall;
     if (const auto alone = std::ranges::find(r.cycles_with, 1.0); alone != r.cycles_with.end())
         r.in_every_cycle = static_cast<int>(alone - r.cycles_with.begin());
-    const std::span<const State> states = states_before(e.stroboscopic, e.tau_end);
+    const auto [first, end] = e.stroboscopic.range({e.tau_start, e.tau_end});
+    const std::span<const State> states = std::span(e.stroboscopic.states).first(end);
     // The first state in the window only shows that the window has any.
     if (r.forced && r.has_period && states.size() > 1 &&
         e.stroboscopic.tau(states.size() - 2) >= e.tau_start) {
@@ -390,7 +377,7 @@ Regime regime_of(
         else r.orbit.reset();
         if (!r.orbit && e.by_exponents == Verdict::chaotic) settle_later(p, states, scale, e, r);
         else if (!r.orbit && e.neutral)
-            r.quasi_periodic = quasi_periodic(in_window(e, states), scale);
+            r.quasi_periodic = quasi_periodic(states.subspan(first), scale);
         if (r.orbit) r.z = static_cast<double>(r.orbit->contacts) / r.orbit->cycles;
         const double settled = arrival ? arrival->settled.value_or(e.tau_end) : e.tau_end;
         if (r.capture && exponents_before) examine_before(p, start, e, settled, *r.capture);

@@ -69,7 +69,7 @@ private:
 
 }  // namespace
 
-void Synchrony::add(const CountedContact& contact) {
+void Synchrony::add(const ContactEvent& contact) {
     const bool is_synchronised =
         contact.side != last_.side &&
         std::abs(contact.tau - last_.tau - half_cycle_) < synchrony_tolerance * half_cycle_;
@@ -103,7 +103,7 @@ void CyclePositions::add(double cycles) {
     bytes_.push_back(static_cast<std::uint8_t>(step));
 }
 
-void Rhythm::count(const CountedContact& contact) {
+void Rhythm::count(const ContactEvent& contact) {
     if (synchrony_.contacts == 0) first_ = contact.tau;
     last_ = contact.tau;
     synchrony_.add(contact);

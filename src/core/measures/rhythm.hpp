@@ -29,7 +29,7 @@ public:
     Synchrony(double half_cycle, std::size_t most_stretches)
         : stretches(most_stretches),
           half_cycle_(half_cycle) {}
-    void add(const CountedContact& contact);
+    void add(const ContactEvent& contact);
     /// Call after the last contact.
     void finish() {
         if (contacts == 0) return;
@@ -57,7 +57,7 @@ private:
     const double half_cycle_;
     Mark alternating_from_;
     Mark free_from_;  // first contact not yet in a stretch
-    CountedContact last_{};
+    ContactEvent last_{};
 };
 
 /// Positions of the contacts in 1/128 cycle, as differences of one byte, two after a pause of a
@@ -119,11 +119,11 @@ public:
     ContactCounts finish(const Interval& reached);
 
 private:
-    void on_contact(const CountedContact& contact) override {
+    void on_contact(const ContactEvent& contact) override {
         if (contact.tau < window_.from) before_ = contact;
         else if (contact.tau <= window_.to) count(contact);
     }
-    void count(const CountedContact& contact);
+    void count(const ContactEvent& contact);
     double z(const Interval& reached) const;
     double z_error(const Interval& reached) const;
     void count_cycles(const Interval& reached, ContactCounts& counts) const;
@@ -133,7 +133,7 @@ private:
     const std::size_t most_listed_;
     Synchrony synchrony_{0.5 * cycle_, most_listed_};
     double first_ = 0, last_ = 0;
-    std::optional<CountedContact> before_;  // the last contact before the window
+    std::optional<ContactEvent> before_;  // the last contact before the window
     const WindowSteps steps_{window_, cycle_};
     const double steps_per_tau_ = 1 / steps_.duration();
     std::vector<double> in_steps_ = std::vector<double>(steps_.count());  // contacts in each step

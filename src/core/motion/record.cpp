@@ -131,7 +131,7 @@ void ContactStream::on_impact(const Impact& impact) {
 }
 
 void ContactStream::flush_contacts() {
-    for (const CountedContact& contact : held_) on_contact(contact);
+    for (const ContactEvent& contact : held_) on_contact(contact);
     held_.clear();
 }
 

@@ -146,6 +146,13 @@ public:
     /// Number k of the first state kept.
     long first() const { return next() - static_cast<long>(states.size()); }
     double tau(std::size_t k) const { return tau_of(first() + static_cast<long>(k)); }
+    /// The first k with tau(k) in a window, and the first one after it.
+    std::pair<std::size_t, std::size_t> range(const Interval& window) const {
+        std::size_t first = 0, end = states.size();
+        while (first < end && tau(first) < window.from) ++first;
+        while (end > first && tau(end - 1) > window.to) --end;
+        return {first, end};
+    }
     std::vector<State> states;  ///< states[k] is the state at tau(k)
 
 private:
@@ -253,30 +260,26 @@ public:
     void on_release(double tau) override { entries.back().tau_end = tau; }
 };
 
-/// A contact with zero relative speed, without an impact.
-struct GrazingEvent {
+/// A contact: its time, and the side of its wall.
+struct ContactEvent {
     double tau;
     int side;
 };
 
-class GrazingRecord : public Observer, public LastOf<GrazingEvent> {
+/// Contacts with zero relative speed, without an impact.
+class GrazingRecord : public Observer, public LastOf<ContactEvent> {
 public:
     using LastOf::LastOf;
     void on_grazing_contact(double tau, int side) override { add({tau, side}); }
 };
 
-/// A contact as regimes count it: an impact, or a complete chatter that ends in sticking.
-struct CountedContact {
-    double tau;
-    int side;
-};
-
 /// Keeps only the first impact of a chatter.
-inline void fold_chatter(std::vector<CountedContact>& contacts, const StickStart& start) {
+inline void fold_chatter(std::vector<ContactEvent>& contacts, const StickStart& start) {
     if (start.impacts > 1)
         contacts.resize(contacts.size() - static_cast<std::size_t>(start.impacts - 1));
 }
 
+/// Contacts as regimes count them: an impact, or a complete chatter that ends in sticking.
 class ContactRecord : public Observer {
 public:
     void on_impact(const Impact& impact) override {
@@ -289,7 +292,7 @@ public:
     }
     void on_release(double tau) override { sticks.back().to = tau; }
 
-    std::vector<CountedContact> contacts;
+    std::vector<ContactEvent> contacts;
     std::vector<Interval> sticks;
     long impacts = 0;
 };
@@ -307,13 +310,13 @@ public:
     }
 
 protected:
-    virtual void on_contact(const CountedContact& contact) = 0;
+    virtual void on_contact(const ContactEvent& contact) = 0;
     /// Reports the stored contacts; call it after the run.
     void flush_contacts();
 
 private:
     const double longest_bounce_;
-    std::vector<CountedContact> held_;
+    std::vector<ContactEvent> held_;
 };
 
 }  // namespace vines

@@ -149,12 +149,12 @@ bool count_period(const Parameters& p, const StopRequest& stop, PeriodicOrbit& o
     const double period = orbit.cycles * p.cycle();
     if (!follow(p, orbit.state, orbit.tau, 3 * period, stop, {&contacts, &impacts})) return false;
     double from = contacts.sticks.empty() ? orbit.tau : contacts.sticks[0].to;
-    const auto first = std::ranges::lower_bound(contacts.contacts, from, {}, &CountedContact::tau);
+    const auto first = std::ranges::lower_bound(contacts.contacts, from, {}, &ContactEvent::tau);
     if (first != contacts.contacts.end()) from = first->tau;
     const double to = from + period * (1 - contact_rounding);
     const auto within = [&](double t) { return t >= from && t < to; };
     orbit.contacts = std::ranges::count_if(
-        contacts.contacts, [&](const CountedContact& c) { return within(c.tau); });
+        contacts.contacts, [&](const ContactEvent& c) { return within(c.tau); });
     orbit.impacts =
         std::ranges::count_if(impacts.entries, [&](const Impact& i) { return within(i.tau); });
     orbit.sticks =

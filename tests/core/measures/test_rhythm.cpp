@@ -16,10 +16,10 @@ class ContactCollector : public ContactStream {
 public:
     using ContactStream::ContactStream;
     void finish() { flush_contacts(); }
-    std::vector<CountedContact> contacts;
+    std::vector<ContactEvent> contacts;
 
 private:
-    void on_contact(const CountedContact& contact) override { contacts.push_back(contact); }
+    void on_contact(const ContactEvent& contact) override { contacts.push_back(contact); }
 };
 
 /// Random system near Table 1; the family includes chatter, sticking, contacts on one side, and
@@ -36,8 +36,8 @@ Parameters random_system_near_table1(std::mt19937_64& engine) {
 }
 
 /// Number of contacts in [from, to), from a list.
-long contacts_between(const std::vector<CountedContact>& contacts, double from, double to) {
-    return std::count_if(contacts.begin(), contacts.end(), [&](const CountedContact& c) {
+long contacts_between(const std::vector<ContactEvent>& contacts, double from, double to) {
+    return std::count_if(contacts.begin(), contacts.end(), [&](const ContactEvent& c) {
         return c.tau >= from && c.tau < to;
     });
 }
