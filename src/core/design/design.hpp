@@ -7,12 +7,40 @@
 // smaller ones, which are those of larger b, scaled.
 #pragma once
 
-#include "core/design/tolerances.hpp"
 #include "core/design/tuned_mass_damper.hpp"
 #include "core/sweep/parallel.hpp"
 #include "core/sweep/point.hpp"
 
 namespace vines {
+
+// Scatter of an absorber and its host (tolerances.cpp).
+
+/// Values with scatter, in the order in which they are set: f0 changes k1, damping_ratio c1.
+enum class Toleranced { m1, k1, f0, c1, damping_ratio, m2, b, R, amplitude };
+
+/// A distribution of a value, or of a factor on the nominal value.
+struct Tolerance {
+    Toleranced what;
+    bool is_normal, is_factor;  ///< otherwise uniform; otherwise of the value in SI
+    double first, second;       ///< mean and standard deviation, or both ends
+};
+
+/// An absorber and its host. The amplitude is that of the base over its nominal value.
+struct BuiltAbsorber {
+    SiParameters si;  ///< without F and f
+    double b, R, amplitude = 1;
+};
+
+double value_of(const BuiltAbsorber& absorber, Toleranced what);
+
+/// The values of a sample. A value is drawn again until it is valid, R up to 1, others positive;
+/// after a thousand draws it becomes the nearest valid one.
+BuiltAbsorber drawn(
+    const std::vector<Tolerance>& tolerances, const BuiltAbsorber& nominal, std::uint64_t seed,
+    std::size_t index);
+
+/// Quantile of values in ascending order, linear between them; infinite if its neighbour is.
+double quantile(const std::vector<double>& ascending, double probability);
 
 struct DesignPlan {
     Host host;                   ///< its base amplitude is the largest

@@ -1,8 +1,11 @@
-#include "core/design/tolerances.hpp"
-
+// Scatter of an absorber and its host: each sample draws their values from distributions.
+//
+// A sample depends only on the seed and its index, so that samples computed in parts agree bit for
+// bit; a value depends on no other distribution.
 #include <algorithm>
 #include <cmath>
 
+#include "core/design/design.hpp"
 #include "core/motion/elementary.hpp"
 
 namespace vines {
