@@ -193,13 +193,6 @@ void find_linear_stretch(
         stretch, slope_through(times, log_distances), lambda1_over(p, start, stretch, limits)};
 }
 
-/// Cuts a series to the times it shares with the reference: rounding can shift the last one.
-void keep_common(Series& s, const Series& reference) {
-    const auto common = std::ranges::mismatch(s.tau, reference.tau);
-    const auto size = static_cast<std::size_t>(common.in1 - s.tau.begin());
-    for (auto* column : s.columns()) column->resize(size);
-}
-
 }  // namespace
 
 State random_difference(std::uint64_t seed, double size) {
@@ -280,7 +273,10 @@ Perturbation perturbation_of(
         if (!c.stick) r.impacts.push_back({c.tau, c.side});
     second.look_ahead(r.outcome);
     r.series = second.take_series();
-    keep_common(r.series, reference.series());
+    // Cut to the times that it shares with the reference: rounding can shift the last one.
+    const auto common = std::ranges::mismatch(r.series.tau, reference.series().tau);
+    const auto size = static_cast<std::size_t>(common.in1 - r.series.tau.begin());
+    for (auto* column : r.series.columns()) column->resize(size);
     const ContactPairing both(reference.contacts, second.contacts, r.outcome.tau);
     r.parted = both.parted;
     const std::vector<char> comparable = measure_distances(p, reference, both.gaps, r);

@@ -54,19 +54,6 @@ AnalysisRequest wanted_of(const Parameters& p, const State& start, const PointOp
         .most_listed = 1};
 }
 
-/// Drops the lists: a row of points is kept in memory.
-Regime without_lists(Regime regime) {
-    for (auto* list : {&regime.moving_tau, &regime.moving_z, &regime.cycles_with}) *list = {};
-    regime.stretches = {};
-    return regime;
-}
-
-/// A capture outweighs the transient before it.
-Verdict final_verdict(Verdict verdict, const Regime& regime) {
-    if (!regime.capture || verdict == Verdict::none) return verdict;
-    return regime.type == RegimeType::none ? Verdict::none : Verdict::regular;
-}
-
 /// lambda1 from the window's start to the last entry of the history up to tau.
 double lambda1_until(const TransferProduct& product, double tau) {
     const ExponentHistory& h = product.qr_history();
@@ -139,7 +126,10 @@ double poisson_mean(int count, double probability) {
 void set_conclusions(PointResult& r, Analysis& a, double cycle) {
     r.lambda = a.exponents->product.qr();
     r.standard_error = a.exponents->growth.standard_error;
-    r.verdict = final_verdict(a.exponents->judgement.verdict, *a.regime);
+    r.verdict = a.exponents->judgement.verdict;
+    // A capture outweighs the transient before it.
+    if (a.regime->capture && r.verdict != Verdict::none)
+        r.verdict = a.regime->type == RegimeType::none ? Verdict::none : Verdict::regular;
     r.stationary = std::ranges::none_of(a.warnings, [](const Warning& w) {
         return std::holds_alternative<warning::NotStationary>(w);
     });
@@ -149,7 +139,10 @@ void set_conclusions(PointResult& r, Analysis& a, double cycle) {
         r.lambda1_after = capture->after[0];
         if (capture->tau) r.capture_cycle = std::round(*capture->tau / cycle);
     }
-    r.regime = without_lists(std::move(*a.regime));
+    r.regime = std::move(*a.regime);
+    // A row of points is kept in memory, without the lists.
+    for (auto* list : {&r.regime.moving_tau, &r.regime.moving_z, &r.regime.cycles_with}) *list = {};
+    r.regime.stretches = {};
 }
 
 }  // namespace
