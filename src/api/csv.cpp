@@ -185,9 +185,8 @@ public:
     void take(const CsvLine& line) {
         if (const auto comment = comment_of(line.text)) comment_ = {line.number, *comment};
         else before_ = std::exchange(last_, line);
-        something_ = true;
     }
-    bool has_something() const { return something_; }
+    bool has_something() const { return last_.number > 0 || comment_.number > 0; }
 
     /// Named empty columns for `count` cells; `first` is the first data line.
     std::vector<CsvColumn> columns(const CsvLine& first, std::size_t count, char separator) const {
@@ -235,7 +234,6 @@ private:
     }
 
     CsvLine last_, before_, comment_;
-    bool something_ = false;
 };
 
 /// The separator of a line "sep=;", which spreadsheets write and read.
@@ -257,14 +255,6 @@ void complete_cells(
     std::vector<Cell>& cells, const CsvLine& line, std::size_t columns, char separator) {
     if (cells.size() < columns && line.text.back() == separator) cells.resize(columns);
     else if (cells.size() != columns) fault_of_length(line, cells.size(), columns);
-}
-
-[[noreturn]] void refuse_empty(const Heading& heading) {
-    throw Problem(
-        422, heading.has_something()
-                 ? "the record has no line of two or more numbers, separated by semicolons, tabs, "
-                   "commas or blanks"
-                 : "the record is empty: it needs a header and lines of numbers");
 }
 
 }  // namespace
@@ -325,7 +315,12 @@ Csv parse_csv(std::string_view bytes, const ReadLimits& limits) {
         }
         csv.lines.push_back(static_cast<std::uint32_t>(line.number));
     }
-    if (csv.columns.empty()) refuse_empty(heading);
+    if (csv.columns.empty())
+        throw Problem(
+            422, heading.has_something()
+                     ? "the record has no line of two or more numbers, separated by semicolons, "
+                       "tabs, commas or blanks"
+                     : "the record is empty: it needs a header and lines of numbers");
     return csv;
 }
 

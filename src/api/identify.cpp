@@ -155,7 +155,7 @@ Json describe_direct(
         {"impacts", describe(identified_columns, listed(found.impacts))},
         {"restitution", describe_walls(found)},
         {"lambda", column(direct->lambda)}};
-    if (!r.includes("direct_exponents")) return j;
+    if (!r.include.contains("direct_exponents")) return j;
     Warnings odd;
     j["exponents"] = describe_measured(direct->exponents, direct->stretches, found.impacts, odd);
     for (const std::string& text : odd) warnings.push_back("direct: " + text);
@@ -351,7 +351,7 @@ Json identify_answer(const IdentifyRequest& r, const IdentificationWatch& watch)
     answer["verdict_reason"] = doubts.empty() ? reason_of(judged) : doubts[0];
     if (m.is_record()) {
         answer["direct"] = describe_direct(r, result.direct, warnings);
-        if (r.includes("motion")) answer["motion"] = describe_motion(r, result, warnings);
+        if (r.include.contains("motion")) answer["motion"] = describe_motion(r, result, warnings);
         answer["forward"] = describe_forward(result.forward);
     }
     if (r.system.si)

@@ -25,8 +25,6 @@ struct IdentifyRequest {
     bool forcing_fitted = false;             ///< G comes from the measurement
     std::set<std::string> include;           ///< additional parts of the answer
     std::size_t most_points;                 ///< of the motion
-
-    bool includes(const char* part) const { return include.contains(part); }
 };
 
 /// Reads JSON {fields..., record: {time_s, displacement_m, acceleration_m_s2}} or {fields...,

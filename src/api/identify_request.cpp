@@ -126,7 +126,7 @@ IdentifyRequest read_fields(const Json& given, bool with_record, bool forcing_fi
         refuse(
             {{"/include", r.include, nullptr,
               "motion and direct_exponents need a record instead of a list of impacts"}});
-    if (r.includes("direct_exponents")) m.direct_estimators = m.estimators;
+    if (r.include.contains("direct_exponents")) m.direct_estimators = m.estimators;
     r.most_points = merged["max_points"];
     return r;
 }

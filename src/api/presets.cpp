@@ -193,22 +193,17 @@ void add_machines(std::vector<Preset>& list) {
                     {"cycles", 300}})});
 }
 
-std::vector<Preset> make_presets() {
-    std::vector<Preset> list = figures();
-    add_table_2(list);
-    add_table_3(list);
-    add_experiments(list);
-    add_machines(list);
-    return list;
-}
-
 constexpr const char* example_preset = "fig20";
 constexpr double example_seconds = 20;
 
 }  // namespace
 
 const std::vector<Preset>& presets() {
-    static const std::vector<Preset> list = make_presets();
+    static const std::vector<Preset> list = [] {
+        std::vector<Preset> all = figures();
+        for (const auto add : {add_table_2, add_table_3, add_experiments, add_machines}) add(all);
+        return all;
+    }();
     return list;
 }
 

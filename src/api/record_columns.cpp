@@ -72,14 +72,6 @@ std::string pointer_to(const CsvColumn& column) {
               "\" is unknown; known units: " + joined(unit_names(q)) + remark}});
 }
 
-/// The unit in the row of units; null if none.
-const Unit* unit_of_row(const Channel& q, const CsvColumn& column) {
-    if (unit_spelling(column.unit).empty()) return nullptr;
-    const Unit* named = known(q, column.unit);
-    if (!named) refuse_unit(q, column, column.unit, "");
-    return named;
-}
-
 /// The unit in the column's name; null if none.
 const Unit* unit_of_name(const Channel& q, const CsvColumn& column, bool named_by_request) {
     const std::optional<Suffix> suffix = suffix_of(q, column.name);
@@ -99,7 +91,8 @@ double unit_factor(const Channel& q, const Json& fields, const CsvColumn& column
     if (fields.contains(field))
         requested = &*std::ranges::find(q.units, fields[field].get<std::string>(), &Unit::name);
     const Unit* named = unit_of_name(q, column, fields.contains(q.name + "_column"));
-    const Unit* in_row = unit_of_row(q, column);
+    const Unit* const in_row = known(q, column.unit);
+    if (!in_row && !unit_spelling(column.unit).empty()) refuse_unit(q, column, column.unit, "");
     if (named && in_row && named != in_row)
         refuse(
             {{pointer_to(column), shortened(column.unit), Json::array({named->name}),

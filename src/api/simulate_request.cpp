@@ -73,18 +73,14 @@ Parts parts_of(const std::set<std::string>& include) {
         .manifold = include.contains("manifold")};
 }
 
-/// True if the answer reports the field among its parameters. The other fields of a run and its
-/// output are lists and objects; their effect shows in the parts of the answer.
-bool is_reported(const Field& f) {
-    return (f.group == "run" || f.group == "output") &&
-           (f.type == FieldType::number || f.type == FieldType::integer ||
-            f.type == FieldType::interval);
-}
-
-/// Adds the origin of the run's values.
+/// Adds the origin of the run's values among the parameters of the answer. The other fields of a
+/// run and its output are lists and objects; their effect shows in the parts of the answer.
 void add_origins(std::map<std::string, std::string>& origin, const MergedFields& l) {
     for (const Field& f : l.table)
-        if (is_reported(f)) origin[f.name] = l.origin(f.name);
+        if ((f.group == "run" || f.group == "output") &&
+            (f.type == FieldType::number || f.type == FieldType::integer ||
+             f.type == FieldType::interval))
+            origin[f.name] = l.origin(f.name);
     if (l.has("cycles")) origin["tau_end"] = "follows from cycles";
     else origin["cycles"] = "follows from tau_end";
 }

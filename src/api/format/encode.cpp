@@ -303,15 +303,11 @@ private:
     std::size_t number_ = 0;
 };
 
-std::string shape_of(const AnswerList& list) {
-    const char* const entry = list.width() == 1 ? "" : list.width() == 4 ? " 4" : " 4, 4";
-    return fmt::format("({},{})", list.size(), entry);
-}
-
 /// Header of the NPY format, version 1.0, padded to a multiple of 64 bytes.
 std::string npy_header(const std::string& type, const AnswerList& list) {
+    const char* const entry = list.width() == 1 ? "" : list.width() == 4 ? " 4" : " 4, 4";
     std::string header = fmt::format(
-        "{{'descr': '{}', 'fortran_order': False, 'shape': {}, }}", type, shape_of(list));
+        "{{'descr': '{}', 'fortran_order': False, 'shape': ({},{}), }}", type, list.size(), entry);
     constexpr std::size_t before = 10, step = 64;
     header.resize((before + header.size() + step) / step * step - before - 1, ' ');
     std::string file = "\x93NUMPY";

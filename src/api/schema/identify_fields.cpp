@@ -43,22 +43,12 @@ Field column_row(const Channel& c) {
         "name of the column of " + (c.forcing.empty() ? c.quantity : c.forcing)};
 }
 
-Field unit_row(const Channel& c) {
-    return {
-        c.name + "_unit", kinds::choice(unit_names(c)), c.units[0].name,
-        "unit of " + c.quantity + ", unless the column's name or a row of units gives one"};
-}
-
-std::vector<std::string> fixable() {
-    std::vector<std::string> names = enum_choices<Unknown>();
-    names.insert(names.begin() + 1, {"F", "phase"});
-    return names;
-}
-
 FieldTable record_rows() {
     using namespace kinds;
+    std::vector<std::string> fixable = enum_choices<Unknown>();
+    fixable.insert(fixable.begin() + 1, {"F", "phase"});
     FieldTable rows = {
-        {"fixed", choices(fixable()), Json::array(),
+        {"fixed", choices(fixable), Json::array(),
          "quantities that are not fitted to the record: f, F, phase, omega0, zeta, b and R keep "
          "the values of the other fields, a sensor counts as free of errors"},
         {"fit", choices({"mu", "R_of_speed"}), Json::array(),
@@ -77,7 +67,11 @@ FieldTable record_rows() {
         &base_displacement_channel,
         &force_channel};
     for (const Channel* channel : channels) rows.push_back(column_row(*channel));
-    for (const Channel* channel : channels) rows.push_back(unit_row(*channel));
+    for (const Channel* channel : channels)
+        rows.push_back(
+            {channel->name + "_unit", choice(unit_names(*channel)), channel->units[0].name,
+             "unit of " + channel->quantity +
+                 ", unless the column's name or a row of units gives one"});
     rows.push_back(
         {"threshold", number({3, 1000}, "standard deviations of the noise"), 6,
          "smallest height at which a spike of the acceleration can be an impact"});
