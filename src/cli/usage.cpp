@@ -184,11 +184,6 @@ std::string italic(const std::string& text) { return "\\fI" + roff(text) + "\\fR
 
 char capital(char c) { return static_cast<char>(std::toupper(static_cast<unsigned char>(c))); }
 
-std::string capitals(std::string text) {
-    std::ranges::transform(text, text.begin(), capital);
-    return text;
-}
-
 std::string sentence(std::string text) {
     if (text.empty()) return text;
     text[0] = capital(text[0]);
@@ -291,13 +286,14 @@ std::string section_of_notes(const CLI::App& app) {
 
 std::string manual_page(const CLI::App& app) {
     const std::string& name = app.get_name();
-    std::string summary = app.get_description();
+    std::string title = name, summary = app.get_description();
+    std::ranges::transform(title, title.begin(), capital);
     if (summary.ends_with('.')) summary.pop_back();
     return fmt::format(
                ".TH {} 1 \"\" \"{} {}\" \"User Commands\"\n.nh\n.ad l\n"
                ".SH NAME\n{} \\- {}\n.SH SYNOPSIS\n{} {} [{}]\n.SH FLAGS\n",
-               capitals(name), name, api::version(), name, roff(summary), bold(name),
-               italic("subcommand"), italic("flags")) +
+               title, name, api::version(), name, roff(summary), bold(name), italic("subcommand"),
+               italic("flags")) +
            entries(app) + section_of_commands(app) + section_of_variables(app) +
            section_of_notes(app);
 }

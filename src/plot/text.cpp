@@ -82,7 +82,9 @@ public:
         std::string out;
         if (!plot.title.empty()) out += plot.title + "\n";
         out += plot.y_label + "\n";
-        const std::map<int, std::string> at_ticks = tick_labels(), at_ends = end_labels();
+        std::map<int, std::string> at_ticks, at_ends = end_labels();
+        for (double t : y_ticks(y_ticks_of(terminal_)))
+            at_ticks[down(t) / dots_down] = y_tick_label(t);
         for (int row = 0; row < height_; ++row) {
             const auto tick = at_ticks.find(row), end = at_ends.find(row);
             out += fmt::format(
@@ -185,13 +187,6 @@ private:
     std::string coloured(const std::string& what, const Curve& curve) const {
         if (!terminal_.colours) return what;
         return fmt::format("\x1b[38;5;{}m{}\x1b[0m", terminal_colour(curve.colour), what);
-    }
-
-    std::map<int, std::string> tick_labels() const {
-        std::map<int, std::string> labels;
-        for (double t : y_ticks(y_ticks_of(terminal_)))
-            labels[down(t) / dots_down] = y_tick_label(t);
-        return labels;
     }
 
     /// Labels by row: where the curve ends, else at the next free row below, else above.
