@@ -17,7 +17,9 @@ StartBox box_of(const Json& box, const State& start) {
     return ranges;
 }
 
-BasinPlan basin_plan(const SweepRequest& r, const Json& given) {
+/// Polls while it finds the starts.
+std::shared_ptr<Basins> basins_of(
+    const SweepRequest& r, const Json& given, const CancelCheck& cancel) {
     const WithDefaults field{basins_fields(), given};
     BasinPlan plan{
         .box = {},
@@ -31,15 +33,14 @@ BasinPlan basin_plan(const SweepRequest& r, const Json& given) {
         if (!system)
             refuse({{"/axis", value, nullptr, "the base forms no valid system with this value"}});
         plan.box = box_of(given["box"], system->start);
-        const std::size_t found =
-            starts_in(plan.box, system->parameters, plan.count, plan.seed).size();
-        if (found < plan.count)
-            refuse(
-                {{"/box", given["box"], nullptr,
-                  "the box hardly meets the cavity: |x0 - y0| <= b holds at only " +
-                      std::to_string(found) + " starts in it"}});
     }
-    return plan;
+    auto basins = std::make_shared<Basins>(plan, [&cancel] { cancel.poll(); });
+    if (const std::size_t found = basins->fewest_starts(); found < plan.count)
+        refuse(
+            {{"/box", given["box"], nullptr,
+              "the box hardly meets the cavity: |x0 - y0| <= b holds at only " +
+                  std::to_string(found) + " starts in it"}});
+    return basins;
 }
 
 Json describe(const std::optional<Estimate>& estimate) {
@@ -81,7 +82,7 @@ SweepRequest read_basins_request(
         SweepRequest r = read_grid(grid, count.get<std::size_t>(), most_points, cancel);
         check_basins(r);
         r.given.erase("axes");
-        r.basins = std::make_shared<Basins>(basin_plan(r, given));
+        r.basins = basins_of(r, given, cancel);
         r.plan.system_at = [basins = r.basins](const Place& place) {
             return basins->system_of(place);
         };

@@ -204,8 +204,9 @@ std::vector<State> starts_in(
     return starts;
 }
 
-Basins::Basins(BasinPlan plan) : plan_(std::move(plan)) {
+Basins::Basins(BasinPlan plan, const std::function<void()>& poll) : plan_(std::move(plan)) {
     for (const double value : plan_.values) {
+        poll();
         systems_.push_back(*plan_.system_at(value));
         starts_.push_back(
             starts_in(plan_.box, systems_.back().parameters, plan_.count, plan_.seed));

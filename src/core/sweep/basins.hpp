@@ -8,8 +8,10 @@
 // does not depend on which motions were known.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstdint>
+#include <functional>
 #include <map>
 #include <mutex>
 
@@ -95,10 +97,15 @@ struct BasinsAt {
 /// Collects the results of all starts. Numbers of starts: value + start * values.
 class Basins {
 public:
-    explicit Basins(BasinPlan plan);
+    /// Calls poll() for each value.
+    explicit Basins(BasinPlan plan, const std::function<void()>& poll = [] {});
 
     /// Finds the motions that are known from then on. Throws Stopped.
     void explore(int threads, const PointOptions& options, RunControl& control);
+    /// Starts found for the value that has fewest.
+    std::size_t fewest_starts() const {
+        return std::ranges::min(starts_, {}, [](const auto& own) { return own.size(); }).size();
+    }
     /// The system of a start, with the known motions; empty without a start.
     std::optional<PointSystem> system_of(const Place& place) const;
     void add(std::size_t line, const PointResult& result);  ///< from any thread
