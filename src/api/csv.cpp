@@ -257,6 +257,14 @@ void complete_cells(
     else if (cells.size() != columns) fault_of_length(line, cells.size(), columns);
 }
 
+[[noreturn]] void refuse_empty(const Heading& heading) {
+    throw Problem(
+        422, heading.has_something()
+                 ? "the record has no line of two or more numbers, separated by semicolons, tabs, "
+                   "commas or blanks"
+                 : "the record is empty: it needs a header and lines of numbers");
+}
+
 }  // namespace
 
 Csv parse_csv(std::string_view bytes, const ReadLimits& limits) {
@@ -315,12 +323,7 @@ Csv parse_csv(std::string_view bytes, const ReadLimits& limits) {
         }
         csv.lines.push_back(static_cast<std::uint32_t>(line.number));
     }
-    if (csv.columns.empty())
-        throw Problem(
-            422, heading.has_something()
-                     ? "the record has no line of two or more numbers, separated by semicolons, "
-                       "tabs, commas or blanks"
-                     : "the record is empty: it needs a header and lines of numbers");
+    if (csv.columns.empty()) refuse_empty(heading);
     return csv;
 }
 
