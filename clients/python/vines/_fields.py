@@ -553,8 +553,8 @@ class BasinsFields(TypedDict, total=False):
     box: ranges of the starts; those outside the cavity are skipped; default: required
     count: number of starts, at each value of the axis; 2 to 1e+06; default: 2000
     seed: shifts the sequence of starts; equal seeds give equal starts; 0 to 1e+09; default: 1
-    axis: a parameter of the system and its values: {parameter, from, to, count, scale} or
-        {parameter, values}; default: none
+    axis: a parameter of the system and up to 1000 values: {parameter, from, to, count, scale}
+        or {parameter, values}; default: none
     pairs: for the uncertainty exponent: starts, for each of ten distances, that are run again
         from a state at this distance; 0 to 100000; default: 200
     cycles: number of measured forcing cycles at each point (dimensionless); 1 to 1e+06;
