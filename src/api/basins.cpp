@@ -22,17 +22,17 @@ std::shared_ptr<Basins> basins_of(
     const SweepRequest& r, const Json& given, const CancelCheck& cancel) {
     const WithDefaults field{basins_fields(), given};
     BasinPlan plan{
-        .box = {},
         .count = r.plan.grid.starts,
         .seed = field["seed"],
         .pairs = field["pairs"],
         .values = r.axes.empty() ? std::vector<double>{0} : r.axes[0].values,
+        .boxes = {},
         .system_at = [systems = r.systems](double value) { return systems->at_value(value); }};
     for (const double value : plan.values) {
         const auto system = plan.system_at(value);
         if (!system)
             refuse({{"/axis", value, nullptr, "the base forms no valid system with this value"}});
-        plan.box = box_of(given["box"], system->start);
+        plan.boxes.push_back(box_of(given["box"], system->start));
     }
     auto basins = std::make_shared<Basins>(plan, [&cancel] { cancel.poll(); });
     if (const std::size_t found = basins->fewest_starts(); found < plan.count)
@@ -51,13 +51,18 @@ Json describe(const std::optional<Estimate>& estimate) {
 // Values of the parameter that is swept: each keeps its system and its motions.
 constexpr std::size_t most_values = 1000;
 
-/// Refuses a load, under which no motion lasts, and too many values.
-void check_basins(const SweepRequest& r) {
+/// Refuses a load, under which no motion lasts, an axis with a range in the box, and too many
+/// values.
+void check_basins(const SweepRequest& r, const Json& box) {
     if (r.systems->has_load())
         refuse(
             {{"/base/forcing", nullptr, nullptr,
               "basins need a harmonic forcing: under a load no motion lasts"}});
-    const std::size_t values = r.axes.empty() ? 1 : r.axes[0].values.size();
+    if (r.axes.empty()) return;
+    const std::string& parameter = r.axes[0].parameter;
+    if (box.contains(parameter))
+        refuse({{"/axis/parameter", parameter, nullptr, "the box states " + parameter + ", too"}});
+    const std::size_t values = r.axes[0].values.size();
     if (values > most_values)
         refuse(
             {{"/axis", values, Json::array({1, most_values}),
@@ -80,7 +85,7 @@ SweepRequest read_basins_request(
     const Json count = WithDefaults{basins_fields(), given}["count"];
     try {
         SweepRequest r = read_grid(grid, count.get<std::size_t>(), most_points, cancel);
-        check_basins(r);
+        check_basins(r, given["box"]);
         r.given.erase("axes");
         r.basins = basins_of(r, given, cancel);
         r.plan.system_at = [basins = r.basins](const Place& place) {

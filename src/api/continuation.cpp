@@ -231,6 +231,12 @@ private:
     bool complete_ = false;
 };
 
+SpecialKind kind_of(const std::string& name) {
+    int kind = 0;
+    while (name != name_of(static_cast<SpecialKind>(kind))) ++kind;
+    return static_cast<SpecialKind>(kind);
+}
+
 /// Refuses ends of a range that do not enclose the base's value `at`.
 void check_range(
     const std::string& parameter, double at, const Json& given, const std::string& from,
@@ -246,9 +252,7 @@ void read_curve(ContinueRequest& r, const Json& given, const SystemFields& field
     for (const char* name : {"second", "second_from", "second_to"})
         if (!given.contains(name))
             refuse(std::string("/") + name, "a curve needs second, second_from and second_to");
-    r.curve = SpecialKind::fold;
-    while (given["curve"] != name_of(*r.curve))
-        r.curve = static_cast<SpecialKind>(static_cast<int>(*r.curve) + 1);
+    r.curve = kind_of(given["curve"]);
     r.second = given["second"];
     const std::vector<std::string> names = continued_names();
     const bool known = std::ranges::find(names, r.second) != names.end();

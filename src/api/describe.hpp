@@ -11,8 +11,7 @@
 
 namespace vines::api {
 
-/// The resolved parameters of a system, those of its run, and the quantities derived from the
-/// former.
+/// The resolved parameters of a system, those of its run, and quantities derived from the former.
 Json describe_system(const System& system, const Json& of_run = Json::object());
 
 /// {impact, stroboscopic}.

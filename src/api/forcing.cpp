@@ -12,8 +12,7 @@ constexpr std::size_t most_samples = 200000;
 constexpr double most_chirp_periods = 5000;
 constexpr std::size_t most_harmonics = 64;
 
-/// The moved quantities: the column of a record, or the amplitude of a formula. In the order of
-/// LoadKind.
+/// The moved quantities, in the order of LoadKind: a record's column or a formula's amplitude.
 const std::vector<std::string> quantities = {"acceleration_m_s2", "displacement_m", "force_N"};
 
 /// The fields of a formula besides its amplitude.

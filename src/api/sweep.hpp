@@ -92,8 +92,7 @@ Json sweep_start(const SweepRequest& request);
 /// request of basins also describe_basins().
 std::string done_line(std::size_t points, const SweepRequest& request);
 
-/// The first members of each line: {type, index, values of the axes, start}, without a reduced
-/// axis.
+/// First members of each line: {type, index, values of the axes, start}, without a reduced axis.
 Json describe_place(const SweepRequest& request, std::size_t line);
 /// The line of one point, or of a row of points along a reduced axis.
 Json describe_point(const SweepRequest& request, std::size_t line, const SweepPoint& point);

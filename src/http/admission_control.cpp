@@ -276,30 +276,37 @@ void AdmissionControl::release(Release& slot) {
     assign();
 }
 
-/// True if not all sweeps but one are this client's.
-bool AdmissionControl::may_sweep(const std::string& client) const {
-    return limits_.sweeps == 1 || std::ranges::count(sweeps_, client) < limits_.sweeps - 1;
+/// Sweeps of a client that are not displaced.
+int AdmissionControl::sweeps_of(const std::string& client) const {
+    return static_cast<int>(std::ranges::count_if(sweeps_, [&client](const Sweep& sweep) {
+        return sweep.client == client && !sweep.is_displaced;
+    }));
 }
 
 AdmissionControl::SweepSlot AdmissionControl::acquire_sweep(const std::string& client) {
-    std::unique_lock lock(mutex_);
-    if (static_cast<int>(sweeps_.size()) >= limits_.sweeps || !may_sweep(client) || sweeps_stopped_)
-        return nullptr;
-    const auto place = sweeps_.insert(sweeps_.end(), client);
-    lock.unlock();
-    return {&*place, [this, place](std::string*) {
+    const std::lock_guard lock(mutex_);
+    if (sweeps_stopped_) return nullptr;
+    const auto counts = [](const Sweep& sweep) { return !sweep.is_displaced; };
+    if (std::ranges::count_if(sweeps_, counts) >= limits_.sweeps) {
+        const auto newest = std::ranges::max_element(sweeps_, {}, [&](const Sweep& sweep) {
+            return counts(sweep) ? sweeps_of(sweep.client) : 0;
+        });
+        if (newest == sweeps_.end() || sweeps_of(newest->client) < sweeps_of(client) + 2)
+            return nullptr;
+        newest->is_displaced = true;
+    }
+    const auto place = sweeps_.emplace(sweeps_.begin());
+    place->client = client;
+    return {&*place, [this, place](Sweep*) {
                 const std::lock_guard ending(mutex_);
                 sweeps_.erase(place);
             }};
 }
 
-bool AdmissionControl::pass_on(const SweepSlot& slot, const Clients& clients) {
+void AdmissionControl::pass_on(const SweepSlot& slot, const Clients& clients) {
     const std::lock_guard lock(mutex_);
-    const auto heir =
-        std::ranges::find_if(clients, [this](const auto& client) { return may_sweep(client); });
-    if (heir == clients.end()) return false;
-    *slot = *heir;
-    return true;
+    slot->client = *std::ranges::min_element(
+        clients, {}, [this](const std::string& client) { return sweeps_of(client); });
 }
 
 /// False if a body finds no space in its queue, even instead of the last one.

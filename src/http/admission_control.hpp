@@ -30,8 +30,7 @@ struct AdmissionLimits {
     int running = cores();
     int waiting = 64;  ///< foreground requests in the queue, in addition to the running ones
     int sweeps = 4;    ///< sweeps at once; they share the slots that requests leave free
-    /// Memory of the process from which on little work is interrupted, since it holds memory:
-    /// bytes.
+    /// Bytes of the process from which on little work is interrupted, since it holds memory.
     std::size_t memory = 384 << 20;
 };
 
@@ -99,15 +98,17 @@ public:
     /// other background work after a time slice.
     bool must_yield(const Slot& background) const;
 
-    /// The right to run one sweep. Null if the limit is reached, or all but one are this client's,
-    /// or sweeps are stopped.
-    using SweepSlot = std::shared_ptr<std::string>;  // its client
+    /// The right to run one sweep. At the limit the newest one of the client with most is displaced
+    /// for a client that then has no more: it should end. Null if there is none, or sweeps are
+    /// stopped.
+    struct Sweep {
+        std::string client;
+        std::atomic<bool> is_displaced = false;
+    };
+    using SweepSlot = std::shared_ptr<Sweep>;
     SweepSlot acquire_sweep(const std::string& client);
-    /// From now on the sweep counts as the first of these clients that may have one more; false if
-    /// none may.
-    bool pass_on(const SweepSlot& slot, const Clients& clients);
-    /// True if fewer sweeps run than all clients together may have.
-    bool sweeps_left() const { return load().sweeps < limits_.sweeps; }
+    /// From now on the sweep counts as that one's of these clients that has fewest.
+    void pass_on(const SweepSlot& slot, const Clients& clients);
 
     /// The right to read a large body and to compute with it. At most one of the largest, and
     /// several that are small together, have it at once, since these take many times their size;
@@ -169,7 +170,7 @@ private:
     bool is_full() const;
     void count(Release& slot);
     void give_back(Release& slot);
-    bool may_sweep(const std::string& client) const;
+    int sweeps_of(const std::string& client) const;
     void assign();
     bool end_wait(Queue& queue, Waiter& waiter);
     bool wait(Lock& lock, Queue& queue, Waiter& waiter, const std::function<bool()>& gives_up);
@@ -198,7 +199,7 @@ private:
     mutable Clock::time_point memory_checked_ = {};
     mutable std::size_t resident_ = 0;                        // then, bytes
     Clock::time_point contended_ = Clock::time_point::max();  // since when work waits
-    std::list<std::string> sweeps_;                           // their clients
+    std::list<Sweep> sweeps_;                                 // the newest first
     Class urgent_, foreground_, background_;
     BySize large_bodies_, lesser_bodies_, large_records_, lesser_records_, lists_, immediate_;
     // Written under the mutex; running work reads them without it.

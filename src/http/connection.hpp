@@ -64,8 +64,7 @@ public:
     Progress advance();
     /// True if the event loop itself answers the complete request, however busy the workers are.
     bool is_answered_on_loop() const { return request_->refused || request_->route->on_event_loop; }
-    /// True while a large body waits for memory: advance() looks for memory, and reads no byte
-    /// before.
+    /// True while a large body waits for memory: advance() looks for it, and reads no byte before.
     bool awaits_memory() const { return awaits_memory_; }
     /// Returns the complete request and removes its bytes from the buffer.
     Request take();

@@ -26,8 +26,7 @@ void log_request(const Request& request, const Outcome& outcome);
 /// Logs a request that the end of the process leaves unanswered after `ms`.
 void log_unanswered(const Request& request, double ms);
 
-/// In a catch block: logs why a request failed. Never throws: an exception here would end the
-/// process.
+/// In a catch block: logs why a request failed. Never throws, which would end the process.
 void log_failure(std::string_view path, const std::string& request_id);
 
 void log_event(const std::string& what, bool is_warning = false);

@@ -1,5 +1,4 @@
-// Memory: the budget of requests and answers held for all clients (--memory-limit), and what malloc
-// keeps.
+// Memory: the budget of requests and answers held for clients (--memory-limit); malloc's limits.
 #pragma once
 
 #include <malloc.h>
@@ -119,10 +118,10 @@ private:
             sharing += bytes_of(other).all <= limit_ / least_part;
             if (its.due >= due) continue;
             if (bytes_of(other).for_long <= own.for_long) claimed.for_long += its.bytes.for_long;
-            if (its.bytes.for_long == 0) claimed.all += std::min(its.bytes.all, limit_ / 4);
+            if (its.bytes.for_long + more.for_long == 0)
+                claimed.all += std::min(its.bytes.all, limit_ / 4);
         }
         const std::size_t needed = std::min(more.all, limit_ / 4), share = limit_ / sharing;
-        if (more.for_long > 0) claimed.all = 0;
         const std::size_t total = own.all + needed,
                           beyond = std::max(own.all, 2 * share) + claimed.all;
         const std::size_t kept =

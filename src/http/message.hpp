@@ -69,8 +69,7 @@ struct Response {
     bool silent = false;
     /// For an error: the body is made from it when sent.
     std::optional<api::Problem> problem = {};
-    bool own_limit = false;  ///< refused for what the client itself holds
-    Timing timing = {};      ///< header Server-Timing
+    Timing timing = {};  ///< header Server-Timing
 };
 
 struct Request;

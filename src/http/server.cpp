@@ -115,7 +115,7 @@ Task Server::answer(Connection& connection, Request received) {
     outcome.status = response.status;
     outcome.timing = response.timing;
     if (response.problem) outcome.lacking = response.problem->lacking;
-    if (outcome.lacking == "sweeps" && !response.own_limit) event_loop_.note_scarcity_of_streams();
+    if (outcome.lacking == "sweeps") event_loop_.note_scarcity_of_streams();
     connection.hold(request.sender.client(), {response.body.size() + response.held, response.held});
     // Numbers are compressed to a fourth or so.
     const std::size_t length = response.length / (response.compressible ? 4 : 1);

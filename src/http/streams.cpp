@@ -112,7 +112,7 @@ public:
     }
 
     /// True if it has ended without all lines.
-    bool is_cut_off() const { return is_cut_off_ || is_disowned_; }
+    bool is_cut_off() const { return is_cut_off_ || sweep_slot_->is_displaced; }
 
     // Called by the threads that compute.
     void begin() override {
@@ -142,13 +142,13 @@ private:
     bool is_late(Clock::time_point now) const { return now - started_ > deadline_; }
     bool stops(Clock::time_point now) const {
         return stop_.stop_requested() || admission_.sweeps_stopped() || is_late(now) ||
-               is_disowned_;
+               sweep_slot_->is_displaced;
     }
 
     /// The client for which it counts as a sweep: the first one, then one of those that remain.
     std::string owner() const {
         const std::lock_guard lock(clients_mutex_);
-        return *sweep_slot_;
+        return sweep_slot_->client;
     }
     void enter(const std::string& client) {
         const std::lock_guard lock(clients_mutex_);
@@ -157,9 +157,9 @@ private:
     void leave(const std::string& client) {
         const std::lock_guard lock(clients_mutex_);
         clients_.erase(std::ranges::find(clients_, client));
-        if (client == *sweep_slot_ && !clients_.empty() &&
+        if (client == sweep_slot_->client && !clients_.empty() &&
             std::ranges::count(clients_, client) == 0)
-            is_disowned_ = !admission_.pass_on(sweep_slot_, clients_);
+            admission_.pass_on(sweep_slot_, clients_);
     }
 
     void start() {
@@ -221,9 +221,9 @@ private:
                 ? "the server failed; the reason is in its log"
                 : fmt::format(
                       "the {}; {}",
-                      late           ? "time limit of one sweep is reached"
-                      : is_disowned_ ? "client that began this sweep has left, and you have others"
-                                     : "server is stopping",
+                      late                        ? "time limit of one sweep is reached"
+                      : sweep_slot_->is_displaced ? "place of this one of your sweeps is another's"
+                                                  : "server is stopping",
                       stream_->remedy());
         return last + api::json_line(
                           {{"type", "error"},
@@ -242,7 +242,6 @@ private:
     mutable std::mutex clients_mutex_;
     AdmissionControl::Clients clients_;  // to which it sends
     std::atomic<bool> is_cut_off_ = false;
-    std::atomic<bool> is_disowned_ = false;  // its client left, and the others have too many
     LineQueue lines_;
     std::stop_source stop_;
     std::once_flag is_started_;
@@ -259,14 +258,10 @@ constexpr std::size_t most_shared_lines = 1000, most_shared_points = 20'000;
 Response sweep_refusal(const Service& service, bool is_begun) {
     const AdmissionControl& admission = service.admission;
     if (admission.sweeps_stopped()) return stopping_refusal();
-    const bool own_limit = !is_begun && admission.sweeps_left();
-    Response response = problem_response(api::Problem::unavailable(
+    return problem_response(api::Problem::unavailable(
         "sweeps", is_begun
                       ? "too many clients follow the sweep of an equal request; try again later"
-                  : own_limit ? "all sweeps but one are yours; wait for the end of one"
-                              : "the maximum number of sweeps is running; try again later"));
-    response.own_limit = own_limit;
-    return response;
+                      : "the maximum number of sweeps is running; try again later"));
 }
 
 }  // namespace
@@ -319,9 +314,10 @@ Response stream_sweep(
     const auto stream = std::make_shared<api::SweepStream>(
         std::move(request), format, service.options.answer_limit);
     Response response = stream_lines(stream, asked, service, is_shared);
-    if (stream->table() && response.stream) {
+    if (!response.stream) return response;
+    response.held = stream->bytes(service.admission.threads());
+    if (stream->is_table()) {
         response.content_type = api::name_of(format).media_type;
-        response.held = stream->table()->bytes();
         response.silent = format != api::Format::csv;
     }
     return response;

@@ -69,6 +69,21 @@ TEST_CASE("each start has the line of a sweep that begins there") {
     CHECK(done["basins"][0]["uncertainty_exponent"].is_null());
 }
 
+TEST_CASE("a component without a range has the base's value at each value of the axis") {
+    for (const std::string parameter : {"x0", "y0", "b"}) {
+        const std::string axis = R"({"parameter":")" + parameter + R"(","values":[0.006,0.007]})";
+        const SweepRequest request =
+            basins_request(R"("box":{"x_dot0":[0,0.01]},"count":2,"axis":)" + axis);
+        const SweepRequest sweep = read_sweep_request({{"axes", {Json::parse(axis)}}}, 2);
+        for (const std::size_t line : {0, 1, 2, 3}) {
+            const State start = request.basins->system_of({line / 2, {line % 2}})->start;
+            const State own = sweep.plan.system_at({0, {line % 2}})->start;
+            CHECK(start.x == own.x);
+            CHECK(start.y == own.y);
+        }
+    }
+}
+
 TEST_CASE("lines of basins are equal on any shard and any number of threads") {
     const std::string fields =
         twin_system + R"(,"count":30,"pairs":0,"axis":{"parameter":"Omega","values":[1,1.01]})";
@@ -109,6 +124,9 @@ TEST_CASE("errors of basins are reported at their field") {
         "/axis");
     CHECK(
         basins_faults(twin_system + R"(,"axis":{"parameter":"q","values":[1]})") ==
+        "/axis/parameter");
+    CHECK(
+        basins_faults(twin_system + R"(,"axis":{"parameter":"x0","values":[0]})") ==
         "/axis/parameter");
     CHECK(
         basins_faults(

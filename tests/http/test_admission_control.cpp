@@ -443,25 +443,38 @@ TEST_CASE(
     CHECK(served == 3);
 }
 
-TEST_CASE("one client cannot have all sweeps") {
+TEST_CASE("the newest sweep of the client with most makes place for one that has fewer") {
     AdmissionControl admission({.running = 1, .waiting = 1, .sweeps = 3});
     std::vector<AdmissionControl::SweepSlot> slots;
-    slots.push_back(admission.acquire_sweep("greedy"));
-    slots.push_back(admission.acquire_sweep("greedy"));
+    for (int i = 0; i < 3; ++i) slots.push_back(admission.acquire_sweep("greedy"));
     CHECK(!admission.acquire_sweep("greedy"));
-    CHECK(admission.acquire_sweep("modest"));
-    slots.pop_back();
-    CHECK(admission.acquire_sweep("greedy"));
+    const auto modest = admission.acquire_sweep("modest");
+    CHECK(modest);
+    CHECK(!slots[0]->is_displaced);
+    CHECK(!slots[1]->is_displaced);
+    CHECK(slots[2]->is_displaced);
+    CHECK(!admission.acquire_sweep("modest"));
+    CHECK(!slots[1]->is_displaced);
+    const auto third = admission.acquire_sweep("third");
+    CHECK(slots[1]->is_displaced);
+    // Each has one.
+    CHECK(third);
+    CHECK(!admission.acquire_sweep("fourth"));
+    slots.clear();
+    CHECK(admission.acquire_sweep("fourth"));
 }
 
-TEST_CASE("a sweep passes to a client that may have one more, or ends") {
+TEST_CASE("a sweep passes to the client that has fewest") {
     AdmissionControl admission({.running = 1, .waiting = 1, .sweeps = 3});
     const auto first = admission.acquire_sweep("greedy"),
                second = admission.acquire_sweep("greedy"),
                third = admission.acquire_sweep("modest");
-    CHECK(!admission.pass_on(third, {"greedy"}));
-    CHECK(admission.pass_on(third, {"greedy", "other"}));
-    CHECK(*third == "other");
+    admission.pass_on(third, {"greedy", "other", "greedy"});
+    CHECK(third->client == "other");
+    admission.pass_on(third, {"greedy"});
+    CHECK(third->client == "greedy");
+    CHECK(admission.acquire_sweep("modest"));
+    CHECK(third->is_displaced);
 }
 
 TEST_CASE("much work is not interrupted while the process uses all of its memory") {
@@ -842,7 +855,8 @@ TEST_CASE("shared background work is that client's whose turn comes first") {
     wait_until([&] { return looks > 1; });
     slot.reset();
     for (std::thread& thread : threads) thread.join();
-    CHECK(order == "losoll");
+    // Which comes next depends on how long the first two kept their slots.
+    CHECK(order.starts_with("los"));
 }
 
 TEST_CASE(

@@ -28,11 +28,6 @@ async function read(response) {
   return {text, complete: !reader};
 }
 
-function sizeOf(text) {
-  const bytes = new Blob([text]).size;
-  return bytes < 1000 ? `${bytes} bytes` : `${(bytes / 1000).toFixed(1)} kB`;
-}
-
 /** Sends a request: {ok, status, text}, summary and beginning of the response, JSON indented. */
 async function send({path, type, body}, signal) {
   const began = performance.now();
@@ -47,7 +42,8 @@ async function send({path, type, body}, signal) {
   const first = lines.slice(0, maxLines).join("\n");
   const cut = lines.length > maxLines || first.length > maxCharacters;
   const status = [`${response.status} ${response.statusText}`.trim(), `${took} ms`];
-  status.push(complete ? sizeOf(text) : `more than ${sizeOf(text)}, truncated`);
+  const size = `${(text.length / 1000).toFixed(1)} kB`;
+  status.push(complete ? size : `more than ${size}, truncated`);
   if (cut) status.push(complete ? `beginning of ${count(lines.length, "line")}` : "beginning");
   const beginning = first.slice(0, maxCharacters) + (cut ? " …" : "");
   return {ok: response.ok, status: status.join(" · "), text: beginning};

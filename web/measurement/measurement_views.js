@@ -14,9 +14,7 @@ import {spikeNear} from "./record.js";
 const viewport = new Viewport();
 let plots;
 
-/** Figures of the paper: the first of each preset, and the number of each plot after it. */
-const firstFigures = {fig15: 15, fig20: 20};
-const figures = {a: 0, x: 1, portrait: 2, section: 3, qr: 4, raw: 4};
+const firstFigures = {fig15: 15, fig20: 20}; // of the paper, of each preset
 
 /** shown() returns {name, answer} of the record shown. */
 export function start(shown) {
@@ -39,14 +37,15 @@ function summaryOf({answer}) {
   return `${impacts.tau.length} impacts, ${verdicts[verdict] ?? "no verdict"}${lambda}`;
 }
 
-/** Tags the plots of an experiment with the figures of the paper. */
+/** Tags the plots of an experiment with the figures of the paper: `data-after` the first. */
 export function nameFigures(preset) {
   const title = "the corresponding figure of the paper, for its own record";
   for (const tag of document.querySelectorAll("#measure-results .tag")) tag.remove();
-  for (const [name, number] of preset in firstFigures ? Object.entries(figures) : []) {
-    const textContent = `as Fig. ${firstFigures[preset] + number}`;
+  if (!firstFigures[preset]) return;
+  for (const figure of document.querySelectorAll("#measure-results [data-after]")) {
+    const textContent = `as Fig. ${firstFigures[preset] + Number(figure.dataset.after)}`;
     const tag = element("span", {className: "tag", textContent, title});
-    $(`figure-measured-${name}`).querySelector("figcaption").append(tag);
+    figure.querySelector("figcaption").append(tag);
   }
 }
 

@@ -1,10 +1,10 @@
 // Records: read from a file by the rules of the service, simulated from a run, kept by the browser.
 import {bisectLeft, maxIndex, median} from "d3-array";
 import {randomLcg, randomUniform} from "d3-random";
+import {get, set} from "idb-keyval";
 import {nextTask} from "../shared/dom.js";
 import {Motion} from "../shared/motion.js";
 import {lastUpTo} from "../shared/numbers.js";
-import {read, write} from "../shared/store.js";
 
 const atOnce = 50000; // lines between two progress reports
 const encodings = ["utf-8", "utf-16le", "utf-16be", "windows-1252"];
@@ -60,10 +60,13 @@ const separatorOfNumbers = (line, declared) =>
     return cells.length > 1 && cells.every((cell) => !Number.isNaN(numberOf(cell, separator)));
   });
 
-/** [names, units] above the first row of `count` numbers: the first of `pairs` that has names. */
+/** {names, units} of `count` columns from the lines above them: the first of `pairs` with names. */
 function headingOf(above, count, separator) {
   const cellsIn = (line) => cellsOf(line, separator).map((cell) => cell.trim());
-  const [last, before, commented] = [above.last, above.before, above.comment].map(cellsIn);
+  const comments = above.filter((line) => comment.test(line));
+  const plain = above.filter((line) => !comment.test(line));
+  const [last = [], before = []] = plain.slice(-2).toReversed().map(cellsIn);
+  const commented = cellsIn(comments.at(-1)?.replace(comment, "") ?? "");
   const areNames = (row) =>
     row.length === count && row.every((cell) => Number.isNaN(numberOf(cell, separator)));
   const areUnits = (row) => row.length && row.length <= count && row.every(isUnit);
@@ -73,53 +76,38 @@ function headingOf(above, count, separator) {
     [named, last],
     [last, before],
     [last, commented],
-    [last],
-    [commented],
+    [last, []],
+    [commented, []],
   ];
-  return pairs.find(([names, units]) => areNames(names) && (!units || areUnits(units)));
+  const isHeading = ([names, units]) => areNames(names) && (!units.length || areUnits(units));
+  const [names, units] = pairs.find(isHeading) ?? [[], []];
+  return {names, units};
 }
 
 /**
- * Parses a CSV file into {names, units, columns}; names is empty without a heading. Skips
- * lines that the service would reject. onProgress(fraction) reports progress.
+ * Parses a CSV file into {names, units, columns}; all are empty without a heading. Skips lines that
+ * the service would reject. onProgress(fraction) reports progress.
  */
 export async function parse(file, onProgress = () => {}) {
-  const text = await textOf(file);
-  const above = {last: "", before: "", comment: ""};
-  let declared;
-  let separator;
-  let heading;
-  let columns = [];
-  let lines = 0;
-  for (const {0: line, index} of text.matchAll(/[^\n]+/g)) {
-    if (++lines % atOnce === 0) {
-      onProgress(index / text.length);
+  const lines = (await textOf(file)).split("\n").filter((line) => line.trim());
+  const declared = /^\s*sep=(.)\s*$/i.exec(lines[0])?.[1];
+  const isRow = (line) => !comment.test(line) && separatorOfNumbers(line, declared);
+  const first = lines.findIndex(isRow);
+  if (first < 0) return {names: [], units: [], columns: []};
+  const separator = separatorOfNumbers(lines[first], declared);
+  const count = cellsOf(lines[first], separator).length;
+  const heading = headingOf(lines.slice(0, first), count, separator);
+  const columns = heading.names.map(() => []);
+  for (let n = first; n < lines.length && columns.length; ++n) {
+    if (n % atOnce === 0) {
+      onProgress(n / lines.length);
       await nextTask();
     }
-    if (!line.trim()) continue;
-    if (comment.test(line)) {
-      above.comment = line.replace(comment, "");
-      continue;
-    }
-    if (!heading) {
-      declared ??= /^\s*sep=(.)\s*$/i.exec(line)?.[1];
-      separator = separatorOfNumbers(line, declared);
-      if (!separator) {
-        above.before = above.last;
-        above.last = line;
-        continue;
-      }
-      const count = cellsOf(line, separator).length;
-      heading = headingOf(above, count, separator);
-      if (!heading) break;
-      columns = heading[0].map(() => []);
-    }
-    const values = cellsOf(line, separator).map((cell) => numberOf(cell, separator));
-    if (values.length !== columns.length || !values.every(Number.isFinite)) continue;
+    const values = cellsOf(lines[n], separator).map((cell) => numberOf(cell, separator));
+    if (values.length !== count || !values.every(Number.isFinite)) continue;
     for (const [k, column] of columns.entries()) column.push(values[k]);
   }
-  const [names = [], units = []] = heading ?? [];
-  return {names, units, columns: columns.map((column) => Float64Array.from(column))};
+  return {...heading, columns: columns.map((column) => Float64Array.from(column))};
 }
 
 /** Usual column names: the first as a whole, the others before a space, underscore or bracket. */
@@ -243,13 +231,22 @@ export function spikeNear({t, a}, time, reach) {
   return from + maxIndex(a.slice(from, to), (v) => Math.abs(v - centre));
 }
 
-/** Keeps a file in place of the previous one. */
-export const keep = (file) => write("records", "last", file);
+const keptName = "vines-record";
+
+/** Keeps a file in place of the previous one, if the browser permits it. */
+export const keep = (file) =>
+  nextTask()
+    .then(() => set(keptName, file))
+    .catch(() => {});
 
 /** The kept file if the page was reloaded, else undefined. */
 export async function afterReload() {
   const [navigation] = performance.getEntriesByType("navigation");
-  return navigation?.type === "reload" ? read("records", "last") : undefined;
+  return navigation?.type === "reload"
+    ? nextTask()
+        .then(() => get(keptName))
+        .catch(() => undefined)
+    : undefined;
 }
 
 const samplesPerCycle = 245; // about 2 kHz at 8.35 Hz, the forcing of Li et al. (2018)

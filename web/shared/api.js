@@ -1,6 +1,5 @@
 // Calls to the service. Routes are relative to the page, so they also work below a path prefix.
 import {$} from "./dom.js";
-import {textsIn} from "./store.js";
 
 /** A problem document (RFC 9457). errors: {pointer, value, range, detail} per invalid field. */
 class Problem extends Error {
@@ -21,9 +20,18 @@ async function read(response) {
   return body;
 }
 
-// The key is kept until the browser tab is closed.
+// The key is kept until the browser tab is closed or, without permission to store, the page left.
 const keyName = "vines-api-key";
-const store = textsIn("sessionStorage");
+const store = storeOfTab();
+
+function storeOfTab() {
+  try {
+    return sessionStorage;
+  } catch {
+    const kept = new Map();
+    return {getItem: (name) => kept.get(name) ?? null, setItem: kept.set.bind(kept)};
+  }
+}
 
 const currentKey = () => store.getItem(keyName);
 

@@ -1,4 +1,5 @@
 // Exact motion of a run, in closed form between its impacts: any zoom level without a request.
+import {max} from "d3-array";
 import {clamp, lastUpTo} from "./numbers.js";
 
 // Samples per cycle of the faster of forcing and oscillator; fewer would show aliases.
@@ -78,8 +79,7 @@ export class Motion {
 
   /** The largest |x|. */
   get reach() {
-    const largest = (most, x) => Math.max(most, Math.abs(x) || 0);
-    this.farthest ??= this.trace(0, this.end, 400).x.reduce(largest, 0);
+    this.farthest ??= max(this.trace(0, this.end, 400).x, Math.abs) ?? 0;
     return this.farthest;
   }
 

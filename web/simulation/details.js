@@ -1,4 +1,5 @@
 // The details of a run: cards, tables and plots, which need a larger answer while they are open.
+import {median} from "d3-array";
 import {$, cards, countUp, reveal, sayIn, setTexts, tableOf} from "../shared/dom.js";
 import {resolved, rounded, textOf} from "../shared/form.js";
 import {count, digits, inMm, joined, minus, percent, shortTo} from "../shared/numbers.js";
@@ -101,13 +102,12 @@ function positivesCard({qr, raw_product: product, verdict}) {
   return ["positive exponents (qr)", decided[verdict] ?? "–", remark];
 }
 
-/** Cards in SI; the median of an even count is the upper of the middle two. */
+/** Cards in SI. */
 function engineeringCards({impacts, series, parameters}, {velocity, impulse, acceleration}) {
   const {si, derived} = parameters;
   const {relative_speed: speed} = impacts;
-  const median = (values) => values.toSorted((a, b) => a - b)[values.length >> 1];
   const highest = shortTo(3, velocity.of(largestMagnitude(speed)));
-  const blow = inUnit(median(impacts.impulse.map(Math.abs)), impulse);
+  const blow = inUnit(median(impacts.impulse, Math.abs), impulse);
   const remark = speed.length ? `median; at most ${highest}; impulse ${blow}` : "";
   const peak = inUnit(largestMagnitude(series.x_ddot), acceleration);
   const base = `${shortTo(4, si.f / derived.f0)} of f₀; base ± ${inMm(si.F)}`;

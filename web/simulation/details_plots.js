@@ -1,4 +1,5 @@
 // Plots of the details: lines over the time axis of the first screen, and sections.
+import {mean, min} from "d3-array";
 import {exponentRange} from "../shared/exponents.js";
 import {rangeOf} from "../shared/frame.js";
 import {beads, curve, dots, levels, line} from "../shared/marks.js";
@@ -37,7 +38,7 @@ function matrixPlot(name, eigenvalues) {
   const {tau: x} = eigenvalues;
   const log = name === "T";
   const columns = [0, 1, 2, 3].map((k) => eigenvalues[name].map((moduli) => moduli[k]));
-  const least = columns[3].reduce((a, v) => Math.min(a, v), 1);
+  const least = min([1, ...columns[3]]);
   const modulus = (y, k) =>
     beads({label: `|μ${"₁₂₃₄"[k]}|`, colour: `c${k + 1}`, size: (5.4 - k) / 2, x, y});
   const range = log ? rangeOf([[1], ...columns], true) : [least - 0.08, 1.06];
@@ -104,14 +105,12 @@ function multiplierPlane({modulus, re, im}) {
   };
 }
 
-const mean = (values) => values.reduce((a, v) => a + v, 0) / values.length;
-
 /** A line with the fitted slope through the centre of the fitted logarithms. */
 function fitted({tau, distance, slope: {lambda1, tau_start: from, tau_end: to}}) {
   const within = (t) => t >= from && t <= to;
   const part = tau.map((t, i) => [t, Math.log(distance[i])]);
   const kept = part.filter(([t, log]) => within(t) && Number.isFinite(log));
-  const [middle, height] = [0, 1].map((k) => mean(kept.map((pair) => pair[k])));
+  const [middle, height] = [0, 1].map((k) => mean(kept, (pair) => pair[k]));
   return tau.map((t) => (within(t) ? Math.exp(height + lambda1 * (t - middle)) : null));
 }
 

@@ -1,4 +1,5 @@
 // The run shown, and the time axis shared by its plots.
+import {max} from "d3-array";
 import {Viewport} from "../shared/viewport.js";
 
 export const viewport = new Viewport();
@@ -14,5 +15,4 @@ export function setRun(newest) {
 export const inUnits = (column, quantity) => column.map(quantity.of);
 
 /** The largest |value|; 0 without values. */
-export const largestMagnitude = (values) =>
-  values.reduce((a, v) => Math.max(a, Math.abs(v) || 0), 0);
+export const largestMagnitude = (values) => max(values, Math.abs) ?? 0;

@@ -12,7 +12,6 @@ import {levels} from "../shared/marks.js";
 import {clamp, digits, joined, withError} from "../shared/numbers.js";
 import {Plot} from "../shared/plot.js";
 import * as q from "../shared/quantities.js";
-import {read, write} from "../shared/store.js";
 import {placesOf, receive, SweepData} from "../sweep/data.js";
 import {dotsOf, lineOf, regimesOf, sectionOf} from "../sweep/points.js";
 import {run} from "./run.js";
@@ -28,8 +27,7 @@ const band = 13; // px, height of the regime band
 const menu = $("strip-quantity");
 const say = (text) => setTexts({"strip-trouble": text});
 
-/** The key in the browser's store: a build's address is its own. */
-const stored = (key) => `${import.meta.url} ${key}`;
+const kept = new Map(); // complete sweeps by their request, up to 50
 
 /** Axis and marks of each quantity of the menu, from places on an axis. */
 const drawn = {
@@ -67,14 +65,11 @@ export class Strip extends Plot {
 
   job = new Job({
     ask: async ({key, data}, signal) => {
-      const file = await read("strips", stored(key));
-      const text = await file?.text();
-      if (!text) await delay(pause, {signal});
-      if (signal.aborted) return;
-      if (text) data.takeAll(text);
-      else await receive(data, signal, () => this.take(data));
-      this.take(data);
-      if (!text) write("strips", stored(key), data.file());
+      if (kept.has(key)) return this.take(kept.get(key));
+      await delay(pause, {signal});
+      await receive(data, signal, () => this.take(data));
+      if (kept.size >= 50) kept.clear();
+      kept.set(key, data);
     },
     show: () => countUp(this.canvas),
     fail: ({message}) => {

@@ -149,11 +149,6 @@ export class SweepData {
     return fields;
   }
 
-  /** Takes all lines of a file(). */
-  takeAll(text) {
-    for (const line of text.trimEnd().split("\n")) this.take(JSON.parse(line), line);
-  }
-
   file() {
     return new Blob([...this.blobs, ...this.texts], {type: "application/x-ndjson"});
   }

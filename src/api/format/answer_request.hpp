@@ -1,5 +1,4 @@
-// Requests that are answered by one document, not by a stream, for the service and the command
-// line.
+// Requests answered by one document, not by a stream, for the service and the command line.
 #pragma once
 
 #include <variant>

@@ -159,9 +159,33 @@ std::string SweepStream::begin() const {
     return json_line(std::move(start));
 }
 
+// Memory of a row of a section: in a point in work, in its line, and in the line on its way.
+constexpr std::size_t bytes_of_row = 400;
+// Points in work at once have at most this, or are one. A thread keeps its point while it waits.
+constexpr std::size_t most_in_work = 48 << 20;
+// Memory of a start of basins, with its part of the system and the motions.
+constexpr std::size_t bytes_of_start = 300;
+
+std::size_t SweepStream::bytes_of_point() const {
+    const PointOptions& options = request_.plan.options;
+    return options.section == SectionKind::none ? 0 : options.section_points * bytes_of_row;
+}
+
+/// Threads that compute, of so many.
+int SweepStream::used_of(int threads) const {
+    const std::size_t fitting = most_in_work / std::max<std::size_t>(1, bytes_of_point());
+    return std::clamp(static_cast<int>(fitting), 1, threads);
+}
+
+std::size_t SweepStream::bytes(int threads) const {
+    return static_cast<std::size_t>(used_of(threads)) * bytes_of_point() +
+           (request_.basins ? request_.plan.lines.size() * bytes_of_start : 0) +
+           (table_ ? table_->bytes() : 0);
+}
+
 bool SweepStream::compute(int threads, RunControl& control, const Take& take) {
-    warning_ =
-        run_sweep(request_, threads, control, [&](std::size_t index, const std::string& line) {
+    warning_ = run_sweep(
+        request_, used_of(threads), control, [&](std::size_t index, const std::string& line) {
             take(table_ ? table_->add(index, line) : line + '\n');
             ++lines_;
         });

@@ -82,9 +82,15 @@ public:
     std::string end() override;
     const char* remedy() const override;
 
-    const std::optional<SweepTable>& table() const { return table_; }
+    /// True if it is a table.
+    bool is_table() const { return table_.has_value(); }
+    /// Memory that its points in work and its results take, about.
+    std::size_t bytes(int threads) const;
 
 private:
+    std::size_t bytes_of_point() const;
+    int used_of(int threads) const;
+
     SweepRequest request_;
     std::optional<SweepTable> table_;
     std::size_t lines_ = 0;  ///< computed

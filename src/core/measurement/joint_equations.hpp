@@ -149,8 +149,7 @@ void each_motion(
 /// Sets the equations of the next step (joint_fit_equations.cpp) and updates the residuals.
 void set_equations(JointFitState& state);
 
-/// Derivatives of samples and states by the sizes of effects outside the model, with the
-/// mass.
+/// Derivatives of samples and states by the sizes of effects outside the model, with the mass.
 class EffectDerivatives {
 public:
     explicit EffectDerivatives(const JointFitState& state);
@@ -165,14 +164,12 @@ public:
     /// First column of an effect; -1 if it is not tested.
     Eigen::Index first_of(Effect effect) const;
 
-    /// Derivatives of a sample at time tau: displacement or acceleration; `row`: motion of interval
-    /// i.
+    /// Derivatives of a displacement or acceleration at time tau; `row`: motion of interval i.
     const Eigen::VectorXd& sample(bool of_x, std::size_t i, double tau, const MotionRow& row);
     /// Derivatives of x, x' or x'' of the motion of interval i at tau.
     const Eigen::VectorXd& motion(
         std::size_t i, double tau, const MotionRow& row, double OscillatorMotion::* member);
-    /// Derivatives of y' at the start (+1) or the end (-1) of the flight between borders p and p
-    /// + 1.
+    /// Derivatives of y' at the start (+1) or the end (-1) of the flight from border p to p + 1.
     double flight(std::size_t p, double sign) const;
     // The speeds |x' - y'| before the impacts:
     double mean_speed = 0, speed_scatter = 0;  ///< mean; relative scatter at one wall

@@ -7,8 +7,7 @@
 // = x - side b, give y', R and the transfer matrices; if the mass was part of the fit, R and b are
 // the fitted ones.
 //
-// Dimensionless time: tau = omega0 t, velocities in m per unit of tau, accelerations in m per unit
-// of tau^2.
+// Dimensionless time: tau = omega0 t, velocities in m per unit of tau, accelerations per tau^2.
 #pragma once
 
 #include <optional>

@@ -26,8 +26,7 @@ struct EigenBasis {
 };
 EigenBasis eigen_basis_of(const Eigen::Matrix4d& matrix);
 
-/// Shortest z that minimises |matrix z - right|_2; singular values below 1e-10 of the largest are
-/// 0.
+/// Shortest z that minimises |matrix z - right|_2; singular values below 1e-10 of the largest: 0.
 Eigen::Vector4d minimum_norm_solution(const Eigen::Matrix4d& matrix, const Eigen::Vector4d& right);
 
 /// Unit vector v with the smallest |matrix v|_2, for a square matrix; its sign is arbitrary.

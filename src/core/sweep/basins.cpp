@@ -205,11 +205,11 @@ std::vector<State> starts_in(
 }
 
 Basins::Basins(BasinPlan plan, const std::function<void()>& poll) : plan_(std::move(plan)) {
-    for (const double value : plan_.values) {
+    for (std::size_t i = 0; i < values(); ++i) {
         poll();
-        systems_.push_back(*plan_.system_at(value));
+        systems_.push_back(*plan_.system_at(plan_.values[i]));
         starts_.push_back(
-            starts_in(plan_.box, systems_.back().parameters, plan_.count, plan_.seed));
+            starts_in(plan_.boxes[i], systems_.back().parameters, plan_.count, plan_.seed));
     }
     labels_.resize(plan_.count * values());
 }
@@ -276,7 +276,7 @@ void Basins::run_pairs(int threads, const PointOptions& options, RunControl& con
                 Eigen::Vector4d v = vector_of(starts_[value][i]);
                 bool inside = true;
                 for (int k = 0; k < 4; ++k) {
-                    const auto& [from, to] = plan_.box[k];
+                    const auto& [from, to] = plan_.boxes[value][k];
                     v(k) += std::ldexp(
                         uniform(random, 0, 1) < 0.5 ? from - to : to - from,
                         -first_halving - distance);
@@ -303,7 +303,7 @@ Interval binomial_interval(double k, double n) {
 }
 
 void Basins::add_entropy(std::size_t value, BasinsAt& at) const {
-    const long varied = dimensions_of(plan_.box);
+    const long varied = dimensions_of(plan_.boxes[0]);
     const auto per_side = static_cast<int>(std::max(
         1.0,
         std::floor(elementary::pow(
@@ -317,7 +317,7 @@ void Basins::add_entropy(std::size_t value, BasinsAt& at) const {
         const Eigen::Vector4d v = vector_of(starts_[value][i]);
         std::array<int, 4> cell{};
         for (int k = 0; k < 4; ++k) {
-            const auto& [from, to] = plan_.box[k];
+            const auto& [from, to] = plan_.boxes[value][k];
             if (from != to)
                 cell[k] = std::min(
                     per_side - 1, static_cast<int>((v(k) - from) / (to - from) * per_side));

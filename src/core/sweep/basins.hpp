@@ -53,12 +53,12 @@ std::vector<State> starts_in(
     const StartBox& box, const Parameters& parameters, std::size_t count, std::uint64_t seed);
 
 struct BasinPlan {
-    StartBox box;
     std::size_t count;  ///< starts for each value
     std::uint64_t seed;
     std::size_t pairs;  ///< for each distance of the uncertainty exponent
     /// Values of a swept parameter, ascending or descending; one if none is swept.
     std::vector<double> values;
+    std::vector<StartBox> boxes;  ///< for each value; the same components vary
     std::function<std::optional<PointSystem>(double value)> system_at;
 };
 

@@ -14,12 +14,13 @@ namespace {
 const StartBox plane = {Interval{0, 0}, {-0.003, 0.003}, {-0.02, 0.02}, {0, 0}};
 
 BasinPlan plan_of(std::vector<double> values, std::size_t count, std::size_t pairs = 0) {
+    const std::vector<StartBox> boxes(values.size(), plane);
     return {
-        .box = plane,
         .count = count,
         .seed = 1,
         .pairs = pairs,
         .values = std::move(values),
+        .boxes = boxes,
         .system_at = [](double b) {
             return PointSystem{table1(b, Damping::closed_form), {}, 1000000};
         }};
