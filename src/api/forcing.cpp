@@ -68,7 +68,10 @@ struct Reader {
             fail("/" + name, given[name].size(), nullptr, "needs one number in " + name);
     }
 
-    std::shared_ptr<const Load> record() {
+    /// Makes the load, whose fields are checked; in up to a tenth of a second.
+    using Maker = std::function<std::shared_ptr<const Load>()>;
+
+    Maker record() {
         for (const auto& [name, value] : given.items())
             if (name != "time_s" && std::ranges::find(quantities, name) == quantities.end())
                 fail(
@@ -92,10 +95,12 @@ struct Reader {
         if (const std::size_t wrong = first_not_ascending(time); wrong < time.size())
             fail("/time_s/" + std::to_string(wrong), time[wrong], nullptr, "needs ascending times");
         refuse_any(errors);
-        auto tau = time.get<std::vector<double>>(), values = samples.get<std::vector<double>>();
-        for (std::size_t i = tau.size(); i-- > 0;) tau[i] = (tau[i] - tau[0]) * omega0;
-        for (double& value : values) value /= unit;
-        return std::make_shared<const Load>(kind, tau, values);
+        return [this, &time, &samples, kind = kind, unit = unit] {
+            auto tau = time.get<std::vector<double>>(), values = samples.get<std::vector<double>>();
+            for (std::size_t i = tau.size(); i-- > 0;) tau[i] = (tau[i] - tau[0]) * omega0;
+            for (double& value : values) value /= unit;
+            return std::make_shared<const Load>(kind, tau, values);
+        };
     }
 
     void check_fields(const Formula& formula) {
@@ -116,14 +121,13 @@ struct Reader {
         refuse_any(errors);
     }
 
-    std::shared_ptr<const Load> half_sine(LoadKind kind, double amplitude) const {
+    Maker half_sine(LoadKind kind, double amplitude) const {
         const double duration = number("duration_s") * omega0, Omega = std::numbers::pi / duration;
-        return std::make_shared<const Load>(kind, amplitude, duration, [Omega](double tau) {
-            return Polynomial{Omega * tau, Omega};
-        });
+        const auto theta = [Omega](double tau) { return Polynomial{Omega * tau, Omega}; };
+        return [=] { return std::make_shared<const Load>(kind, amplitude, duration, theta); };
     }
 
-    std::shared_ptr<const Load> chirp(LoadKind kind, double amplitude) {
+    Maker chirp(LoadKind kind, double amplitude) {
         const double from = Omega("f_from"), to = Omega("f_to"),
                      duration = number("duration_s") * omega0, phase = number("phase"),
                      periods = std::max({from, to, 1.0}) * duration / (2 * std::numbers::pi);
@@ -137,7 +141,7 @@ struct Reader {
         const bool logarithmic = given.value("rate", "linear") == "logarithmic" && from != to;
         const double growth =
             (logarithmic ? elementary::log(to / from) : 0.5 * (to - from)) / duration;
-        return std::make_shared<const Load>(kind, amplitude, duration, [=](double tau) {
+        const auto theta = [=](double tau) {
             if (!logarithmic)
                 return Polynomial{
                     phase + tau * (from + growth * tau), from + 2 * growth * tau, growth};
@@ -149,10 +153,11 @@ struct Reader {
                 term *= growth / n;
             }
             return theta;
-        });
+        };
+        return [=] { return std::make_shared<const Load>(kind, amplitude, duration, theta); };
     }
 
-    std::shared_ptr<const Load> noise() {
+    Maker noise() {
         const double low = Omega("f_low"), high = Omega("f_high"),
                      duration = number("duration_s") * omega0,
                      cycle = 2 * std::numbers::pi / duration;
@@ -166,12 +171,14 @@ struct Reader {
                 Json::array({0, number("duration_s") * Load::most_noise_phase / (high * duration)}),
                 "of the kind noise is limited to 8192 periods of f_high");
         refuse_any(errors);
-        return std::make_shared<const Load>(Load::noise(
-            number("rms_m_s2") / (omega0 * omega0), low, high, duration,
-            static_cast<std::uint64_t>(number("seed", 1))));
+        const double rms = number("rms_m_s2") / (omega0 * omega0);
+        const auto seed = static_cast<std::uint64_t>(number("seed", 1));
+        return [=] {
+            return std::make_shared<const Load>(Load::noise(rms, low, high, duration, seed));
+        };
     }
 
-    std::shared_ptr<const Load> harmonics() {
+    Maker harmonics() {
         const std::size_t count = given["f"].size();
         if (count < 1 || count > most_harmonics)
             fail(
@@ -195,10 +202,10 @@ struct Reader {
                  given.contains("phase") ? given["phase"][i].get<double>() : 0});
         }
         refuse_any(errors);
-        return std::make_shared<const Load>(std::move(list));
+        return [list] { return std::make_shared<const Load>(list); };
     }
 
-    std::shared_ptr<const Load> load() {
+    Maker checked() {
         if (!given.contains("kind")) return record();
         const Formula& formula = *std::ranges::find_if(
             formulas, [this](const Formula& f) { return given["kind"] == f.kind; });
@@ -217,10 +224,24 @@ struct Reader {
 std::shared_ptr<const Load> ForcingField::load(const SiParameters& si) const {
     const std::lock_guard lock(mutex_);
     if (!last_ || omega0_ != si.omega0() || k1_ != si.k1) {
-        last_ = Reader{given_, si}.load();
+        Reader field{given_, si};
+        last_ = field.checked()();
         omega0_ = si.omega0(), k1_ = si.k1;
     }
     return last_;
+}
+
+void ForcingField::check(const SiParameters& si) const { Reader{given_, si}.checked(); }
+
+std::size_t ForcingField::bytes() const {
+    constexpr double of_sample = 40, of_period = 2600, most = 16 << 20;
+    const SiParameters any;
+    const Reader field{given_, any};
+    const double samples = given_.contains("time_s") ? given_["time_s"].size() : 0,
+                 f = std::max(
+                     {field.number("f_high"), field.number("f_from"), field.number("f_to")}),
+                 periods = f * field.number("duration_s");
+    return static_cast<std::size_t>(std::min(most, of_sample * samples + of_period * periods));
 }
 
 }  // namespace vines::api

@@ -26,6 +26,8 @@ public:
     /// The last line, {type: done, ...}, or the end of a table; empty without a result. Called
     /// after compute().
     virtual std::string end() = 0;
+    /// Memory that it takes until its end beside a few MB, about.
+    virtual std::size_t bytes(int /*threads*/) const { return 0; }
     /// The request to send after an early end, in words; null for a table, which is then cut off.
     virtual const char* remedy() const = 0;
 };

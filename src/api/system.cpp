@@ -223,7 +223,7 @@ std::vector<FieldError> field_errors(const std::vector<Fault>& faults, const Mer
 }
 
 /// Does not check the core's ranges.
-System read_system(const MergedFields& l, bool forcing_fitted) {
+System read_system(const MergedFields& l, bool forcing_fitted, bool makes_load = true) {
     const bool si = !present(l.fields, si_names).empty();
     check_laws(l, si);
     if (l.has("forcing") && !si)
@@ -232,7 +232,7 @@ System read_system(const MergedFields& l, bool forcing_fitted) {
               "forcing is in SI and needs a system in SI (m1, k1 or f0, ...)"}});
     const SystemFields fields = system_fields(l.fields);
     if (fields.is_in_si() && !fields.is_reduced()) check_si_is_whole(l, forcing_fitted);
-    System system{resolve(fields)};
+    System system{resolve(fields, makes_load)};
     check_gravity(l, system.si);
     system.origin = origins_of(l, system);
     system.notes = notes_on(l, system);
@@ -281,17 +281,17 @@ System read_system_alone(const MergedFields& l, bool forcing_fitted) {
     return system;
 }
 
-StartedSystem read_started_system(const MergedFields& l) {
+StartedSystem read_started_system(const MergedFields& l, bool makes_load) {
     StartedSystem s;
-    s.system = read_system(l, false);
+    s.system = read_system(l, false, makes_load);
     s.start = read_start(l, s.system);
     s.max_impacts = l["max_impacts"];
     s.errors = field_errors(validate(s.system.parameters, s.start), l);
     return s;
 }
 
-StartedSystem read_started_system(const Json& given) {
-    return read_started_system(merge_with_preset(sweep_base_fields(), given));
+StartedSystem read_started_system(const Json& given, bool makes_load) {
+    return read_started_system(merge_with_preset(sweep_base_fields(), given), makes_load);
 }
 
 }  // namespace vines::api

@@ -62,6 +62,10 @@ public:
     explicit ForcingField(Json given) : given_(std::move(given)) {}
     /// Expects sub-fields that are valid by themselves. Problem 422 for an invalid load.
     std::shared_ptr<const Load> load(const SiParameters& si) const;
+    /// The same without making it, which takes up to a tenth of a second.
+    void check(const SiParameters& si) const;
+    /// Memory of the load, about, also of an invalid one.
+    std::size_t bytes() const;
 
 private:
     const Json given_;
@@ -97,8 +101,8 @@ struct ResolvedSystem {
     std::optional<SiParameters> si;  ///< if the fields are in SI
 };
 /// Omitted values are those of Table 1. Does not check the core's ranges. Problem 422 for an
-/// invalid load; a load needs a system in SI.
-ResolvedSystem resolve(const SystemFields& fields);
+/// invalid load; a load needs a system in SI. Without makes_load it is only checked.
+ResolvedSystem resolve(const SystemFields& fields, bool makes_load = true);
 
 /// Velocities in m/s apply if the system is in SI.
 State start_of(const SystemFields& fields, const ResolvedSystem& system);
@@ -123,10 +127,10 @@ struct StartedSystem {
     std::vector<FieldError> errors;  ///< values that form no valid system; empty: valid
 };
 /// Problem 422 for fields that are missing, or that need a system in SI.
-StartedSystem read_started_system(const MergedFields& fields);
+StartedSystem read_started_system(const MergedFields& fields, bool makes_load = true);
 /// Reads sweep_base_fields(). Also Problem 422 for fields that are invalid by themselves or exclude
 /// each other.
-StartedSystem read_started_system(const Json& object);
+StartedSystem read_started_system(const Json& object, bool makes_load = true);
 
 /// Index of the first number of a list that is not above its predecessor; the length if all are.
 std::size_t first_not_ascending(const Json& list);

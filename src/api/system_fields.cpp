@@ -86,7 +86,7 @@ SiParameters si_of(const SystemFields& s) {
     return si;
 }
 
-ResolvedSystem resolve(const SystemFields& s) {
+ResolvedSystem resolve(const SystemFields& s, bool makes_load) {
     ResolvedSystem system;
     Parameters& p = system.parameters;
     if (s.is_in_si() && !s.is_reduced()) {
@@ -110,7 +110,8 @@ ResolvedSystem resolve(const SystemFields& s) {
     p.damping = s.damping;
     resolve_laws(s, system);
     if (s.forcing && system.si) {
-        p.load = s.forcing->load(*system.si);
+        if (makes_load) p.load = s.forcing->load(*system.si);
+        else s.forcing->check(*system.si);
         p.G = system.si->F = 0;
         p.Omega = 1;
         system.si->f = system.si->f0();

@@ -269,6 +269,7 @@ Response sweep_refusal(const Service& service, bool is_begun) {
 Response stream_lines(
     std::shared_ptr<api::LineStream> stream, const Request& asked, const Service& service,
     bool is_shared) {
+    const std::size_t held = stream->bytes(service.admission.threads());
     // End without the lock: the first takes it, the other waits for its threads.
     std::shared_ptr<void> following;
     std::shared_ptr<LineComputation> lines;
@@ -299,9 +300,9 @@ Response stream_lines(
     return {
         .content_type = api::sweep_format_names[0].media_type,
         .headers = {{"Cache-Control", "no-store"}, {"X-Accel-Buffering", "no"}},
-        .stream = [lines, following, client = asked.sender.client()](Writer& out) {
-            return lines->send(out, client);
-        }};
+        .stream = [lines, following, client = asked.sender.client()](
+                      Writer& out) { return lines->send(out, client); },
+        .held = held};
 }
 
 Response stream_sweep(
@@ -314,9 +315,7 @@ Response stream_sweep(
     const auto stream = std::make_shared<api::SweepStream>(
         std::move(request), format, service.options.answer_limit);
     Response response = stream_lines(stream, asked, service, is_shared);
-    if (!response.stream) return response;
-    response.held = stream->bytes(service.admission.threads());
-    if (stream->is_table()) {
+    if (stream->is_table() && response.stream) {
         response.content_type = api::name_of(format).media_type;
         response.silent = format != api::Format::csv;
     }

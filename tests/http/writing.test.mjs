@@ -96,6 +96,14 @@ test("a client that holds nothing waits for the memory of others", async (t) => 
   assert.ok(await isAnswered(url, "/v1/simulate", larger));
 });
 
+test("the points of a sweep with long sections count as memory that it holds", async (t) => {
+  const long = {...sweep, section_points: 100000, cycles: 50000}; // 40 MB
+  const args = ["--memory-limit", "110000000", "--sweeps", "20"];
+  const {url, accepted} = await serviceWith(t, args, 4, "/v1/sweep", long, 4);
+  assert.equal(accepted, 1); // of half the limit
+  assert.ok(await isAnswered(url, "/v1/simulate", small));
+});
+
 test("an answer counts for the client that the proxy states", async (t) => {
   const args = ["--memory-limit", "40000000"];
   const {accepted} = await serviceWith(t, args, 3, "/v1/simulate", large, 1);

@@ -159,7 +159,7 @@ std::string SweepStream::begin() const {
     return json_line(std::move(start));
 }
 
-// Memory of a row of a section: in a point in work, in its line, and in the line on its way.
+// Memory of a row of a section: in a point in work, in its line, and in the line on its way. Bytes.
 constexpr std::size_t bytes_of_row = 400;
 // Points in work at once have at most this, or are one. A thread keeps its point while it waits.
 constexpr std::size_t most_in_work = 48 << 20;
@@ -168,7 +168,11 @@ constexpr std::size_t bytes_of_start = 300;
 
 std::size_t SweepStream::bytes_of_point() const {
     const PointOptions& options = request_.plan.options;
-    return options.section == SectionKind::none ? 0 : options.section_points * bytes_of_row;
+    std::size_t bytes =
+        options.section == SectionKind::none ? 0 : options.section_points * bytes_of_row;
+    for (const SweepSystems::Kind& kind : request_.systems->kinds)
+        if (kind.fields.forcing) bytes = std::max(bytes, kind.fields.forcing->bytes());
+    return bytes;
 }
 
 /// Threads that compute, of so many.

@@ -84,8 +84,7 @@ public:
 
     /// True if it is a table.
     bool is_table() const { return table_.has_value(); }
-    /// Memory that its points in work and its results take, about.
-    std::size_t bytes(int threads) const;
+    std::size_t bytes(int threads) const override;
 
 private:
     std::size_t bytes_of_point() const;
