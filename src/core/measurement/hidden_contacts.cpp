@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <complex>
 
 #include "core/motion/elementary.hpp"
 #include "core/motion/load.hpp"
@@ -267,6 +266,9 @@ IdentifiedSystem::IdentifiedSystem(
     own.G = 0;
     own.load = std::make_shared<const Load>(load_of(*flows.excess, v, faster));
 }
+
+IdentifiedSystem::IdentifiedSystem(const Parameters& p, const ListedForcing& forcing)
+    : IdentifiedSystem(p, given_unknowns(p, forcing.sin, forcing.cos), 0, nullptr) {}
 
 // simulate() counts the forcing's phase from eq. (3); the measurement has its own phase.
 double IdentifiedSystem::start_of(double tau) const {

@@ -21,6 +21,8 @@ struct IdentifiedSystem {
     IdentifiedSystem(
         const Parameters& parameters, const UnknownValues& values, double tau_zero,
         const MeasuredLoad* load);
+    /// The system of a list of impacts, with the given oscillator.
+    IdentifiedSystem(const Parameters& parameters, const ListedForcing& forcing);
 
     /// Runs from `tau` on; `state` and `limits` in the measurement's units. Observers see the run's
     /// own time, which starts at start_of(tau) and runs `faster`.

@@ -220,9 +220,7 @@ ListedForcing fit_forcing(const Parameters& p, IdentifiedImpacts& impacts, const
 void insert_missing_impacts(
     const Parameters& p, const ListedForcing& forcing, IdentifiedImpacts& impacts,
     const Look& look) {
-    UnknownValues values = given_unknowns(p);
-    values[Unknown::force_sin] = forcing.sin, values[Unknown::force_cos] = forcing.cos;
-    const IdentifiedSystem system(listed_system(p, impacts), values, 0, nullptr);
+    const IdentifiedSystem system(listed_system(p, impacts), forcing);
     const HiddenContactLimits limits = hidden_contact_limits(forcing, impacts);
     insert_hidden(hidden_contacts(system, limits, impacts, {}, look), impacts);
 }

@@ -299,15 +299,6 @@ void withhold_values(
 constexpr int most_rounds_of_laws = 8;
 constexpr double settled_share = 0.1;
 
-/// The system of a list of impacts; none without a forcing that fits them.
-std::optional<IdentifiedSystem> listed_system(const Measurement& m, const Parameters& p) {
-    if (!m.listed_forcing) return std::nullopt;
-    UnknownValues values = given_unknowns(p);
-    values[Unknown::force_sin] = m.listed_forcing->sin;
-    values[Unknown::force_cos] = m.listed_forcing->cos;
-    return IdentifiedSystem(p, values, 0, nullptr);
-}
-
 /// The measurement with the given laws of the ball.
 MeasurementResult evaluated(const Measurement& m, IdentificationProgress& progress) {
     Parameters p = m.parameters;
@@ -328,10 +319,11 @@ MeasurementResult evaluated(const Measurement& m, IdentificationProgress& progre
     }
     if (!m.R_given) take_restitution(found.plus, found.minus, p);
     take_slope(m.R_slope, p);
-    if (refined) doubts = doubts_of(p, *refined, found);
-    std::optional<IdentifiedSystem> system;
+    std::optional<IdentifiedSystem> system;  // none without a forcing that fits a list of impacts
+    if (m.listed_forcing) system.emplace(p, *m.listed_forcing);
     std::vector<HiddenContacts> hidden;
     if (refined) {
+        doubts = doubts_of(p, *refined, found);
         system.emplace(p, values, refined->fit.tau_middle, m.forcing.load.get());
         hidden = hidden_contacts(*system, refined->hidden_contact_limits, found.impacts);
         insert_hidden(hidden, found.impacts);
@@ -342,18 +334,16 @@ MeasurementResult evaluated(const Measurement& m, IdentificationProgress& progre
     }
     progress.reach(IdentificationStage::exponents);
     Continuity continuity = continuity_of(p, found.impacts, time_gaps(m.record));
-    const auto listed = listed_system(m, p);
-    const auto& sliding = refined ? std::as_const(system) : listed;
     MeasuredExponents exponents(
         p, values, found.impacts, continuity.stretches, m.estimators,
-        p.friction > 0 && sliding ? &*sliding : nullptr);
+        p.friction > 0 && system ? &*system : nullptr);
     const bool is_sound = doubts.empty() && !continuity.is_incomplete();
     const IdentifiedExponents judged = judged_exponents(p, exponents, found.impacts, is_sound);
     progress.look();
     auto direct =
         refined ? direct_estimate(m, p.b, *refined, hidden, continuity.stretches) : std::nullopt;
     auto forward =
-        system ? forward_run(*system, found, m.record.tau.back(), progress) : std::nullopt;
+        refined ? forward_run(*system, found, m.record.tau.back(), progress) : std::nullopt;
     if (refined) withhold_values(doubts, continuity.is_incomplete(), *refined, found);
     return {
         .parameters = p,

@@ -100,9 +100,12 @@ struct KnownForcing {
     std::shared_ptr<const MeasuredLoad> load = {};
 };
 
-/// Values for ideal sensors and the given oscillator.
-inline UnknownValues given_unknowns(const Parameters& p) {
+/// Values for ideal sensors and the given oscillator, with a forcing in m.
+inline UnknownValues given_unknowns(
+    const Parameters& p, double force_sin = 0, double force_cos = 0) {
     UnknownValues v{};
+    v[Unknown::force_sin] = force_sin;
+    v[Unknown::force_cos] = force_cos;
     v[Unknown::x_gain] = 1;
     v[Unknown::Omega] = p.Omega;
     v[Unknown::stiffness] = 1;
