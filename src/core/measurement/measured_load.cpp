@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <numbers>
 #include <numeric>
 
 #include "core/measurement/robust.hpp"
@@ -174,9 +173,7 @@ struct EnvelopeFit {
                     band[2 * row.first + a][a - b] += by[a] * by[b];
             }
         }
-        double largest = 0;
-        for (const auto& row : band) largest = std::max(largest, row[0]);
-        const double weight = bridging * largest;
+        const double largest = std::ranges::max(band)[0], weight = bridging * largest;
         // (c_j - 2 c_(j+1) + c_(j+2))^2, for both parts.
         for (std::size_t j = 4; j < band.size(); ++j) {
             band[j][0] += weight, band[j - 2][0] += 4 * weight, band[j - 4][0] += weight;

@@ -36,11 +36,6 @@ Flow harmonic_flow(const JointFitState& state, double times) {
     return {v[Unknown::stiffness], v[Unknown::damping], 1, times * v[Unknown::Omega]};
 }
 
-std::array<Oscillation, 2> at_rest(double angle) {
-    const double sin = elementary::sin(angle), cos = elementary::cos(angle);
-    return {{{0, 0, sin, cos}, {0, 0, cos, -sin}}};
-}
-
 /// S and the right side of the equations of all sizes, from the last step, solved with them.
 struct EffectEquations {
     explicit EffectEquations(const JointEquations& e)
@@ -208,10 +203,11 @@ const Eigen::VectorXd& EffectDerivatives::motion(
     row_.setZero();
     // The first columns: harmonics of the forcing.
     for (std::size_t h = 0; h < harmonics_.size(); ++h) {
-        if (i != interval_)
-            motions_[h].emplace(
-                harmonics_[h],
-                at_rest(static_cast<double>(h + 2) * v[Unknown::Omega] * since_middle));
+        if (i != interval_) {
+            const auto unit =
+                unit_motions(static_cast<double>(h + 2) * v[Unknown::Omega] * since_middle);
+            motions_[h].emplace(harmonics_[h], std::array{unit[2], unit[3]});
+        }
         const auto parts =
             motions_[h]->at(std::max(0.0, tau - from.tau), member == &OscillatorMotion::x_ddot);
         row_(2 * h) = parts[0].*member, row_(2 * h + 1) = parts[1].*member;
