@@ -58,8 +58,8 @@ double x_ddot_at_end(const Flow::Coefficients& law, const Arc& arc) {
 
 /// The flight after an impact at its end.
 OrbitFlight after_impact(
-    const Parameters& p, const OrbitFlight& f, const Arc& arc, int side, double approach,
-    double R) {
+    const Parameters& p, const OrbitFlight& f, const Arc& arc, int side, double approach) {
+    const double R = p.restitution(side, std::abs(approach));
     return {
         f.theta + p.Omega * f.s,
         arc.end.x,
@@ -157,8 +157,7 @@ std::optional<OrbitValues> ImpactEquations::evaluated(
         if (!(f.s > 0)) return std::nullopt;
         const int side = sequence().side_after(static_cast<std::size_t>(k));
         const Arc arc = arc_over(law, f.oscillation(), f.s);
-        const double approach = relative_speed_at_end(p, f, arc),
-                     R = p.restitution(side, std::abs(approach));
+        const double approach = relative_speed_at_end(p, f, arc);
         // For a return to the same wall, the mean speed stands for x - y: it is not zero at s = 0.
         const double mean = mean_relative_speed(p, f, arc), of = f.side == side ? f.s : 1,
                      miss = f.side == side ? mean : (f.side - side) * p.b + mean * f.s;
@@ -170,7 +169,7 @@ std::optional<OrbitValues> ImpactEquations::evaluated(
                 carry_derivatives(p, law, f, arc, approach, side, 4 + k, d) / (of * length());
             if (f.side == side) (*jacobian)(k, 4 + k) -= mean / (f.s * length());
         }
-        f = after_impact(p, f, arc, side, approach, R);
+        f = after_impact(p, f, arc, side, approach);
     }
     const double sign = sequence().sign();
     out.transfer *= sign;
@@ -196,9 +195,7 @@ std::vector<OrbitFlight> ImpactEquations::flights(const Unknowns& z, const Param
         f.s = z(4 + static_cast<Eigen::Index>(i));
         const int side = sequence().side_after(i);
         const Arc arc = arc_over(law, f.oscillation(), f.s);
-        const double approach = relative_speed_at_end(p, f, arc);
-        all.push_back(
-            after_impact(p, f, arc, side, approach, p.restitution(side, std::abs(approach))));
+        all.push_back(after_impact(p, f, arc, side, relative_speed_at_end(p, f, arc)));
     }
     return all;
 }
