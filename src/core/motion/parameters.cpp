@@ -2,18 +2,12 @@
 
 #include <algorithm>
 #include <cstdio>
-#include <limits>
 
 #include "core/motion/elementary.hpp"
 
 namespace vines {
 
 namespace {
-
-// x0 and y0 are rounded decimals: their difference can miss b by some ulps of the largest of them.
-double wall_tolerance(const State& s, double b) {
-    return 8 * std::numeric_limits<double>::epsilon() * std::max({std::abs(s.x), std::abs(s.y), b});
-}
 
 // Above this damping ratio the cells of the contact search (flow.cpp) are too short.
 constexpr double zeta_maximum = 10;
@@ -88,7 +82,11 @@ bool is_physical(const Parameters& p) {
 }
 
 int wall_of(const State& s, double b) {
-    if (std::abs(std::abs(s.x - s.y) - b) > wall_tolerance(s, b)) return 0;
+    // x and y are rounded decimals: their difference can miss b by some ulps of the largest of
+    // them.
+    const double tolerance =
+        8 * std::numeric_limits<double>::epsilon() * std::max({std::abs(s.x), std::abs(s.y), b});
+    if (std::abs(std::abs(s.x - s.y) - b) > tolerance) return 0;
     return s.x > s.y ? 1 : -1;
 }
 
