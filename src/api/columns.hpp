@@ -53,9 +53,7 @@ std::string status_word(const IdentifiedImpact& impact);
 
 inline Json json_of(double value) { return finite_or_null(value); }
 inline Json json_of(std::integral auto value) { return value; }
-inline Json json_of(const Interval& interval) { return interval; }
 inline Json json_of(const Exponents& values) { return column(values); }
-inline Json json_of(const std::string& text) { return text; }
 inline Json json_of(RegimeType type) { return name_of(type); }
 inline Json json_of(Verdict verdict) { return enum_json(verdict); }
 inline Json json_of(Damping damping) { return enum_json(damping); }

@@ -167,11 +167,10 @@ bool has_number(const std::vector<Cell>& cells, char separator) {
 
 /// The separator that splits the line into two or more numbers.
 std::optional<char> separator_of_numbers(std::string_view line, std::optional<char> declared) {
-    std::vector<Cell> cells;
     std::string separators = declared ? std::string(1, *declared) : ";\t,";
     if (!declared) separators += by_blanks;
     for (const char separator : separators) {
-        split_cells(line, separator, cells);
+        const std::vector<Cell> cells = cells_of(line, separator);
         if (cells.size() > 1 && std::ranges::all_of(cells, is_number_by(separator)))
             return separator;
     }

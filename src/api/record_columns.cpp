@@ -66,10 +66,11 @@ std::string pointer_to(const CsvColumn& column) {
 [[noreturn]] void refuse_unit(
     const Channel& q, const CsvColumn& column, const std::string& unit, const std::string& remark) {
     const std::string shown = shortened(unit);
+    const std::vector<std::string> units = texts_of(q.units, &Unit::name);
     refuse(
-        {{pointer_to(column), shown, unit_names(q),
+        {{pointer_to(column), shown, units,
           "column " + shortened(column.name) + ": the unit \"" + shown +
-              "\" is unknown; known units: " + joined(unit_names(q)) + remark}});
+              "\" is unknown; known units: " + joined(units) + remark}});
 }
 
 /// The unit in the column's name; null if none.

@@ -165,9 +165,7 @@ void add_point_errors(
 }
 
 std::vector<std::string> names_of(const Json& object) {
-    std::vector<std::string> names;
-    for (const auto& [name, value] : object.items()) names.push_back(name);
-    return names;
+    return texts_of(object.items(), [](const auto& member) { return member.key(); });
 }
 
 /// The starts that are the first with their set of fields.

@@ -69,7 +69,8 @@ FieldTable record_rows() {
     for (const Channel* channel : channels) rows.push_back(column_row(*channel));
     for (const Channel* channel : channels)
         rows.push_back(
-            {channel->name + "_unit", choice(unit_names(*channel)), channel->units[0].name,
+            {channel->name + "_unit", choice(texts_of(channel->units, &Unit::name)),
+             channel->units[0].name,
              "unit of " + channel->quantity +
                  ", unless the column's name or a row of units gives one"});
     rows.push_back(
@@ -119,10 +120,6 @@ const Channel base_displacement_channel{
 const Channel force_channel{"force",     "force_N",
                             {"force"},   force_units,
                             "the force", "a force on m1 that drives it instead of the base"};
-
-std::vector<std::string> unit_names(const Channel& channel) {
-    return texts_of(channel.units, &Unit::name);
-}
 
 const FieldTable& identify_fields() {
     static const FieldTable table = make_identify_fields();

@@ -54,8 +54,6 @@ struct Channel {
     std::string quantity;                 ///< as in "unit of the force"
     std::string forcing = {};             ///< meaning of a channel of the forcing, optional
 };
-/// The names of its units.
-std::vector<std::string> unit_names(const Channel& channel);
 
 extern const Channel time_channel, displacement_channel, acceleration_channel,
     base_acceleration_channel, base_displacement_channel, force_channel;
