@@ -1,7 +1,5 @@
 #include <fmt/format.h>
 
-#include <numbers>
-
 #include "api/identify_parts.hpp"
 #include "api/schema/enum_names.hpp"
 #include "core/motion/elementary.hpp"

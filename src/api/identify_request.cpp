@@ -1,7 +1,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <numbers>
 
 #include "api/identify_parts.hpp"
 #include "api/parse.hpp"

@@ -1,7 +1,5 @@
 // The core's parameters and initial state from the fields of a request or of a sweep's point.
 #include <algorithm>
-#include <cmath>
-#include <numbers>
 
 #include "api/schema/enum_names.hpp"
 #include "api/system.hpp"

@@ -4,7 +4,6 @@
 // design with the best absorber so far.
 #include <memory>
 #include <optional>
-#include <string>
 #include <utility>
 
 #include "api/continuation.hpp"

@@ -4,8 +4,6 @@
 
 #include <algorithm>
 #include <memory>
-#include <string>
-#include <utility>
 
 #include "api/json_text.hpp"
 #include "api/openapi/openapi.hpp"

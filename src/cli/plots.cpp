@@ -8,10 +8,7 @@
 #include <filesystem>
 #include <iterator>
 #include <memory>
-#include <optional>
 #include <sstream>
-#include <stdexcept>
-#include <utility>
 
 #include "api/json_text.hpp"
 #include "api/parse.hpp"

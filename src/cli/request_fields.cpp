@@ -2,7 +2,6 @@
 
 #include <array>
 #include <filesystem>
-#include <utility>
 
 #include "api/parse.hpp"
 #include "api/problem.hpp"

@@ -5,17 +5,11 @@
 
 #include <algorithm>
 #include <atomic>
-#include <cstddef>
 #include <cstdlib>
 #include <exception>
 #include <filesystem>
-#include <functional>
 #include <memory>
-#include <optional>
-#include <stdexcept>
-#include <string>
 #include <utility>
-#include <vector>
 
 #include "api/format/sweep_table.hpp"
 #include "api/json_text.hpp"

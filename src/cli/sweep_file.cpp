@@ -5,8 +5,6 @@
 
 #include <memory>
 #include <optional>
-#include <stdexcept>
-#include <vector>
 
 #include "api/problem.hpp"
 #include "cli/exit.hpp"

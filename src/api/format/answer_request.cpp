@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <map>
-#include <utility>
 
 #include "api/problem.hpp"
 #include "api/schema/field.hpp"

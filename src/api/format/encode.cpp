@@ -9,8 +9,6 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
-#include <limits>
-#include <utility>
 
 #include "api/cancellation.hpp"
 #include "api/problem.hpp"

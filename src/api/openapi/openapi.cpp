@@ -1,7 +1,6 @@
 // The document: its operations, components and tags.
 #include "api/openapi/openapi.hpp"
 
-#include <string>
 #include <utility>
 #include <vector>
 

@@ -1,6 +1,5 @@
 // Request schemas and query parameters, generated from the field tables; examples of requests, and
 // the responses to them, which are computed.
-#include <algorithm>
 #include <string_view>
 #include <utility>
 

@@ -5,8 +5,6 @@
 // defaults are Table 1 of the paper.
 #include <algorithm>
 #include <iterator>
-#include <numbers>
-#include <stdexcept>
 
 #include "api/schema/enum_names.hpp"
 #include "api/schema/tables.hpp"

@@ -11,7 +11,6 @@
 // accumulate; beyond, the ball sticks, and the branch is followed by its return (return_map.cpp).
 #pragma once
 
-#include "core/continuation/arclength.hpp"
 #include "core/continuation/orbit_equations.hpp"
 
 namespace vines {

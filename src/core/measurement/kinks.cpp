@@ -9,7 +9,6 @@
 #include <utility>
 
 #include "core/measurement/search.hpp"
-#include "core/motion/elementary.hpp"
 
 namespace vines {
 

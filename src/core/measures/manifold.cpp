@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cassert>
 #include <cmath>
-#include <numbers>
 
 #include "core/measures/energy.hpp"
 #include "core/motion/elementary.hpp"

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 #include "core/measures/energy.hpp"
 #include "core/motion/elementary.hpp"

@@ -2,9 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <complex>
-#include <numbers>
-#include <vector>
 
 #include "core/measures/golden_section.hpp"
 #include "core/motion/elementary.hpp"

@@ -7,7 +7,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 #include "core/motion/elementary.hpp"
 #include "core/stability/linear.hpp"

@@ -1,6 +1,5 @@
 #include "core/sweep/basins.hpp"
 
-#include <algorithm>
 #include <cmath>
 
 #include "core/motion/elementary.hpp"

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 
 #include "core/measures/energy.hpp"
 #include "core/motion/elementary.hpp"
