@@ -56,12 +56,18 @@ const servedFiles = [
   ...files.map(([name, text]) => [`/${hash}/${name}`, text]),
 ];
 
-const array = (name, bytes) => `const unsigned char ${name}[] = {${[...bytes].join(",")}};\n`;
-const arrays = servedFiles.map(
-  ([, text], n) =>
-    array(`file${n}`, Buffer.from(text)) + array(`gzipped${n}`, gzipSync(text, {level: 9})),
-);
-const table = servedFiles.map(([path], n) => `    {"${path}", view(file${n}), view(gzipped${n})},`);
+/** Bytes as a string literal of C++, which compiles much faster than a list of numbers. */
+function literal(bytes) {
+  const written = (byte) =>
+    byte < 32 || byte > 126 || `"?\\`.includes(String.fromCharCode(byte))
+      ? `\\${byte.toString(8).padStart(3, "0")}`
+      : String.fromCharCode(byte);
+  return `"${Array.from(bytes, written).join("")}"sv`;
+}
+const table = servedFiles.map(([path, text]) => {
+  const contents = [Buffer.from(text), gzipSync(text, {level: 9})].map(literal);
+  return `    {"${path}", ${contents.join(", ")}},`;
+});
 
 writeFileSync(
   output,
@@ -71,13 +77,12 @@ namespace vines::http {
 
 namespace {
 
-template <std::size_t size>
-std::string_view view(const unsigned char (&bytes)[size]) {
-    return {reinterpret_cast<const char*>(bytes), size};
-}
+using namespace std::literals;
 
-${arrays.join("")}
-const Asset table[] = {
+// Of clang; the limit is that of other compilers.
+#pragma GCC diagnostic ignored "-Woverlength-strings"
+
+constexpr Asset table[] = {
 ${table.join("\n")}
 };
 

@@ -177,17 +177,36 @@ KindsOfStarts kinds_of_starts(const SweepRequest& r) {
     return first;
 }
 
+Json fields_over(Json object, const SweepRequest& r, const Place& place) {
+    object.update(r.starts[place.start]);
+    for (std::size_t a = 0; a < r.axes.size(); ++a)
+        object[r.axes[a].parameter] = r.axes[a].values[place.at[a]];
+    return object;
+}
+
+/// The base with a short load, for all kinds of starts but the first: the load is the same.
+Json with_short_load(const Json& base) {
+    Json lighter = Json::object();
+    for (const auto& [name, value] : base.items())
+        lighter[name] = name == "forcing"
+                            ? Json{{"kind", "half_sine"}, {"force_N", 1}, {"duration_s", 1}}
+                            : value;
+    return lighter;
+}
+
 /// Checks that the fields can be combined, with the first and with the last values of the axes.
 void check_fields(
     const SweepRequest& r, const KindsOfStarts& kinds, const CancelCheck& cancel,
     std::vector<FieldError>& errors) {
+    const Json lighter = with_short_load(r.base);
     for (const auto& [names, start] : kinds)
         for (const bool last : {false, true}) {
             Place place{start, {}};
             for (const Axis& a : r.axes) place.at.push_back(last ? a.values.size() - 1 : 0);
             cancel.poll();
             try {
-                read_started_system(fields_of(r, place), false);
+                const bool is_first = start == kinds.begin()->second;
+                read_started_system(fields_over(is_first ? r.base : lighter, r, place), false);
             } catch (const Problem& problem) {
                 add_point_errors(r, start, problem.errors, errors);
                 return;
@@ -329,10 +348,13 @@ void check_loaded(const SweepRequest& r, const Json& given, std::vector<FieldErr
 /// Expects fields that can be combined: then only their values can make a point invalid.
 std::shared_ptr<const SweepSystems> systems_of(const SweepRequest& r, const KindsOfStarts& kinds) {
     SweepSystems systems{.axes = r.axes};
+    const Json lighter = with_short_load(r.base);
     for (const auto& [names, start] : kinds) {
+        const Place place{start, std::vector<std::size_t>(r.axes.size(), 0)};
         const MergedFields l = merge_with_preset(
-            sweep_base_fields(), fields_of(r, {start, std::vector<std::size_t>(r.axes.size(), 0)}));
+            sweep_base_fields(), fields_over(systems.kinds.empty() ? r.base : lighter, r, place));
         systems.kinds.push_back({names, system_fields(l.fields)});
+        systems.kinds.back().fields.forcing = systems.kinds[0].fields.forcing;
         systems.max_impacts = l["max_impacts"];
     }
     for (const Json& start : r.starts)
@@ -344,13 +366,7 @@ std::shared_ptr<const SweepSystems> systems_of(const SweepRequest& r, const Kind
 
 }  // namespace
 
-Json fields_of(const SweepRequest& r, const Place& place) {
-    Json object = r.base;
-    object.update(r.starts[place.start]);
-    for (std::size_t a = 0; a < r.axes.size(); ++a)
-        object[r.axes[a].parameter] = r.axes[a].values[place.at[a]];
-    return object;
-}
+Json fields_of(const SweepRequest& r, const Place& place) { return fields_over(r.base, r, place); }
 
 SweepRequest read_grid(
     const Json& given, std::size_t starts, std::size_t most_points, const CancelCheck& cancel) {

@@ -31,7 +31,7 @@ constexpr std::size_t lesser_records_at_once = 16 << 20, records_at_once = 64 <<
 // Lists at once, which an interrupted run keeps; they take as much memory as their text. Bytes.
 constexpr std::size_t lists_at_once = 256 << 20;
 
-// Larger bodies that wait, and their bytes; each occupies a worker.
+// Larger bodies that wait, and bytes of those beside each client's first; each occupies a worker.
 constexpr std::size_t most_waiting_bodies = 32, most_waiting_bytes = 256 << 20;
 
 // Many times the duration of a small answer, and short compared to a time slice of the scheduler.
@@ -245,8 +245,7 @@ bool AdmissionControl::uses(std::size_t bytes) const {
 }
 
 AdmissionControl::Slot AdmissionControl::acquire_background(
-    const std::string& client, const std::stop_token& stop,
-    const std::function<Clients()>& sharing) {
+    const std::string& client, const std::stop_token& stop, const SweepSlot& sweep) {
     std::unique_lock lock(mutex_);
     Waiter waiter;
     std::string owner = client;
@@ -254,11 +253,9 @@ AdmissionControl::Slot AdmissionControl::acquire_background(
     assign();
     const auto is_over = [&] { return waiter.granted || sweeps_stopped_; };
     do {
-        lock.unlock();
-        const Clients clients = sharing ? sharing() : Clients();
-        lock.lock();
-        for (const std::string& other : clients)
-            if (background_.waiting.move(&waiter, other)) owner = other;
+        if (sweep)
+            for (const std::string& other : sweep->clients)
+                if (background_.waiting.move(&waiter, other)) owner = other;
         // The wait registers with the token before it checks the condition, so that no stop is
         // missed. The thread that requests the stop must not hold the mutex, and cannot.
     } while (!waiter.changed.wait_for(lock, stop, give_up_check, is_over) &&
@@ -279,7 +276,7 @@ void AdmissionControl::release(Release& slot) {
 /// Sweeps of a client that are not displaced.
 int AdmissionControl::sweeps_of(const std::string& client) const {
     return static_cast<int>(std::ranges::count_if(sweeps_, [&client](const Sweep& sweep) {
-        return sweep.client == client && !sweep.is_displaced;
+        return std::ranges::count(sweep.clients, client) > 0 && !sweep.is_displaced;
     }));
 }
 
@@ -288,34 +285,40 @@ AdmissionControl::SweepSlot AdmissionControl::acquire_sweep(const std::string& c
     if (sweeps_stopped_) return nullptr;
     const auto counts = [](const Sweep& sweep) { return !sweep.is_displaced; };
     if (std::ranges::count_if(sweeps_, counts) >= limits_.sweeps) {
-        const auto newest = std::ranges::max_element(sweeps_, {}, [&](const Sweep& sweep) {
-            return counts(sweep) ? sweeps_of(sweep.client) : 0;
-        });
-        if (newest == sweeps_.end() || sweeps_of(newest->client) < sweeps_of(client) + 2)
-            return nullptr;
+        const auto most = [&](const Sweep& sweep) {
+            int fewest = counts(sweep) && !sweep.clients.empty() ? limits_.sweeps : 0;
+            for (const std::string& each : sweep.clients)
+                fewest = std::min(fewest, sweeps_of(each));
+            return fewest;
+        };
+        const auto newest = std::ranges::max_element(sweeps_, {}, most);
+        if (newest == sweeps_.end() || most(*newest) < sweeps_of(client) + 2) return nullptr;
         newest->is_displaced = true;
     }
     const auto place = sweeps_.emplace(sweeps_.begin());
-    place->client = client;
     return {&*place, [this, place](Sweep*) {
                 const std::lock_guard ending(mutex_);
                 sweeps_.erase(place);
             }};
 }
 
-void AdmissionControl::pass_on(const SweepSlot& slot, const Clients& clients) {
+std::shared_ptr<void> AdmissionControl::share(const SweepSlot& slot, const std::string& client) {
     const std::lock_guard lock(mutex_);
-    slot->client = *std::ranges::min_element(
-        clients, {}, [this](const std::string& client) { return sweeps_of(client); });
+    return {nullptr, [this, slot, at = slot->clients.insert(slot->clients.end(), client)](void*) {
+                const std::lock_guard ending(mutex_);
+                slot->clients.erase(at);
+            }};
 }
 
 /// False if a body finds no space in its queue, even instead of the last one.
 bool AdmissionControl::make_space(Queue& queue, const std::string& client, std::size_t bytes) {
     std::size_t waiting = 0;
     queue.for_each([&waiting](const Waiter* body) { waiting += body->bytes; });
+    const auto is_own = [&client](const std::string& other) { return other == client; };
+    const bool is_first = queue.clients(is_own) == 0;
     const auto fits = [&](std::size_t bodies, std::size_t less) {
-        return bodies == 0 ||
-               (bodies < most_waiting_bodies && waiting - less + bytes <= most_waiting_bytes);
+        return bodies == 0 || (bodies < most_waiting_bodies &&
+                               (is_first || waiting - less + bytes <= most_waiting_bytes));
     };
     if (fits(queue.size(), 0)) return true;
     const auto last = queue.pop_for(

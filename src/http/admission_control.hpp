@@ -87,28 +87,27 @@ public:
     /// True if other clients' work waits and is not due, since the process uses all of its memory:
     /// foreground work should end.
     bool others_are_stuck(const std::string& client) const;
-    /// For background work: waits for a slot. Null once `stop` is requested or sweeps are stopped.
-    /// sharing(): the clients of the work, looked at every 50 ms; it is that one's whose turn comes
-    /// first.
-    using Clients = std::vector<std::string>;
-    Slot acquire_background(
-        const std::string& client, const std::stop_token& stop = {},
-        const std::function<Clients()>& sharing = {});
-    /// True if background work should release its slot and wait again: foreground work waits, or
-    /// other background work after a time slice.
-    bool must_yield(const Slot& background) const;
-
-    /// The right to run one sweep. At the limit the newest one of the client with most is displaced
-    /// for a client that then has no more: it should end. Null if there is none, or sweeps are
-    /// stopped.
+    /// The right to run one sweep, to be shared with its clients. At the limit the newest one of
+    /// the client with most is displaced for a client that then has no more: it should end; of
+    /// several clients' that of the one among them with fewest counts. Null if there is none, or
+    /// sweeps are stopped.
     struct Sweep {
-        std::string client;
+        std::list<std::string> clients = {};
         std::atomic<bool> is_displaced = false;
     };
     using SweepSlot = std::shared_ptr<Sweep>;
     SweepSlot acquire_sweep(const std::string& client);
-    /// From now on the sweep counts as that one's of these clients that has fewest.
-    void pass_on(const SweepSlot& slot, const Clients& clients);
+    /// The sweep is also this client's until the returned object's end.
+    std::shared_ptr<void> share(const SweepSlot& slot, const std::string& client);
+
+    /// For background work: waits for a slot. Null once `stop` is requested or sweeps are stopped.
+    /// That of a sweep is that one's of its clients whose turn comes first.
+    Slot acquire_background(
+        const std::string& client, const std::stop_token& stop = {},
+        const SweepSlot& sweep = nullptr);
+    /// True if background work should release its slot and wait again: foreground work waits, or
+    /// other background work after a time slice.
+    bool must_yield(const Slot& background) const;
 
     /// The right to read a large body and to compute with it. At most one of the largest, and
     /// several that are small together, have it at once, since these take many times their size;

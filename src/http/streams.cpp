@@ -92,6 +92,7 @@ public:
           path_(first.head.path()),
           deadline_(service.options.sweep_deadline),
           id_(first.id),
+          first_client_(first.sender.client()),
           admission_(service.admission),
           metrics_(service.metrics),
           sweep_slot_(std::move(sweep_slot)),
@@ -102,11 +103,14 @@ public:
         metrics_.count_runs(runs, impacts);
     }
 
+    /// Computes also for this client until the returned object's end.
+    std::shared_ptr<void> share(const std::string& client) {
+        return admission_.share(sweep_slot_, client);
+    }
+
     /// Sends all lines to one client. False if its connection is to be cut off.
-    bool send(Writer& out, const std::string& client) {
-        enter(client);
+    bool send(Writer& out) {
         const SweepEnd end = send_all(out);
-        leave(client);
         metrics_.count_sweep(end);
         return stream_->remedy() ? end != SweepEnd::client_left : end == SweepEnd::complete;
     }
@@ -116,10 +120,7 @@ public:
 
     // Called by the threads that compute.
     void begin() override {
-        slot() = admission_.acquire_background(owner(), stop_.get_token(), [this] {
-            const std::lock_guard lock(clients_mutex_);
-            return clients_;
-        });
+        slot() = admission_.acquire_background(first_client_, stop_.get_token(), sweep_slot_);
     }
     void end() override { slot().reset(); }
     bool stop_or_yield() override {
@@ -143,23 +144,6 @@ private:
     bool stops(Clock::time_point now) const {
         return stop_.stop_requested() || admission_.sweeps_stopped() || is_late(now) ||
                sweep_slot_->is_displaced;
-    }
-
-    /// The client for which it counts as a sweep: the first one, then one of those that remain.
-    std::string owner() const {
-        const std::lock_guard lock(clients_mutex_);
-        return sweep_slot_->client;
-    }
-    void enter(const std::string& client) {
-        const std::lock_guard lock(clients_mutex_);
-        clients_.push_back(client);
-    }
-    void leave(const std::string& client) {
-        const std::lock_guard lock(clients_mutex_);
-        clients_.erase(std::ranges::find(clients_, client));
-        if (client == sweep_slot_->client && !clients_.empty() &&
-            std::ranges::count(clients_, client) == 0)
-            admission_.pass_on(sweep_slot_, clients_);
     }
 
     void start() {
@@ -217,14 +201,14 @@ private:
         if (end == SweepEnd::complete || !stream_->remedy()) return last;
         const bool failed = end == SweepEnd::failed, late = end == SweepEnd::deadline;
         const std::string detail =
-            failed
-                ? "the server failed; the reason is in its log"
-                : fmt::format(
-                      "the {}; {}",
-                      late                        ? "time limit of one sweep is reached"
-                      : sweep_slot_->is_displaced ? "place of this one of your sweeps is another's"
-                                                  : "server is stopping",
-                      stream_->remedy());
+            failed ? "the server failed; the reason is in its log"
+                   : fmt::format(
+                         "the {}; {}",
+                         late ? "time limit of one sweep is reached"
+                         : sweep_slot_->is_displaced
+                             ? "place of this one of several of your sweeps is another's"
+                             : "server is stopping",
+                         stream_->remedy());
         return last + api::json_line(
                           {{"type", "error"},
                            {"status", failed ? 500 : 503},
@@ -236,11 +220,10 @@ private:
     const std::string path_;
     const std::chrono::duration<double> deadline_;
     const std::string id_;
+    const std::string first_client_;
     AdmissionControl& admission_;
     Metrics& metrics_;
     const AdmissionControl::SweepSlot sweep_slot_;
-    mutable std::mutex clients_mutex_;
-    AdmissionControl::Clients clients_;  // to which it sends
     std::atomic<bool> is_cut_off_ = false;
     LineQueue lines_;
     std::stop_source stop_;
@@ -292,6 +275,7 @@ Response stream_lines(
                          all->followers.erase(at);
                      }};
     } else {
+        if (held > 0 && !asked.reserve_memory({held, held}, Clock::now())) return memory_refusal();
         auto slot = service.admission.acquire_sweep(asked.sender.client());
         if (!slot) return sweep_refusal(service, false);
         running = lines = std::make_shared<LineComputation>(
@@ -300,8 +284,8 @@ Response stream_lines(
     return {
         .content_type = api::sweep_format_names[0].media_type,
         .headers = {{"Cache-Control", "no-store"}, {"X-Accel-Buffering", "no"}},
-        .stream = [lines, following, client = asked.sender.client()](
-                      Writer& out) { return lines->send(out, client); },
+        .stream = [lines, following, member = lines->share(asked.sender.client())](
+                      Writer& out) { return lines->send(out); },
         .held = held};
 }
 

@@ -405,6 +405,10 @@ TEST_CASE("sections, loads and starts of basins count as memory, on as many thre
         sweep(host + R"({"kind":"noise","rms_m_s2":1,"f_low":1,"f_high":20,"duration_s":200}})");
     CHECK(bytes(noise, 1) == 10'400'000);
     CHECK(bytes(sweep(host + R"({"kind":"half_sine","force_N":1,"duration_s":0.1}})"), 8) == 0);
+    std::string list = "0";
+    for (int i = 1; i < 1000; ++i) list += "," + std::to_string(i);
+    const auto recorded = sweep(host + R"({"time_s":[)" + list + R"(],"force_N":[)" + list + "]}}");
+    CHECK(bytes(recorded, 2) == 2 * 40'000 + 96'000);
     const auto basins = read_basins_request(
         parse_object(R"({"base":{"y0":0},"box":{"x0":[-0.003,0.003]},"count":1000})"), 1000);
     CHECK(bytes(basins, 2) == 300'000);

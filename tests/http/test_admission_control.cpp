@@ -443,38 +443,59 @@ TEST_CASE(
     CHECK(served == 3);
 }
 
+namespace {
+
+/// A sweep with its clients.
+struct ClientsSweep {
+    AdmissionControl::SweepSlot slot;
+    std::vector<std::shared_ptr<void>> clients = {};
+
+    ClientsSweep(AdmissionControl& admission, const std::vector<std::string>& names)
+        : slot(admission.acquire_sweep(names[0])) {
+        for (const std::string& name : names)
+            if (slot) clients.push_back(admission.share(slot, name));
+    }
+    bool runs() const { return slot && !slot->is_displaced; }
+};
+
+}  // namespace
+
 TEST_CASE("the newest sweep of the client with most makes place for one that has fewer") {
     AdmissionControl admission({.running = 1, .waiting = 1, .sweeps = 3});
-    std::vector<AdmissionControl::SweepSlot> slots;
-    for (int i = 0; i < 3; ++i) slots.push_back(admission.acquire_sweep("greedy"));
-    CHECK(!admission.acquire_sweep("greedy"));
-    const auto modest = admission.acquire_sweep("modest");
-    CHECK(modest);
-    CHECK(!slots[0]->is_displaced);
-    CHECK(!slots[1]->is_displaced);
-    CHECK(slots[2]->is_displaced);
-    CHECK(!admission.acquire_sweep("modest"));
-    CHECK(!slots[1]->is_displaced);
-    const auto third = admission.acquire_sweep("third");
-    CHECK(slots[1]->is_displaced);
-    // Each has one.
-    CHECK(third);
-    CHECK(!admission.acquire_sweep("fourth"));
-    slots.clear();
-    CHECK(admission.acquire_sweep("fourth"));
+    const ClientsSweep first(admission, {"greedy"});
+    {
+        const ClientsSweep second(admission, {"greedy"}), third(admission, {"greedy"});
+        CHECK(!ClientsSweep(admission, {"greedy"}).slot);
+        const ClientsSweep modest(admission, {"modest"});
+        CHECK(modest.runs());
+        CHECK(second.runs());
+        CHECK(!third.runs());
+        CHECK(!ClientsSweep(admission, {"modest"}).slot);
+        CHECK(second.runs());
+        const ClientsSweep another(admission, {"another"});
+        CHECK(another.runs());
+        CHECK(!second.runs());
+        // Each has one.
+        CHECK(!ClientsSweep(admission, {"fourth"}).slot);
+        CHECK(first.runs());
+    }
+    CHECK(ClientsSweep(admission, {"fourth"}).runs());
 }
 
-TEST_CASE("a sweep passes to the client that has fewest") {
+TEST_CASE("a sweep of several clients counts as that of the one with fewest") {
     AdmissionControl admission({.running = 1, .waiting = 1, .sweeps = 3});
-    const auto first = admission.acquire_sweep("greedy"),
-               second = admission.acquire_sweep("greedy"),
-               third = admission.acquire_sweep("modest");
-    admission.pass_on(third, {"greedy", "other", "greedy"});
-    CHECK(third->client == "other");
-    admission.pass_on(third, {"greedy"});
-    CHECK(third->client == "greedy");
-    CHECK(admission.acquire_sweep("modest"));
-    CHECK(third->is_displaced);
+    const ClientsSweep first(admission, {"greedy"}), second(admission, {"greedy", "greedier"});
+    ClientsSweep third(admission, {"greedy", "modest", "greedier"});
+    const ClientsSweep another(admission, {"another"});
+    CHECK(another.runs());
+    CHECK(!first.runs());
+    CHECK(second.runs());
+    CHECK(third.runs());
+    // Whoever leaves does not count.
+    third.clients.erase(third.clients.begin() + 1, third.clients.end());
+    CHECK(ClientsSweep(admission, {"fourth"}).runs());
+    CHECK(second.runs());
+    CHECK(!third.runs());
 }
 
 TEST_CASE("much work is not interrupted while the process uses all of its memory") {
@@ -667,23 +688,36 @@ TEST_CASE("memory that is reserved is there for what needs no more") {
     CHECK(budget.bytes() == 0);
 }
 
-TEST_CASE("a large body that waits makes space for a smaller one of another client") {
+TEST_CASE("each client's first large body waits; others make space for those of who has less") {
     AdmissionControl admission({});
     auto first = admission.acquire_body("first", 260 << 20, true, {});
-    std::atomic<bool> leaves = false, waits = false;
-    std::thread second([&] {
-        CHECK(!admission.acquire_body("second", 250 << 20, true, [&] {
+    std::atomic<int> admitted = 0, displaced = 0;
+    std::vector<std::thread> threads;
+    const auto wait_with = [&](const std::string& name, std::size_t bytes) {
+        std::atomic<bool> waits = false;
+        threads.emplace_back([&, name, bytes] {
+            const auto permit = admission.acquire_body(name, bytes, true, [&] {
+                waits = true;
+                return false;
+            });
+            ++(permit ? admitted : displaced);
             waits = true;
-            return leaves.load();
-        }));
-    });
-    wait_until([&] { return waits.load(); });
-    std::thread third([&] { CHECK(admission.acquire_body(client, 20 << 20, true, {})); });
-    second.join();
-    CHECK(!leaves);
-    CHECK(admission.acquire_body(client, 15 << 20, true, {}));  // beside the largest
+        });
+        wait_until([&] { return waits.load(); });
+    };
+    wait_with("second", 120 << 20);
+    wait_with("second", 110 << 20);
+    CHECK(!admission.acquire_body("second", 30 << 20, true, {}));
+    wait_with(client, 20 << 20);
+    CHECK(displaced == 0);
+    wait_with(client, 100 << 20);
+    wait_until([&] { return displaced == 1; });
+    wait_with("third", 200 << 20);
+    CHECK(displaced == 1);
+    CHECK(admission.acquire_body("fourth", 15 << 20, true, {}));  // beside the largest
     first.reset();
-    third.join();
+    for (std::thread& thread : threads) thread.join();
+    CHECK(admitted == 4);
 }
 
 TEST_CASE("records share what one of the largest takes; of those that wait the smallest is next") {
@@ -838,21 +872,17 @@ TEST_CASE("shared background work is that client's whose turn comes first") {
     Slot slot = admission.acquire(client);
     std::string order;
     std::vector<std::thread> threads;
-    std::atomic<int> looks = 0;
-    const auto sharing = [&looks] {
-        ++looks;
-        return AdmissionControl::Clients{"long", "follower"};
-    };
+    const auto sweep = admission.acquire_sweep("long");
+    const auto first = admission.share(sweep, "long"), second = admission.share(sweep, "follower");
     for (const std::string name : {"long", "long", "long", "other", "other", "shared"}) {
         threads.emplace_back([&, name] {
-            const Slot own = name == "shared" ? admission.acquire_background("long", {}, sharing)
+            const Slot own = name == "shared" ? admission.acquire_background("long", {}, sweep)
                                               : admission.acquire_background(name);
             order += name[0];
             if (name == "shared") CHECK(own.get_deleter().client == "follower");
         });
         wait_until([&] { return admission.load().background == threads.size(); });
     }
-    wait_until([&] { return looks > 1; });
     slot.reset();
     for (std::thread& thread : threads) thread.join();
     // Which comes next depends on how long the first two kept their slots.

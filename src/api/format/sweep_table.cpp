@@ -165,14 +165,15 @@ constexpr std::size_t bytes_of_row = 400;
 constexpr std::size_t most_in_work = 48 << 20;
 // Memory of a start of basins, with its part of the system and the motions.
 constexpr std::size_t bytes_of_start = 300;
+// Memory of a sample of a recorded load in the request, which keeps it three times.
+constexpr std::size_t bytes_of_sample = 3 * 2 * sizeof(Json);
 
 std::size_t SweepStream::bytes_of_point() const {
     const PointOptions& options = request_.plan.options;
     std::size_t bytes =
         options.section == SectionKind::none ? 0 : options.section_points * bytes_of_row;
-    for (const SweepSystems::Kind& kind : request_.systems->kinds)
-        if (kind.fields.forcing) bytes = std::max(bytes, kind.fields.forcing->bytes());
-    return bytes;
+    const auto& forcing = request_.systems->kinds[0].fields.forcing;
+    return bytes + (forcing ? forcing->bytes() : 0);
 }
 
 /// Threads that compute, of so many.
@@ -182,8 +183,11 @@ int SweepStream::used_of(int threads) const {
 }
 
 std::size_t SweepStream::bytes(int threads) const {
+    const Json::json_pointer samples("/base/forcing/time_s");
     return static_cast<std::size_t>(used_of(threads)) * bytes_of_point() +
            (request_.basins ? request_.plan.lines.size() * bytes_of_start : 0) +
+           (request_.given.contains(samples) ? request_.given[samples].size() * bytes_of_sample
+                                             : 0) +
            (table_ ? table_->bytes() : 0);
 }
 
