@@ -248,7 +248,8 @@ AdmissionControl::Slot AdmissionControl::acquire_background(
     const std::string& client, const std::stop_token& stop, const SweepSlot& sweep) {
     std::unique_lock lock(mutex_);
     Waiter waiter;
-    std::string owner = client;
+    const bool has_clients = sweep && !sweep->clients.empty();
+    std::string owner = has_clients ? sweep->clients.front() : client;
     background_.waiting.push(owner, &waiter);
     assign();
     const auto is_over = [&] { return waiter.granted || sweeps_stopped_; };

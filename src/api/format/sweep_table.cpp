@@ -165,8 +165,8 @@ constexpr std::size_t bytes_of_row = 400;
 constexpr std::size_t most_in_work = 48 << 20;
 // Memory of a start of basins, with its part of the system and the motions.
 constexpr std::size_t bytes_of_start = 300;
-// Memory of a sample of a recorded load in the request, which keeps it three times.
-constexpr std::size_t bytes_of_sample = 3 * 2 * sizeof(Json);
+// Memory of a sample of a recorded load in the request, which keeps time and value three times.
+constexpr std::size_t bytes_of_sample = 6 * sizeof(Json);
 
 std::size_t SweepStream::bytes_of_point() const {
     const PointOptions& options = request_.plan.options;
