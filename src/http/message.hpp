@@ -122,6 +122,9 @@ inline Response problem_response(
     return response;
 }
 
+// Largest answer sent even when the memory budget is used up, bytes: the number of connections
+// bounds these.
+inline constexpr std::size_t small_answer = 1 << 16;
 /// 503: the memory limit is reached.
 inline Response memory_refusal() {
     return problem_response(api::Problem::unavailable(

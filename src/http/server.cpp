@@ -15,10 +15,6 @@ namespace {
 // httplib's default of 5 would refuse some of 400 simultaneous clients.
 constexpr int backlog = 4096;
 
-// Largest answer sent even when the memory budget is used up, bytes: the number of connections
-// bounds these.
-constexpr std::size_t small_answer = 1 << 16;
-
 // From this size on the memory of a body, several times its size, is returned to the system at
 // once. That takes as long as to read a part of it. Bytes.
 constexpr std::size_t large_body = 1 << 20;

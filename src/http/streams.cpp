@@ -275,7 +275,8 @@ Response stream_lines(
                          all->followers.erase(at);
                      }};
     } else {
-        if (held > 0 && !asked.reserve_memory({held, held}, Clock::now())) return memory_refusal();
+        if (held > small_answer && !asked.reserve_memory({held, held}, Clock::now()))
+            return memory_refusal();
         auto slot = service.admission.acquire_sweep(asked.sender.client());
         if (!slot) return sweep_refusal(service, false);
         running = lines = std::make_shared<LineComputation>(
