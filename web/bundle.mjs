@@ -79,7 +79,7 @@ namespace {
 
 using namespace std::literals;
 
-// Of clang; the limit is that of other compilers.
+// clang warns of literals longer than every compiler must support.
 #pragma GCC diagnostic ignored "-Woverlength-strings"
 
 constexpr Asset table[] = {

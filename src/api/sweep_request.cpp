@@ -177,6 +177,7 @@ KindsOfStarts kinds_of_starts(const SweepRequest& r) {
     return first;
 }
 
+/// The fields of a point over those of a base.
 Json fields_over(Json object, const SweepRequest& r, const Place& place) {
     object.update(r.starts[place.start]);
     for (std::size_t a = 0; a < r.axes.size(); ++a)

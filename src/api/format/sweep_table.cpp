@@ -176,7 +176,7 @@ std::size_t SweepStream::bytes_of_point() const {
     return bytes + (forcing ? forcing->bytes() : 0);
 }
 
-/// Threads that compute, of so many.
+/// How many of these threads compute.
 int SweepStream::used_of(int threads) const {
     const std::size_t fitting = most_in_work / std::max<std::size_t>(1, bytes_of_point());
     return std::clamp(static_cast<int>(fitting), 1, threads);
