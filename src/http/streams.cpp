@@ -292,13 +292,11 @@ Response stream_lines(
 
 Response stream_sweep(
     api::SweepRequest request, api::Format format, const Request& asked, const Service& service) {
-    const PointOptions& options = request.plan.options;
-    const std::size_t lines = request.plan.lines.size(),
-                      each = options.section == SectionKind::none ? 0 : options.section_points;
-    const bool is_shared = format == api::Format::json && lines <= most_shared_lines &&
-                           lines * each <= most_shared_points;
+    const std::size_t lines = request.plan.lines.size();
     const auto stream = std::make_shared<api::SweepStream>(
         std::move(request), format, service.options.answer_limit);
+    const bool is_shared = format == api::Format::json && lines <= most_shared_lines &&
+                           lines * stream->listed() <= most_shared_points;
     Response response = stream_lines(stream, asked, service, is_shared);
     if (stream->is_table() && response.stream) {
         response.content_type = api::name_of(format).media_type;

@@ -168,12 +168,14 @@ constexpr std::size_t bytes_of_start = 300;
 // Memory of a sample of a recorded load in the request, which keeps time and value three times.
 constexpr std::size_t bytes_of_sample = 6 * sizeof(Json);
 
-std::size_t SweepStream::bytes_of_point() const {
+std::size_t SweepStream::listed() const {
     const PointOptions& options = request_.plan.options;
-    std::size_t bytes =
-        options.section == SectionKind::none ? 0 : options.section_points * bytes_of_row;
+    return options.section == SectionKind::none ? 0 : options.section_points;
+}
+
+std::size_t SweepStream::bytes_of_point() const {
     const auto& forcing = request_.systems->kinds[0].fields.forcing;
-    return bytes + (forcing ? forcing->bytes() : 0);
+    return listed() * bytes_of_row + (forcing ? forcing->bytes() : 0);
 }
 
 /// How many of these threads compute.

@@ -84,6 +84,8 @@ public:
 
     /// True if it is a table.
     bool is_table() const { return table_.has_value(); }
+    /// Contacts or states that a point lists at most.
+    std::size_t listed() const;
     std::size_t bytes(int threads) const override;
 
 private:
