@@ -34,6 +34,9 @@ constexpr auto scarce_time = 4s;
 // which is searched for.
 constexpr int max_accepted = 32;
 
+// Time in which a new connection is not closed for others whose client has more, all at work.
+constexpr auto time_of_new = 1s;
+
 // Bytes of requests and answers, and requests at work, after which free memory is returned once
 // nothing is left to do.
 constexpr std::size_t much_held = 16 << 20, many_at_work = 8;
@@ -191,14 +194,17 @@ void EventLoop::accept(int most) {
     }
 }
 
-/// The connection that is closed first: of the client with most of them, unless it has only one; an
-/// idle keep-alive one, else the one that has waited longest for its client.
+/// The connection that is closed first: of the client with most of them, unless it has only one or
+/// all are at work; an idle keep-alive one, else the one that has waited longest for its client.
 Connection* EventLoop::eviction_candidate() const {
     const auto most =
         std::ranges::max_element(open_, {}, [](const auto& client) { return client.second; });
-    Connection* const chosen =
-        most != open_.end() && most->second > 1 ? eviction_candidate(most->first) : nullptr;
-    return chosen ? chosen : eviction_candidate({});
+    if (most != open_.end() && most->second > 1)
+        if (Connection* const chosen = eviction_candidate(most->first)) return chosen;
+    Connection* const any = eviction_candidate({});
+    const bool is_new =
+        any && !any->is_idle_keep_alive() && Clock::now() - any->waiting_since() < time_of_new;
+    return is_new ? nullptr : any;
 }
 
 /// The same of one client; empty: of any.
@@ -312,7 +318,9 @@ void EventLoop::collect_returned() {
         if (connection) {
             watch(std::move(connection));
             --with_workers_;
+            queue(socket);
         } else handle(socket);
+    if (!closing_ && !returned.empty()) listen(true);
 }
 
 void EventLoop::expire() {
@@ -385,7 +393,8 @@ void EventLoop::work(Owned connection) {
             ::poll(&next_one, 1, next_request_wait) > 0)
             progress = connection->advance();
         if (progress == Connection::Progress::ended) connection->begin_closing();
-        if (progress != Connection::Progress::complete) break;
+        // At the limit of connections it can be closed for a new one.
+        if (progress != Connection::Progress::complete || !listens_) break;
         // Others have waited longer, or the thread is another client's, behind a proxy.
         const std::string next = connection->client();
         if (workers_.jobs_wait() || next != client)

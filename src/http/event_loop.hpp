@@ -98,7 +98,8 @@ private:
     std::atomic<Clock::time_point> streams_scarce_{};
     Clock::time_point connections_scarce_{};
     std::atomic<bool> stopping_ = false;
-    bool listens_ = false, closing_ = false;
+    std::atomic<bool> listens_ = false;
+    bool closing_ = false;
     Clock::time_point checked_ = Clock::now();
     // Connections without a complete request end then.
     Clock::time_point idle_until_ = Clock::time_point::max();

@@ -387,6 +387,25 @@ test("without free file descriptors idle connections are closed, too", async (t)
   for (const {socket} of idle) socket.destroy();
 });
 
+test("where all connections have requests at work, one makes place between two answers", async (t) => {
+  const one = await serviceFor(t, ["--connections", "8", "--threads", "32"]);
+  const many = simulation('{"tau_end": 20000, "include": ["exponents"]}').repeat(1000);
+  const busy = await connectAll(one.url, 8, () => many);
+  t.after(() => {
+    for (const {socket} of busy) socket.destroy();
+  });
+  await until(() => busy.every(({text}) => statuses(text()).length > 0));
+  const others = ["127.0.0.2", "127.0.0.3", "127.0.0.4"];
+  for (const localAddress of others) {
+    const other = await connect(one.url, {localAddress});
+    busy.push(...(await connectAll(one.url, 8, () => many))); // want the places of others
+    other.socket.write(get("/livez", separate));
+    await other.ended;
+    assert.deepEqual(statuses(other.text()), [200]);
+  }
+  for (const {text} of busy) assert.ok(statuses(text()).length < 1000);
+});
+
 test("a flood of connections closes its own, not those of other clients", async (t) => {
   const one = await serviceFor(t, ["--connections", "100"]);
   const body = small.padEnd(10000);

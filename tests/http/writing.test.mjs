@@ -104,6 +104,18 @@ test("the points of a sweep with long sections count as memory that it holds", a
   assert.ok(await isAnswered(url, "/v1/simulate", small));
 });
 
+test("tables of sweeps that find no memory take none", async (t) => {
+  const {url, pid} = await serviceFor(t);
+  const axes = [{...sweep.axes[0], count: 1e5}]; // a table of 60 MB
+  const table = JSON.stringify({axes, cycles: 1, transient_cycles: 0, format: "cbor"});
+  const sockets = await connectAll(url, 20, () => post("/v1/sweep", table).repeat(5));
+  t.after(() => {
+    for (const {socket} of sockets) socket.destroy();
+  });
+  await until(() => sockets.flatMap(({text}) => statuses(text())).length > 70);
+  assert.ok((await memory(pid, "VmHWM")) < 400);
+});
+
 test("an answer counts for the client that the proxy states", async (t) => {
   const args = ["--memory-limit", "40000000"];
   const {accepted} = await serviceWith(t, args, 3, "/v1/simulate", large, 1);

@@ -63,11 +63,14 @@ SweepTable::SweepTable(const SweepRequest& request, Format format, std::size_t m
                      "a table of {} points as {} has about {} bytes, more than {}: request ndjson, "
                      "csv, or fewer points (indices)",
                      request.plan.lines.size(), name_of(format).word, bytes(), most_bytes));
+}
+
+void SweepTable::make_rows() {
+    has_rows_ = true;
+    const std::size_t count = request_.plan.lines.size();
     for (Column& column : columns_) {
-        if (column.kind == Kind::word) column.words.resize(request.plan.lines.size());
-        else
-            column.numbers.assign(
-                request.plan.lines.size(), std::numeric_limits<double>::quiet_NaN());
+        if (column.kind == Kind::word) column.words.resize(count);
+        else column.numbers.assign(count, std::numeric_limits<double>::quiet_NaN());
     }
 }
 
@@ -105,6 +108,7 @@ std::string SweepTable::add(std::size_t index, const std::string& line) {
         }
         return rows_.add(index, text + '\n');
     }
+    if (!has_rows_) make_rows();
     const std::vector<std::size_t>& wanted = request_.plan.lines;
     const auto row =
         static_cast<std::size_t>(std::ranges::lower_bound(wanted, index) - wanted.begin());

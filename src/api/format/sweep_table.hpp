@@ -60,12 +60,15 @@ private:
     };
 
     void add_columns(const Json& sample);
+    /// With the first point: a service reserves their memory before it computes.
+    void make_rows();
 
     const SweepRequest& request_;
     const Format format_;
     std::vector<Column> columns_;
     std::map<std::string, std::size_t> column_of_;
     LinesInOrder rows_;  ///< of CSV
+    bool has_rows_ = false;
 };
 
 /// A sweep as a stream: its lines, or its points as a table.
