@@ -41,11 +41,6 @@ inline Json finite_or_null(double value) {
     return std::isfinite(value) ? Json(value) : Json(nullptr);
 }
 
-template <class Value>
-Json or_null(const std::optional<Value>& value) {
-    return value ? Json(*value) : Json(nullptr);
-}
-
 /// The entry type of a packed list. The values of numbers and integers are the tags of CBOR's typed
 /// arrays (RFC 8746, 2.1), little-endian, with which the library's to_cbor() writes them.
 enum class Packed : std::uint8_t {
@@ -80,8 +75,8 @@ inline std::size_t entry_size(Packed packing) {
 }
 
 /// The list of value(e), or of the member `value`, for each element e; packed if the type allows.
-template <class Elements, class Value>
-Json column(const Elements& elements, Value value) {
+template <class Elements, class Value = std::identity>
+Json column(const Elements& elements, Value value = {}) {
     using Entry = std::decay_t<std::invoke_result_t<Value&, decltype(*std::begin(elements))>>;
     if constexpr (packing<Entry> == Packed::no) {
         Json values = Json::array();
@@ -98,11 +93,6 @@ Json column(const Elements& elements, Value value) {
         }
         return Json::binary(std::move(bytes), static_cast<std::uint8_t>(packing<Entry>));
     }
-}
-
-template <class Elements>
-Json column(const Elements& elements) {
-    return column(elements, std::identity());
 }
 
 inline Packed packing_of(const Json& value) {

@@ -55,9 +55,7 @@ constexpr std::size_t most_values = 1000;
 /// values.
 void check_basins(const SweepRequest& r, const Json& box) {
     if (r.systems->has_load())
-        refuse(
-            {{"/base/forcing", nullptr, nullptr,
-              "basins need a harmonic forcing: under a load no motion lasts"}});
+        refuse("/base/forcing", "basins need a harmonic forcing: under a load no motion lasts");
     if (r.axes.empty()) return;
     const std::string& parameter = r.axes[0].parameter;
     if (box.contains(parameter))

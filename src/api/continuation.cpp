@@ -16,11 +16,6 @@ namespace {
 constexpr double stated_reach = 0.5;
 constexpr int depth_of_true = 2;
 
-/// Numbers of the system, without those of the start.
-std::vector<std::string> continued_names() {
-    return texts_of(simulate_fields_where(is_continued), &Field::name);
-}
-
 /// The parameter's value in the base: given, of its preset, or the default.
 std::optional<double> value_in(const SystemFields& fields, const std::string& parameter) {
     if (fields.has(parameter)) return fields.number(parameter);

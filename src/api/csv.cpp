@@ -185,7 +185,14 @@ public:
         if (const auto comment = comment_of(line.text)) comment_ = {line.number, *comment};
         else before_ = std::exchange(last_, line);
     }
-    bool has_something() const { return last_.number > 0 || comment_.number > 0; }
+    /// Reports that there are no data.
+    [[noreturn]] void refuse_empty() const {
+        throw Problem(
+            422, last_.number > 0 || comment_.number > 0
+                     ? "the record has no line of two or more numbers, separated by semicolons, "
+                       "tabs, commas or blanks"
+                     : "the record is empty: it needs a header and lines of numbers");
+    }
 
     /// Named empty columns for `count` cells; `first` is the first data line.
     std::vector<CsvColumn> columns(const CsvLine& first, std::size_t count, char separator) const {
@@ -256,14 +263,6 @@ void complete_cells(
     else if (cells.size() != columns) fault_of_length(line, cells.size(), columns);
 }
 
-[[noreturn]] void refuse_empty(const Heading& heading) {
-    throw Problem(
-        422, heading.has_something()
-                 ? "the record has no line of two or more numbers, separated by semicolons, tabs, "
-                   "commas or blanks"
-                 : "the record is empty: it needs a header and lines of numbers");
-}
-
 }  // namespace
 
 Csv parse_csv(std::string_view bytes, const ReadLimits& limits) {
@@ -322,7 +321,7 @@ Csv parse_csv(std::string_view bytes, const ReadLimits& limits) {
         }
         csv.lines.push_back(static_cast<std::uint32_t>(line.number));
     }
-    if (csv.columns.empty()) refuse_empty(heading);
+    if (csv.columns.empty()) heading.refuse_empty();
     return csv;
 }
 
@@ -350,7 +349,7 @@ std::string unit_spelling(std::string_view text) {
     std::erase_if(spelling, [](char c) {
         return std::string_view(" ^*()[]").find(c) != std::string_view::npos;
     });
-    for (char& c : spelling) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+    for (char& c : spelling) c = lower_case(c);
     return spelling;
 }
 

@@ -61,8 +61,8 @@ Json describe_manifold(const Manifold& m) {
          {"stable", describe(branch_columns, m.stable)},
          {"unstable", describe(branch_columns, m.unstable)},
          {"asymmetric", describe(branch_columns, m.asymmetric)},
-         {"free_amplitude", or_null(m.free_amplitude)},
-         {"b_at_free_amplitude", or_null(m.b_at_free_amplitude)}});
+         {"free_amplitude", json_of(m.free_amplitude)},
+         {"b_at_free_amplitude", json_of(m.b_at_free_amplitude)}});
 }
 
 Json describe_manifold(const ManifoldResult& m) {
@@ -100,7 +100,7 @@ std::string describe_type(const Regime& r) {
 
 Json describe_capture(const Capture& c) {
     return object(
-        {{"tau", or_null(c.tau)},
+        {{"tau", json_of(c.tau)},
          {"status", c.tau ? "captured" : "on_its_way"},
          {"chaotic_before", c.chaotic_before == true ? Json(true) : Json(nullptr)},
          {"exponents_before", describe(properties::final_exponents, c.before)},
@@ -200,7 +200,7 @@ Json describe_perturbation(Perturbation&& p) {
           {{"lambda1", linear ? finite_or_null(linear->slope) : Json(nullptr)},
            {quantity.tau_start.name, linear ? Json(linear->tau.from) : Json(nullptr)},
            {quantity.tau_end.name, linear ? Json(linear->tau.to) : Json(nullptr)}}},
-         {quantity.parted.name, or_null(p.parted)}});
+         {quantity.parted.name, json_of(p.parted)}});
     return j;
 }
 

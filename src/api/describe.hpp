@@ -42,8 +42,6 @@ Json describe_multipliers(const std::array<std::complex<double>, 4>& multipliers
 
 // Sentences (warning_text.cpp).
 
-using Warnings = std::vector<std::string>;
-
 /// No limit on the size of an answer.
 inline constexpr std::size_t any_size = std::numeric_limits<std::size_t>::max();
 

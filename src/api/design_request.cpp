@@ -19,9 +19,6 @@ constexpr Excitation excitations[] = {
     {"load_factor", "", "x_relative_max", "under this load"}};
 constexpr Range amplitude_range{1e-9, 1e6}, f_range{1e-3, 1e5}, b_range{1e-9, 1e3};
 
-// Intervals that can be given as one number.
-constexpr const char* intervals[] = {"f", "acceleration", "F", "initial_velocity", "b"};
-
 FieldError outside(
     const Range& range, const char* name, const std::string& where, const Json& value) {
     return {
@@ -54,16 +51,14 @@ std::vector<double> numbers_within(
 /// m1 = 1 kg and k1 = 1 N/m, whose unit of time is 1 s.
 void read_host(DesignRequest& r, const Json& given, std::vector<FieldError>& errors) {
     const Json& base = given["base"];
-    for (const char* name :
-         {"f", "F", "acceleration", "Omega", "G", "b", "R", "R_plus", "R_minus", "gravity",
-          "inclination", "friction", "mu", "restitution", "restitution_plus", "restitution_minus",
-          "forcing", "preset"})
-        if (base.contains(name))
-            errors.push_back(
-                {std::string("/base/") + name, base[name], nullptr,
-                 std::string(name) + " is no field of a host: a design chooses b and R, and gives "
-                                     "f and acceleration or F, forcing or initial_velocity beside "
-                                     "base"});
+    for (const std::string& name : present(
+             base, {"f", "F", "acceleration", "Omega", "G", "b", "R", "R_plus", "R_minus",
+                    "gravity", "inclination", "friction", "mu", "restitution", "restitution_plus",
+                    "restitution_minus", "forcing", "preset"}))
+        errors.push_back(
+            {"/base/" + name, base[name], nullptr,
+             name + " is no field of a host: a design chooses b and R, and gives f and "
+                    "acceleration or F, forcing or initial_velocity beside base"});
     if (!errors.empty()) return;
     const auto take = [&](const std::vector<FieldError>& found) {
         for (const FieldError& e : found)
@@ -98,13 +93,13 @@ void read_host(DesignRequest& r, const Json& given, std::vector<FieldError>& err
 
 /// A design has one kind of load: f with acceleration or F, forcing, or initial_velocity.
 void add_load_errors(const Json& given, std::vector<FieldError>& errors) {
-    for (const char* own : {"forcing", "initial_velocity"}) {
-        if (!given.contains(own)) continue;
-        for (const char* name : {"f", "acceleration", "F", "starts", "initial_velocity"})
-            if (given.contains(name) && name != std::string_view(own))
+    for (const std::string& own : present(given, {"forcing", "initial_velocity"})) {
+        for (const std::string& name :
+             present(given, {"f", "acceleration", "F", "starts", "initial_velocity"}))
+            if (name != own)
                 errors.push_back(
-                    {std::string("/") + name, given[name], nullptr,
-                     fmt::format("{} must not be given together with {}", name, own)});
+                    {"/" + name, given[name], nullptr,
+                     name + " must not be given together with " + own});
         return;
     }
     if (!given.contains("f"))
@@ -122,14 +117,14 @@ Json with_lists(const Json& object) {
         if (given.contains(name) && given[name].is_number())
             given[name] = Json::array({given[name]});
     Json checked = given;
-    for (const char* name : intervals) {
-        if (!given.contains(name)) continue;
+    for (const Field& f : design_fields()) {
+        if (f.type != FieldType::interval || !given.contains(f.name)) continue;
         // One number in a query or on the command line is a list of one.
-        Json& value = given[name];
-        if (value.is_array() && value.size() == 1) checked[name] = value = Json(value[0]);
+        Json& value = given[f.name];
+        if (value.is_array() && value.size() == 1) checked[f.name] = value = Json(value[0]);
         if (!value.is_number()) continue;
         value = Json::array({value, value});
-        checked.erase(name);
+        checked.erase(f.name);
     }
     std::vector<FieldError> errors = check(design_fields(), checked);
     if (!given.contains("base"))

@@ -162,8 +162,7 @@ ChannelForcing channel_forcing(const MeasuredForcing& m, const System& system) {
 }
 
 Json describe_measured_forcing(
-    const MeasuredForcing& m, const System& used, const JointFit& fit,
-    std::vector<std::string>& warnings) {
+    const MeasuredForcing& m, const System& used, const JointFit& fit, Warnings& warnings) {
     const ChannelForcing channel = channel_forcing(m, used);
     // F of the base, or of the base motion equivalent to the force.
     const double F = G_of(used.parameters, channel.amplitude, 0) * used.parameters.epsilon;
@@ -190,8 +189,7 @@ Json describe_measured_forcing(
 }
 
 void add_fitted_warnings(
-    const JointFit& fit, const UnknownValues& given, double omega0,
-    std::vector<std::string>& warnings) {
+    const JointFit& fit, const UnknownValues& given, double omega0, Warnings& warnings) {
     // A deviation is reported if it is far beyond its error and large enough to matter in a
     // laboratory.
     constexpr double sigmas = 6, gain_off = 0.01, delay_off = 1e-4, frequency_off = 2e-4;
@@ -221,9 +219,8 @@ void add_fitted_warnings(
         warnings.push_back(fmt::format(
             "the oscillator moves with omega0 = {:.5g} rad/s and zeta = {:.4g}, not with {:.5g} "
             "rad/s and {:.4g}: is a mass, a stiffness or a damping wrong?",
-            omega0 * std::sqrt(fit.values[Unknown::stiffness]),
-            0.5 * fit.values[Unknown::damping] / std::sqrt(fit.values[Unknown::stiffness]), omega0,
-            0.5 * given[Unknown::damping]));
+            in_si(fit, Unknown::stiffness, omega0).value,
+            in_si(fit, Unknown::damping, omega0).value, omega0, 0.5 * given[Unknown::damping]));
 }
 
 }  // namespace vines::api

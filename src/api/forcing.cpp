@@ -62,11 +62,6 @@ struct Reader {
         const double units[] = {omega0 * omega0, 1, si.k1};
         return {there[0], static_cast<LoadKind>(kind), units[kind]};
     }
-    /// A list of one, as a query gives it, is a number.
-    void need_number(const std::string& name) {
-        if (given.contains(name) && given[name].is_array() && given[name].size() != 1)
-            fail("/" + name, given[name].size(), nullptr, "needs one number in " + name);
-    }
 
     /// Makes the load, whose fields are checked; in up to a tenth of a second.
     using Maker = std::function<std::shared_ptr<const Load>()>;
@@ -212,7 +207,10 @@ struct Reader {
         check_fields(formula);
         if (!formula.of_quantity) return given["kind"] == "noise" ? noise() : harmonics();
         const auto [name, kind, unit] = moved();
-        for (const std::string& field : {name, std::string("phase")}) need_number(field);
+        // A list of one, as a query gives it, is a number.
+        for (const std::string& field : present(given, {name, "phase"}))
+            if (given[field].is_array() && given[field].size() != 1)
+                fail("/" + field, given[field].size(), nullptr, "needs one number in " + field);
         refuse_any(errors);
         const double amplitude = number(name) / unit;
         return given["kind"] == "chirp" ? chirp(kind, amplitude) : half_sine(kind, amplitude);

@@ -33,8 +33,7 @@ ChannelForcing channel_forcing(const MeasuredForcing& measured, const System& sy
 /// {f, F, phase, load}. `phase` is the lag of the forcing in the oscillator's motion after the
 /// channel, in rad. Warns if amplitudes or phases disagree.
 Json describe_measured_forcing(
-    const MeasuredForcing& measured, const System& used, const JointFit& fit,
-    std::vector<std::string>& warnings);
+    const MeasuredForcing& measured, const System& used, const JointFit& fit, Warnings& warnings);
 
 /// Values of the field `fixed` in addition to the names of Unknown.
 inline constexpr const char *fixed_amplitude = "F", *fixed_phase = "phase";
@@ -49,8 +48,7 @@ Json describe_laws(const std::optional<FittedLaws>& laws, const BallLaws& wanted
 
 /// Warns of sensors or given values that the record contradicts.
 void add_fitted_warnings(
-    const JointFit& fit, const UnknownValues& given, double omega0,
-    std::vector<std::string>& warnings);
+    const JointFit& fit, const UnknownValues& given, double omega0, Warnings& warnings);
 
 // A list of impacts (identify_impacts.cpp).
 

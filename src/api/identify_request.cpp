@@ -54,7 +54,7 @@ void check_span(const std::vector<double>& tau, double omega0) {
 }
 
 /// Warns of gaps and clipping.
-void note_flaws(const MeasuredRecord& r, double omega0, std::vector<std::string>& notes) {
+void note_flaws(const MeasuredRecord& r, double omega0, Warnings& notes) {
     const std::vector<Interval> gaps = time_gaps(r);
     if (!gaps.empty())
         notes.push_back(fmt::format(

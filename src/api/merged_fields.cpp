@@ -134,11 +134,10 @@ void restate_system(Json& preset, const Json& given) {
 void split_walls(Json& preset, const Json& given) {
     if (present(given, {"R_plus", "R_minus", "restitution_plus", "restitution_minus"}).empty())
         return;
-    for (const std::string law : {"R", "restitution"})
-        if (preset.contains(law)) {
-            preset[law + "_plus"] = preset[law + "_minus"] = preset[law];
-            preset.erase(law);
-        }
+    for (const std::string& law : present(preset, {"R", "restitution"})) {
+        preset[law + "_plus"] = preset[law + "_minus"] = preset[law];
+        preset.erase(law);
+    }
 }
 
 /// Removes from a preset the fields that the request's fields exclude, except those of the system,

@@ -187,7 +187,7 @@ Json describe(const Provenance& p, const Json& sha256) {
     Json described = {
         {"route", p.route},
         {"commit", commit()},
-        {"answer_limit", or_null(p.answer_limit)},
+        {"answer_limit", p.answer_limit ? Json(*p.answer_limit) : Json(nullptr)},
         {"request", p.request}};
     if (p.record) described["record_sha256"] = *p.record;
     described["sha256"] = sha256;

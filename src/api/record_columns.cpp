@@ -8,8 +8,6 @@ namespace vines::api {
 
 namespace {
 
-int lower_case(unsigned char letter) { return std::tolower(letter); }
-
 /// Ignores case and does not copy: a name can be as long as a record.
 bool is_same_name(std::string_view a, std::string_view b) {
     return std::ranges::equal(a, b, {}, lower_case, lower_case);

@@ -207,7 +207,7 @@ Json describe_row(const SweepRequest& r, std::size_t index, const RowSummary& ro
             return describe_peak(r, place, of.peak);
         });
     }
-    line["x_free_peak"] = or_null(row.x_free);
+    line["x_free_peak"] = json_of(row.x_free);
     line["points"] = row.points;
     line["points_missing"] = row.missing;
     if (row.depends_on_start) line["depends_on_start"] = *row.depends_on_start;

@@ -67,19 +67,10 @@ std::optional<SiParameters> SweepSystems::si_at(const Place& place) const {
 
 namespace {
 
-std::vector<std::string> parameter_names() {
-    std::vector<std::string> names;
-    for (const Field& f : sweep_base_fields())
-        if (f.type == FieldType::number) names.push_back(f.name);
-    return names;
-}
-
 void check_values(const Json& j, std::size_t most, std::vector<FieldError>& errors) {
-    for (const char* name : {"from", "to", "count", "scale"})
-        if (j.contains(name))
-            errors.push_back(
-                {std::string("/") + name, j[name], nullptr,
-                 "values and from, to, count, scale exclude each other"});
+    for (const std::string& name : present(j, {"from", "to", "count", "scale"}))
+        errors.push_back(
+            {"/" + name, j[name], nullptr, "values and from, to, count, scale exclude each other"});
     const Json& values = j["values"];
     if (!values.is_array()) return;
     if (values.empty())
@@ -93,12 +84,12 @@ void check_values(const Json& j, std::size_t most, std::vector<FieldError>& erro
 std::vector<FieldError> faults_of(const Json& j, std::size_t most) {
     std::vector<FieldError> errors = check(axis_fields(), j);
     if (!j.contains("parameter"))
-        errors.push_back({"/parameter", nullptr, parameter_names(), "an axis needs its parameter"});
+        errors.push_back({"/parameter", nullptr, swept_names(), "an axis needs its parameter"});
     else if (const Json& name = j["parameter"];
              name.is_string() &&
-             std::ranges::count(parameter_names(), name.get_ref<const std::string&>()) == 0)
+             std::ranges::count(swept_names(), name.get_ref<const std::string&>()) == 0)
         errors.push_back(
-            {"/parameter", name, parameter_names(), "there is no parameter of this name to sweep"});
+            {"/parameter", name, swept_names(), "there is no parameter of this name to sweep"});
     if (j.contains("values")) {
         check_values(j, most, errors);
     } else {

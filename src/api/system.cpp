@@ -110,7 +110,7 @@ void check_gravity(const MergedFields& l, const std::optional<SiParameters>& si)
 }
 
 /// A note if R w falls with the speed w: a faster impact then leaves more slowly.
-void note_falling_restitution(const Parameters& p, std::vector<std::string>& notes) {
+void note_falling_restitution(const Parameters& p, Warnings& notes) {
     for (const auto& [table, wall] :
          {std::pair{p.table_plus, "plus"}, std::pair{p.table_minus, "minus"}}) {
         if (!table) continue;
@@ -165,8 +165,8 @@ std::map<std::string, std::string> origins_of(const MergedFields& l, const Syste
 }
 
 /// Warnings about assumptions on the system that a user might not expect.
-std::vector<std::string> notes_on(const MergedFields& l, const System& s) {
-    std::vector<std::string> notes;
+Warnings notes_on(const MergedFields& l, const System& s) {
+    Warnings notes;
     const Parameters& p = s.parameters;
     if (l.dropped.contains("damping") && l["damping"] != l.dropped["damping"])
         notes.push_back(
@@ -227,9 +227,7 @@ System read_system(const MergedFields& l, bool forcing_fitted, bool makes_load =
     const bool si = !present(l.fields, si_names).empty();
     check_laws(l, si);
     if (l.has("forcing") && !si)
-        refuse(
-            {{"/forcing", nullptr, nullptr,
-              "forcing is in SI and needs a system in SI (m1, k1 or f0, ...)"}});
+        refuse("/forcing", "forcing is in SI and needs a system in SI (m1, k1 or f0, ...)");
     const SystemFields fields = system_fields(l.fields);
     if (fields.is_in_si() && !fields.is_reduced()) check_si_is_whole(l, forcing_fitted);
     System system{resolve(fields, makes_load)};

@@ -107,12 +107,14 @@ ResolvedSystem resolve(const SystemFields& fields, bool makes_load = true);
 /// Velocities in m/s apply if the system is in SI.
 State start_of(const SystemFields& fields, const ResolvedSystem& system);
 
+using Warnings = std::vector<std::string>;  ///< sentences
+
 /// The system of a request, in SI if the request or its preset is.
 struct System : ResolvedSystem {
     /// Origin of each field: given, preset fig3, default, or the fields that it follows from.
     std::map<std::string, std::string> origin = {};
-    std::vector<std::string> notes = {};  ///< warnings
-    std::string load_kind = {};           ///< record, half_sine, chirp, noise or harmonics
+    Warnings notes = {};
+    std::string load_kind = {};  ///< record, half_sine, chirp, noise or harmonics
 };
 
 /// A system with the default start. `forcing_fitted`: F can be omitted. Problem 422 for an

@@ -156,9 +156,9 @@ Command add_continue(CLI::App& app) {
     return with_exit_codes(
         command,
         [options] {
+            const api::Json request = read_request(*options, api::continue_fields());
             return write_lines(
-                *options, *api::continuation_lines(api::read_continue_request(
-                              read_request(*options, api::continue_fields()))));
+                *options, *api::continuation_lines(api::read_continue_request(request)));
         },
         "vines continue -p b=0.015 -p damping=closed_form -p parameter=b -p from=0.004 -p to=0.02\n"
         "vines continue request.json -p switch=2 -o branches.ndjson\n"
@@ -174,9 +174,8 @@ Command add_design(CLI::App& app) {
     return with_exit_codes(
         command,
         [options] {
-            return write_lines(
-                *options, *api::design_lines(api::read_design_request(
-                              read_request(*options, api::design_fields()))));
+            const api::Json request = read_request(*options, api::design_fields());
+            return write_lines(*options, *api::design_lines(api::read_design_request(request)));
         },
         "vines design -p m1=2 -p f0=8 -p damping_ratio=0.01 -p m2=0.04 -p f=7,9 \\\n"
         "  -p acceleration=5 | jq -r 'select(.type == \"done\") | .sentence'\n"

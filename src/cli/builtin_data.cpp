@@ -83,11 +83,6 @@ constexpr std::pair<const char*, const FieldTable& (*)()> tables[] = {
     {"sweep", api::sweep_fields},       {"an axis of a sweep", api::axis_fields},
     {"identify", api::identify_fields}, {"any answer", api::form_fields}};
 
-std::string fallback_of(const Field& f) {
-    if (!f.fallback_note.empty()) return f.fallback_note;
-    return f.fallback.is_string() ? f.fallback.get<std::string>() : api::json_text(f.fallback);
-}
-
 std::string line_of(const Field& f) {
     return fmt::format(
         "  {:<21} {:<14} {}\n", f.name, f.unit.empty() ? api::enum_name(f.type) : f.unit,
@@ -99,8 +94,10 @@ std::string text_of(const Field& f) {
     const auto add = [&text](const char* what, const std::string& value) {
         text += fmt::format("    {:<8} {}\n", what, value);
     };
+    const std::string plain =
+        f.fallback.is_string() ? f.fallback.get<std::string>() : api::json_text(f.fallback);
     if (!f.symbol.empty()) add("symbol", f.symbol);
-    add("default", fallback_of(f));
+    add("default", f.fallback_note.empty() ? plain : f.fallback_note);
     if (f.range) add("range", fmt::format("[{:g}, {:g}]", f.range->minimum, f.range->maximum));
     else if (!f.choices.empty()) add("one of", api::joined(f.choices));
     for (const Field& part : f.fields) text += "  " + f.name + "." + line_of(part).substr(2);

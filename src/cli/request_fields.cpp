@@ -126,16 +126,6 @@ void add_plot_flag(CLI::App& command, RequestOptions& given) {
         ->excludes(command.get_option("--format"));
 }
 
-void add_axes(CLI::App& command, RequestOptions& given) {
-    command
-        .add_option(
-            "--axis,-a", given.axes,
-            "an axis: b=0.01:0.03:41 (from, to, count; optionally :log), or b=0.01,0.02,0.03")
-        ->type_name("AXIS")
-        ->expected(1)
-        ->take_all();
-}
-
 CLI::Option* add_threads(CLI::App& command, RequestOptions& given) {
     return command.add_option("--threads", given.threads, "number of threads; 0: one per core")
         ->capture_default_str();

@@ -31,7 +31,6 @@ void add_format(
     const std::string& about = "");
 /// --plot, which excludes --format. Call add_format() before.
 void add_plot_flag(CLI::App& command, RequestOptions& options);
-void add_axes(CLI::App& command, RequestOptions& options);
 CLI::Option* add_threads(CLI::App& command, RequestOptions& options);
 
 /// The options as a request's JSON, typed by the route's table. If that has a base, fields that are

@@ -339,7 +339,13 @@ Command add_lines(
     const auto options = std::make_shared<SweepOptions>();
     options->basins = basins;
     add_request(*command, *options);
-    add_axes(*command, *options);
+    command
+        ->add_option(
+            "--axis,-a", options->axes,
+            "an axis: b=0.01:0.03:41 (from, to, count; optionally :log), or b=0.01,0.02,0.03")
+        ->type_name("AXIS")
+        ->expected(1)
+        ->take_all();
     add_format(
         *command, *options, basins ? api::basins_fields() : api::sweep_fields(),
         fmt::format(

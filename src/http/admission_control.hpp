@@ -19,7 +19,6 @@
 #include <list>
 #include <mutex>
 #include <stop_token>
-#include <vector>
 
 #include "http/fair_queue.hpp"
 #include "program/process.hpp"

@@ -12,7 +12,7 @@
 
 namespace vines::http {
 
-using api::trimmed;
+using api::lower_case, api::trimmed;
 using Header = std::pair<std::string, std::string>;
 
 struct Head {
@@ -73,10 +73,6 @@ inline std::string_view next_part(std::string_view& text, char separator) {
     const std::string_view part = text.substr(0, text.find(separator));
     text.remove_prefix(std::min(text.size(), part.size() + 1));
     return trimmed(part);
-}
-
-inline char lower_case(char c) {
-    return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c;
 }
 
 inline std::string lower_case(std::string_view text) {

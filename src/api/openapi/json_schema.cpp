@@ -9,11 +9,9 @@ Json one_of(const std::vector<std::string>& values) {
     return {{"type", "string"}, {"enum", values}};
 }
 
-Json list_of(Schema items) { return {{"type", "array"}, {"items", std::move(items.json)}}; }
-
 Json list_of(Schema items, int length) {
-    Json list = list_of(std::move(items));
-    list["minItems"] = list["maxItems"] = length;
+    Json list = {{"type", "array"}, {"items", std::move(items.json)}};
+    if (length > 0) list["minItems"] = list["maxItems"] = length;
     return list;
 }
 

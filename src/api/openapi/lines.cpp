@@ -1,6 +1,4 @@
 // The lines of the responses of /v1/sweep, /v1/basins, /v1/continue and /v1/design.
-#include <cctype>
-
 #include "api/continuation.hpp"
 #include "api/openapi/parts.hpp"
 #include "api/properties.hpp"
@@ -17,14 +15,9 @@ Keys some_of(
     return keys;
 }
 
-/// A key for each number of these fields, which a line has if the number is swept.
-Keys swept_keys(
-    const Schema& value, const std::string& description,
-    const FieldTable& fields = sweep_base_fields()) {
-    std::vector<std::string> names;
-    for (const Field& f : fields)
-        if (f.type == FieldType::number) names.push_back(f.name);
-    return some_of(names, value, description);
+/// A key for each parameter of an axis, which a line has if the parameter is swept.
+Keys swept_keys(const Schema& value, const std::string& description) {
+    return some_of(swept_names(), value, description);
 }
 
 Keys index_keys() {
@@ -96,7 +89,7 @@ Json multipliers() {
 
 Keys branch_orbit_keys() {
     return {
-        swept_keys(number, "value of a continued parameter", simulate_fields_where(is_continued)),
+        some_of(continued_names(), number, "value of a continued parameter"),
         values_of(properties::branch_point),
         {"multipliers", multipliers(), "Floquet multipliers of a period, descending"},
         {"state", start(), "state of the orbit at a whole cycle, as the start of a simulation"}};
@@ -161,7 +154,7 @@ Json any_line(const std::vector<std::string>& schemas) {
     Json any = Json::array(), mapping = Json::object();
     for (const std::string& name : schemas) {
         std::string type = name.substr(name.find_last_of("ABCDEFGHIJKLMNOPQRSTUVWXYZ"));
-        type[0] = static_cast<char>(std::tolower(type[0]));
+        type[0] = lower_case(type[0]);
         any.push_back(reference(name));
         mapping[type] = any.back()["$ref"];
     }

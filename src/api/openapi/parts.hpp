@@ -24,9 +24,8 @@ Json schema_of(ValueType type);
 
 Json constant(const std::string& value);
 Json one_of(const std::vector<std::string>& values);
-Json list_of(Schema items);
-/// A list of exactly `length` entries.
-Json list_of(Schema items, int length);
+/// A list of exactly `length` entries; 0: of any number.
+Json list_of(Schema items, int length = 0);
 /// The schema, or null; unchanged if it permits null.
 Json or_null(Schema schema);
 /// A reference to a schema of the components.

@@ -134,6 +134,11 @@ std::vector<std::string> split(const std::string& text, char separator);
 /// The text without blanks and tabs at its ends.
 std::string_view trimmed(std::string_view text);
 
+/// A letter of ASCII in lower case; other characters as they are.
+inline char lower_case(char c) {
+    return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c;
+}
+
 /// f of each element of a list, a member or a function that returns a text.
 template <class List, class F>
 std::vector<std::string> texts_of(const List& list, const F& f) {

@@ -287,10 +287,13 @@ bool is_of_system(const Field& f) {
     return f.group == "system" || f.group == "reduced" || f.group == "SI";
 }
 
-bool is_continued(const Field& f) {
-    return f.type == FieldType::number &&
-           (is_of_system(f) || f.name == "gravity" || f.name == "inclination" ||
-            f.name == "friction" || f.name == "mu");
+std::vector<std::string> continued_names() {
+    const FieldTable continued = simulate_fields_where([](const Field& f) {
+        return f.type == FieldType::number &&
+               (is_of_system(f) || f.name == "gravity" || f.name == "inclination" ||
+                f.name == "friction" || f.name == "mu");
+    });
+    return texts_of(continued, &Field::name);
 }
 
 FieldTable simulate_fields_where(bool (*keep)(const Field&)) {

@@ -129,6 +129,13 @@ const FieldTable& sweep_base_fields() {
     return table;
 }
 
+std::vector<std::string> swept_names() {
+    std::vector<std::string> names;
+    for (const Field& f : sweep_base_fields())
+        if (f.type == FieldType::number) names.push_back(f.name);
+    return names;
+}
+
 const FieldTable& axis_fields() {
     using namespace kinds;
     static const FieldTable table = grouped(

@@ -60,8 +60,10 @@ extern const Channel time_channel, displacement_channel, acceleration_channel,
 
 /// True for a field of /v1/simulate that defines the system: group system, reduced or SI.
 bool is_of_system(const Field& field);
-/// True for a number along which orbits are continued: those of the system, gravity and friction.
-bool is_continued(const Field& field);
+/// Parameters of a sweep's axis: the numbers of its base.
+std::vector<std::string> swept_names();
+/// Parameters along which orbits are continued: numbers of the system, gravity and friction.
+std::vector<std::string> continued_names();
 
 /// The fields of /v1/simulate for which keep(field) is true.
 FieldTable simulate_fields_where(bool (*keep)(const Field& field));

@@ -253,13 +253,18 @@ struct DesignSearch {
     }
 
     /// Larger and larger changes of a value, up and down, while the objective stays within both
-    /// excesses. `with`: the objective with the value changed by a factor.
-    static DesignMargin margin_of(double best, const std::function<double(double)>& with) {
+    /// excesses. `change` multiplies the value by a factor.
+    DesignMargin margin_of(
+        const DesignPoint& p, const BuiltAbsorber& nominal, double best,
+        void (*change)(BuiltAbsorber&, double by)) const {
         DesignMargin margin{{1, 1}, {1, 1}};
         for (const bool up : {true, false}) {
             bool small = true;
-            for (const double change : changes) {
-                const double factor = up ? change : 1 / change, value = with(factor);
+            for (const double by : changes) {
+                const double factor = up ? by : 1 / by;
+                BuiltAbsorber changed = nominal;
+                change(changed, factor);
+                const double value = changed.R > 1 ? infinity : objective_with(p, changed);
                 if (!(value <= large_excess * best)) break;
                 small = small && value <= small_excess * best;
                 (up ? margin.twenty_percent.to : margin.twenty_percent.from) = factor;
@@ -272,13 +277,7 @@ struct DesignSearch {
     void set_margins(Design& d) const {
         const BuiltAbsorber nominal{host_with(d.best.m2), d.best.b, d.best.R};
         const double best = objective_with(d.best, nominal);
-        const auto margin = [&](void (*change)(BuiltAbsorber&, double by)) {
-            return margin_of(best, [&](double by) {
-                BuiltAbsorber changed = nominal;
-                change(changed, by);
-                return changed.R > 1 ? infinity : objective_with(d.best, changed);
-            });
-        };
+        const auto margin = [&](auto change) { return margin_of(d.best, nominal, best, change); };
         d.b = margin([](BuiltAbsorber& a, double by) { a.b *= by; });
         d.R = margin([](BuiltAbsorber& a, double by) { a.R *= by; });
         d.f0 = margin([](BuiltAbsorber& a, double by) { a.si.k1 *= by * by; });
