@@ -281,7 +281,8 @@ TEST_CASE("an impact next to a tangent contact causes a warning") {
 }
 
 TEST_CASE(
-    "the manifold has a fold, branches and a recommended b, alone and with a run's half cycles") {
+    "the manifold has a fold, branches and a recommended b, alone and with a run's half cycles" *
+    doctest::test_suite("long")) {
     const Json m = slow_manifold(
         read_manifold_request(parse_object(R"({"preset":"fig11","points":50})")))["manifold"];
     CHECK(m["fold"]["C"].get<double>() == doctest::Approx(0.157 * 0.015).epsilon(0.01));
@@ -304,7 +305,8 @@ TEST_CASE(
     CHECK(run["warnings"].size() == 1);
 }
 
-TEST_CASE("the manifold ends where the motion does, with the reason") {
+TEST_CASE(
+    "the manifold ends where the motion does, with the reason" * doctest::test_suite("long")) {
     const auto manifold = [](const Json& given) {
         return slow_manifold(read_manifold_request(given));
     };

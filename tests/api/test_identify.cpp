@@ -183,7 +183,7 @@ TEST_CASE("the direct estimate has exponents with histories if included") {
     CHECK(a == identified(read_identify_request(fields, csv)));
 }
 
-TEST_CASE("fixed amplitude and phase of the forcing are not fitted") {
+TEST_CASE("fixed amplitude and phase of the forcing are not fitted" * doctest::test_suite("long")) {
     const std::string csv = measured("fig20", 8, 20);
     const Json free = identified(read_identify_request({{"preset", "fig20"}}, csv));
     const double F = free["fitted"]["F"]["value"], phase = free["fitted"]["phase"]["value"];

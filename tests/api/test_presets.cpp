@@ -213,7 +213,9 @@ TEST_CASE(
     CHECK(both["R_minus"] == 0.5);
 }
 
-TEST_CASE("the manifold uses the request's fields over those of the preset") {
+TEST_CASE(
+    "the manifold uses the request's fields over those of the preset" *
+    doctest::test_suite("long")) {
     const auto parameters = [](const Json& given) {
         Json j = slow_manifold(read_manifold_request(given))["parameters"];
         j.erase("origin");

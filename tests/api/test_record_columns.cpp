@@ -42,7 +42,8 @@ std::string rescaled(
 
 TEST_CASE(
     "a unit in a column's name is applied, in CSV and JSON, or refused if unknown or "
-    "contradictory") {
+    "contradictory" *
+    doctest::test_suite("long")) {
     const std::string csv = measured("fig15", 3, 20);  // weak impacts depend on every digit
     const Json a = identified(read_identify_request({{"preset", "fig15"}}, csv));
     const auto same = [&](const Json& b) {

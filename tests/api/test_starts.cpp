@@ -150,7 +150,8 @@ TEST_CASE("a reduction is the peak over the reduced axis") {
 }
 
 TEST_CASE(
-    "a separate run confirms the reduction at the recommended b, far below the activation limit") {
+    "a separate run confirms the reduction at the recommended b, far below the activation limit" *
+    doctest::test_suite("long")) {
     for (const std::string& system :
          {platform + R"(,"f":14)", std::string(R"("damping":"closed_form")")}) {
         const Json whole = slow_manifold(read_manifold_request(parse_object("{" + system + "}")));

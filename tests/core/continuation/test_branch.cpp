@@ -391,7 +391,8 @@ TEST_CASE("branches under friction are orbits of the simulated motion, also alon
 }
 
 TEST_CASE(
-    "under friction a branch passes edges where slips change, and ends where the ball grazes") {
+    "under friction a branch passes edges where slips change, and ends where the ball grazes" *
+    doctest::test_suite("long")) {
     Parameters base = table1(0.006, Damping::equation_of_motion);
     base.epsilon = 0.03;
     base.lambda = 2.0 / 3;

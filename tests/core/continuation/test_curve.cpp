@@ -88,7 +88,9 @@ TEST_CASE("a curve of special points passes through those of other branches") {
     }
 }
 
-TEST_CASE("a curve of births of a sticking phase passes through those of other branches") {
+TEST_CASE(
+    "a curve of births of a sticking phase passes through those of other branches" *
+    doctest::test_suite("long")) {
     const double from = 0.0015, to = 0.006;
     const Collected branch = branch_along_b(0.002, 0.2, from, to);
     const SpecialPoint* const begin = branch.first(SpecialKind::stick);

@@ -399,7 +399,9 @@ TEST_CASE("quantiles lie between the values") {
     CHECK(quantile({3}, 0.95) == 3);
 }
 
-TEST_CASE("a sample's objective is the worst case of runs with its values, in every part of them") {
+TEST_CASE(
+    "a sample's objective is the worst case of runs with its values, in every part of them" *
+    doctest::test_suite("long")) {
     DesignPlan plan = machine();
     plan.b = {0.05, 0.05};
     plan.b_count = 1;

@@ -93,7 +93,8 @@ TEST_CASE(
 }
 
 TEST_CASE(
-    "an impact whose pulse falls between two samples is found by its kink in the displacement") {
+    "an impact whose pulse falls between two samples is found by its kink in the displacement" *
+    doctest::test_suite("long")) {
     const Experiment m = measured(0.015, 0.85, 0.85, {.pulse = 0.2e-3});
     const MeasurementResult r = identified(m);
     // A pulse of half a sampling interval contains a sample in half of the cases.
@@ -210,7 +211,8 @@ TEST_CASE("the neighbours of a missing impact are inconsistent and are excluded 
 }
 
 TEST_CASE(
-    "a wrong b is replaced by the one that satisfies the momentum balance, unless it is fixed") {
+    "a wrong b is replaced by the one that satisfies the momentum balance, unless it is fixed" *
+    doctest::test_suite("long")) {
     Experiment m = regular_record();
     m.parameters.b = 0.011;
     const MeasurementResult r = identified(m);

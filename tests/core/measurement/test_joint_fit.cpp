@@ -46,7 +46,9 @@ TEST_CASE("the fitted motion at one time does not depend on the other times requ
     }
 }
 
-TEST_CASE("sensor errors and forcing are identified within five standard errors") {
+TEST_CASE(
+    "sensor errors and forcing are identified within five standard errors" *
+    doctest::test_suite("long")) {
     const Sensors sensors{
         .offset = 5e-3,
         .drift = 50e-6,

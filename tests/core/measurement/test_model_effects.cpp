@@ -50,7 +50,8 @@ void check_values(const Experiment& e, const MeasurementResult& r, double mean =
 
 }  // namespace
 
-TEST_CASE("a record that follows the model shows no effect outside it") {
+TEST_CASE(
+    "a record that follows the model shows no effect outside it" * doctest::test_suite("long")) {
     for (const double b : {0.009, 0.015}) {
         const Experiment e = unmodelled_experiment(b, {});
         const MeasurementResult r = identified_with_mains(e);

@@ -136,7 +136,8 @@ TEST_CASE(
 
 TEST_CASE(
     "half cycles hold the mean speed of the ball and the peak of the oscillator, including "
-    "sticking phases, gravity, friction and a load") {
+    "sticking phases, gravity, friction and a load" *
+    doctest::test_suite("long")) {
     const Parameters plain = table1(0.015, Damping::closed_form);  // sticks at 11.8
     Parameters inclined = plain, rubbing = plain, loaded = plain;
     inclined.gravity = 0.003, inclined.R_plus = inclined.R_minus = 0.1;

@@ -416,7 +416,9 @@ TEST_CASE(
     }
 }
 
-TEST_CASE("the exponents of a sticking motion exist wherever in its chatter the window ends") {
+TEST_CASE(
+    "the exponents of a sticking motion exist wherever in its chatter the window ends" *
+    doctest::test_suite("long")) {
     Parameters p;
     p.epsilon = 0.08577200056792593, p.Omega = 1.0140062, p.lambda = 0.35414361799157534;
     p.R_plus = p.R_minus = 0.6472643271251156, p.b = 0.00010228962122445021;

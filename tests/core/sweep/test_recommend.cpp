@@ -89,7 +89,8 @@ TEST_CASE(
     }
 }
 
-TEST_CASE("a robust b is the better one where F and f are not exact") {
+TEST_CASE(
+    "a robust b is the better one where F and f are not exact" * doctest::test_suite("long")) {
     const Parameters p = system_of(0.05, 0.4, 0.7, 1.02);
     const Recommendations r = recommended_b(p, {});
     REQUIRE(r.robust);
