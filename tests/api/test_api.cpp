@@ -281,8 +281,7 @@ TEST_CASE("an impact next to a tangent contact causes a warning") {
 }
 
 TEST_CASE(
-    "the manifold has a fold, branches and a recommended b, alone and with a run's half cycles" *
-    doctest::test_suite("long")) {
+    "the manifold has a fold, branches and a recommended b, alone and with a run's half cycles") {
     const Json m = slow_manifold(
         read_manifold_request(parse_object(R"({"preset":"fig11","points":50})")))["manifold"];
     CHECK(m["fold"]["C"].get<double>() == doctest::Approx(0.157 * 0.015).epsilon(0.01));

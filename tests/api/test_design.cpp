@@ -57,8 +57,7 @@ TEST_CASE("a design's faults are named at their fields") {
         Pointers{"/indices"});
 }
 
-TEST_CASE(
-    "under a load a design has neither frequency nor amplitude" * doctest::test_suite("long")) {
+TEST_CASE("under a load a design has neither frequency nor amplitude") {
     Json request = {
         {"base", design_of_machine()["base"]},
         {"forcing", {{"kind", "half_sine"}, {"acceleration_m_s2", 30}, {"duration_s", 0.03}}},

@@ -127,9 +127,7 @@ TEST_CASE("an invalid load is named at its pointer") {
     CHECK(pointers(refused(R"({"forcing":{"time_s":[0,1],"force_N":[0,1]}})")) == "/forcing");
 }
 
-TEST_CASE(
-    "each kind of load moves the base or the oscillator as its fields say" *
-    doctest::test_suite("long")) {
+TEST_CASE("each kind of load moves the base or the oscillator as its fields say") {
     const double omega0 = 2 * std::numbers::pi * 14;
     const auto run = [](const std::string& load, const std::string& more = "") {
         return answer(with(R"("y0":0,"include":["series","energy"],"forcing":)" + load + more));

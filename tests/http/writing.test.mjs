@@ -106,7 +106,7 @@ test("the points of a sweep with long sections count as memory that it holds", a
 
 test("tables of sweeps that find no memory take none", async (t) => {
   const {url, pid} = await serviceFor(t);
-  const axes = [{...sweep.axes[0], count: 1e5}]; // a table of 60 MB
+  const axes = [{...sweep.axes[0], count: 1e5}]; // a table for which 122 MB are reserved
   const table = JSON.stringify({axes, cycles: 1, transient_cycles: 0, format: "cbor"});
   const sockets = await connectAll(url, 20, () => post("/v1/sweep", table).repeat(5));
   t.after(() => {
