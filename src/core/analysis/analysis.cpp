@@ -7,7 +7,6 @@
 #include <cmath>
 
 #include "core/motion/load.hpp"
-#include "core/stability/lyapunov.hpp"
 
 namespace vines {
 
@@ -307,7 +306,8 @@ struct AnalysisConclusion {
         const warning::NotStationary found{
             w.parts.exponents && halves_differ(a.exponents->growth.difference_of_halves),
             a.energy && halves_differ(a.energy->balance.difference_of_halves),
-            estimates && p.zeta() == 0 && p.R_plus == 1 && p.R_minus == 1 && p.G > 0};
+            estimates && p.zeta() == 0 && p.friction == 0 && p.has_constant_R() && p.R_plus == 1 &&
+                p.R_minus == 1 && p.G > 0};
         if (found.lambda1 || found.x_rms || found.conservative) warn(found);
     }
 

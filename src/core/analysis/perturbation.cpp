@@ -4,7 +4,6 @@
 #include <cmath>
 #include <random>
 
-#include "core/motion/elementary.hpp"
 #include "core/stability/lyapunov.hpp"
 
 namespace vines {
@@ -188,6 +187,7 @@ void find_linear_stretch(
             times.push_back(tau[i]);
             log_distances.push_back(elementary::log(r.distance[i]));
         }
+    if (times.size() < 2) return;
     const Interval stretch{first_impact, r.linear_until};
     r.linear = {
         stretch, slope_through(times, log_distances), lambda1_over(p, start, stretch, limits)};

@@ -86,7 +86,7 @@ std::vector<PieceEquations> equations_of(
                 equations.add(
                     {m[0].x, m[1].x, m[2].x, m[3].x}, r.x[k] - x_offset, in.statistics.x.noise);
             // Next to a displacement it adds almost nothing. Its pulses act as noise.
-            if (r.x.empty())
+            if (r.x.empty() && !in.statistics.a.bad[k])
                 equations.add(
                     {m[0].x_ddot, m[1].x_ddot, m[2].x_ddot, m[3].x_ddot}, r.x_ddot[k] - a_offset,
                     in.statistics.a.noise);

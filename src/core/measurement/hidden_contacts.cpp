@@ -3,9 +3,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "core/motion/elementary.hpp"
-#include "core/motion/load.hpp"
-
 namespace vines {
 
 namespace {
@@ -195,14 +192,19 @@ struct HiddenContactSearch {
         std::optional<HiddenContacts> found;
         std::size_t shown = from + 1;
         int unseen = 0;
-        for (RunImpact& next : run.impacts) {
+        for (std::size_t n = 0; n < run.impacts.size(); ++n) {
+            RunImpact& next = run.impacts[n];
+            // In a chatter the measured impact belongs to the nearest one of the run.
+            const bool repeats = n + 1 < run.impacts.size() && run.impacts[n + 1].side == next.side;
+            const double following = repeats ? run.impacts[n + 1].tau : infinity;
             const double apart = may_be_apart(first.tau, next.tau);
             for (; shown < impacts.size() && impacts[shown].tau < next.tau - apart; ++shown)
                 // The run has no impact where one is measured.
                 if (!stands_for(shown, hidden)) return found;
             if (shown == impacts.size()) return found;
             const IdentifiedImpact& m = impacts[shown];
-            const bool is_there = m.tau < next.tau + apart && m.side == next.side;
+            const bool is_there = m.tau < next.tau + apart && m.side == next.side &&
+                                  m.tau - next.tau < following - m.tau;
             if (is_there && leads_to(hidden, after.x_dot, m, next)) {
                 if (is_strong(shown) || !found) {
                     found = hidden;
@@ -259,7 +261,8 @@ IdentifiedSystem::IdentifiedSystem(
       faster(std::sqrt(v[Unknown::stiffness])),
       tau_zero(tau_zero) {
     own.Omega /= faster;
-    own.lambda = std::max(0.0, v[Unknown::damping] / (faster * p.epsilon));
+    own.lambda = std::max(0.0, v[Unknown::damping] / (faster * p.epsilon)) /
+                 (p.damping == Damping::closed_form ? 2 : 1);
     own.G = G_of(own, v[Unknown::force_sin], v[Unknown::force_cos]) / (faster * faster);
     own.friction /= faster * faster;
     if (!flows.excess) return;

@@ -156,7 +156,8 @@ Restitution restitution_of(const IdentifiedImpacts& impacts, int side) {
     const double centre = median(R);
     const std::vector<double> off = values_of(R, [centre](double r) { return r - centre; });
     // The median of normally distributed values scatters sqrt(pi/2) times as much as their mean.
-    const double error = 1.25 * robust_deviation(off) / std::sqrt(count_of(off));
+    const double error =
+        R.size() < 2 ? nan : 1.25 * robust_deviation(off) / std::sqrt(count_of(off));
     return {centre, error, static_cast<long>(R.size())};
 }
 

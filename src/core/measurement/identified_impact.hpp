@@ -72,7 +72,7 @@ double braking(const Parameters& p, const IdentifiedImpact& from, const Identifi
 std::vector<StickingPhase> sticking_phases(const IdentifiedImpacts& impacts);
 
 struct Restitution {
-    double R, error;  ///< median and its standard error; NaN without impacts
+    double R, error;  ///< median and its standard error; NaN with too few impacts
     long impacts;
 };
 /// R of one wall, from its impacts that are not excluded.

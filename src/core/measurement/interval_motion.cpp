@@ -1,7 +1,5 @@
 #include "core/measurement/interval_motion.hpp"
 
-#include "core/motion/elementary.hpp"
-
 namespace vines {
 
 namespace {

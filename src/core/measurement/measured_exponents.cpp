@@ -7,9 +7,6 @@
 #include <numeric>
 #include <optional>
 
-#include "core/measurement/robust.hpp"
-#include "core/motion/elementary.hpp"
-
 namespace vines {
 
 namespace {

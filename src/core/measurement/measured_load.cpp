@@ -8,7 +8,6 @@
 #include <numeric>
 
 #include "core/measurement/robust.hpp"
-#include "core/motion/elementary.hpp"
 
 namespace vines {
 
@@ -20,30 +19,36 @@ double squares_of(const std::vector<double>& values) {
     return std::inner_product(values.begin(), values.end(), values.begin(), 0.0);
 }
 
+// A channel is periodic if it has this many cycles, and a sine explains this share of its variance.
 constexpr double fewest_cycles = 5, least_explained = 0.75;
 // A crossing counts once the signal passes the mean by this fraction of its standard deviation.
 constexpr double hysteresis = 0.5;
 // The crossings give the frequency to about one crossing in the whole record. Pieces of this many
-// cycles resolve the remaining phase drift, and pieces four times as long refine it.
-constexpr double cycles_of_piece = 4;
+// cycles resolve the remaining phase drift; pieces that grow refine it, as long as there are four.
+constexpr double cycles_of_piece = 4, growth = 4, fewest_pieces = 4;
 constexpr int refinements = 6;
-constexpr double longer = 4;
 
-/// From the upward mean crossings; 0 with too few.
+/// Angular frequency from the upward crossings of the mean; 0 with too few. Intervals that miss
+/// one, as in a gap, are left out.
 double rough_omega(
     const std::vector<double>& time, const std::vector<double>& values, double mean, double level) {
-    double first = 0, last = 0;
-    long crossings = 0;
+    std::vector<double> crossings, intervals;
     bool is_low = false;
     for (std::size_t k = 0; k < values.size(); ++k) {
         if (values[k] < mean - level) is_low = true;
         if (!is_low || values[k] < mean + level) continue;
         is_low = false;
-        if (crossings++ == 0) first = time[k];
-        last = time[k];
+        if (!crossings.empty()) intervals.push_back(time[k] - crossings.back());
+        crossings.push_back(time[k]);
     }
-    if (static_cast<double>(crossings - 1) < fewest_cycles) return 0;
-    return 2 * std::numbers::pi * static_cast<double>(crossings - 1) / (last - first);
+    if (count_of(intervals) < fewest_cycles) return 0;
+    const auto middle = intervals.begin() + std::ssize(intervals) / 2;
+    std::ranges::nth_element(intervals, middle);
+    double cycles = count_of(intervals), duration = crossings.back() - crossings.front();
+    const double longest = 1.5 * *middle;
+    for (const double interval : intervals)
+        if (interval > longest) --cycles, duration -= interval;
+    return cycles < fewest_cycles ? 0 : 2 * std::numbers::pi * cycles / duration;
 }
 
 struct HarmonicFit {
@@ -72,20 +77,22 @@ HarmonicFit fit_harmonic(
 double omega_off(
     const std::vector<double>& time, const std::vector<double>& values, double omega,
     double piece) {
-    double last = 0, turned = 0, n = 0, t = 0, a = 0, tt = 0, ta = 0;
+    double last = 0, unwrapped = 0;
+    double n = 0, t = 0, a = 0, tt = 0, ta = 0;  // sums for a straight line through the phases
     for (std::size_t from = 0; from < time.size();) {
         std::size_t to = from + 1;
         while (to < time.size() && time[to] < time[from] + piece) ++to;
-        // A shorter last piece is ignored.
+        // A piece that the end or a gap cuts short is left out: it has no phase.
         if (to == time.size() && from > 0) break;
-        const HarmonicFit f = fit_harmonic(time, values, omega, from, to);
+        const std::size_t first = std::exchange(from, to);
+        if (time[to - 1] - time[first] < 0.5 * piece) continue;
+        const HarmonicFit f = fit_harmonic(time, values, omega, first, to);
         const double angle = elementary::atan2(f.by(1), f.by(0));
-        if (n > 0) turned += std::remainder(angle - last, 2 * std::numbers::pi);
-        else turned = angle;
+        if (n > 0) unwrapped += std::remainder(angle - last, 2 * std::numbers::pi);
+        else unwrapped = angle;
         last = angle;
-        const double middle = 0.5 * (time[from] + time[to - 1]);
-        n += 1, t += middle, a += turned, tt += middle * middle, ta += middle * turned;
-        from = to;
+        const double middle = 0.5 * (time[first] + time[to - 1]);
+        n += 1, t += middle, a += unwrapped, tt += middle * middle, ta += middle * unwrapped;
     }
     return n > 1 ? (n * ta - t * a) / (n * tt - t * t) : 0;
 }
@@ -93,7 +100,8 @@ double omega_off(
 constexpr std::size_t most_harmonics = 5;
 // Harmonics below this fraction of the channel's sampling rate are fitted.
 constexpr double most_of_rate = 0.4;
-// Shortest pieces of a spline, in cycles, those of the drift, and their largest number.
+// Shortest pieces of a spline in cycles, of a harmonic and of the drift; the largest number of
+// them.
 constexpr double shortest_piece = 3, drift_piece = 10, most_pieces = 512;
 // Least noise in the choice of a spline, over the amplitude: numerical errors are no modulation.
 constexpr double least_noise = 1e-3;
@@ -135,7 +143,8 @@ struct EnvelopeFit {
     std::vector<double> left = channel.values;  ///< what the harmonics leave of the channel
     double explained = 0;                       ///< decrease of its squares by the last fit
 
-    /// Harmonic k at sample n: the real part of the sum of `by` times coefficients.
+    /// Harmonic k at sample n: the real part of the sum of `by` times coefficients. The envelope is
+    /// that of the force or of the base; a channel of its acceleration has the second derivative.
     struct Row {
         std::size_t first, count;
         std::array<Complex, 4> by;
@@ -173,6 +182,7 @@ struct EnvelopeFit {
                     band[2 * row.first + a][a - b] += by[a] * by[b];
             }
         }
+        // Arrays compare by their first entries, on the diagonal.
         const double largest = std::ranges::max(band)[0], weight = bridging * largest;
         // (c_j - 2 c_(j+1) + c_(j+2))^2, for both parts.
         for (std::size_t j = 4; j < band.size(); ++j) {
@@ -181,7 +191,7 @@ struct EnvelopeFit {
         }
         std::vector<Eigen::Triplet<double>> entries;
         for (std::size_t j = 0; j < band.size(); ++j) {
-            band[j][0] += 1e-12 * largest;
+            band[j][0] += 1e-12 * largest;  // not singular in a gap
             for (std::size_t n = 0; n < 8 && n <= j; ++n)
                 entries.emplace_back(j, j - n, band[j][n]);
         }
@@ -203,8 +213,8 @@ struct EnvelopeFit {
                 left[n] += sign * (row.by[j] * e.coefficients[row.first + j]).real();
         }
     }
-    /// The best envelope among numbers of coefficients; 0: none. Bayes' criterion decides whether
-    /// it varies, Akaike's then how much: too few pieces are worse than noise.
+    /// The best envelope among numbers of (complex) coefficients; 0: none. Bayes' criterion decides
+    /// whether it varies, Akaike's, which permits more, how fast: too few are worse than noise.
     Envelope best(std::size_t k, const std::vector<std::size_t>& choices) {
         const double n = count_of(left), all = squares_of(left),
                      floor =
@@ -266,7 +276,7 @@ std::optional<Harmonic> harmonic_of(
     for (int k = 0; k < refinements; ++k) {
         look();
         omega += omega_off(time, about, omega, piece);
-        if (piece * longer < duration / longer) piece *= longer;
+        if (piece * growth < duration / fewest_pieces) piece *= growth;
     }
     const HarmonicFit all = fit_harmonic(time, about, omega, 0, time.size());
     if (!(all.squares < (1 - least_explained) * n * deviation * deviation)) return std::nullopt;
@@ -287,7 +297,7 @@ std::shared_ptr<const MeasuredLoad> MeasuredLoad::of(
                  rate = (count_of(channel.tau) - 1) / (channel.tau.back() - channel.tau.front());
     EnvelopeFit fit{channel, sine, look};
     const std::vector<std::size_t> choices = choices_for(cycles, shortest_piece);
-    // The offset and its drift are not part of the load. Without the sine they are small.
+    // The offset and its drift are no load: what a constant sine leaves, smoothed, is removed.
     const Envelope constant = fit.fitted(1, 1);
     fit.add(1, constant, -1);
     std::vector<Envelope> all = {fit.fitted(0, choices_for(cycles, drift_piece).back())};
@@ -301,7 +311,7 @@ std::shared_ptr<const MeasuredLoad> MeasuredLoad::of(
         fit.add(k, all[k], -1);
     }
     while (all.size() > 2 && all.back().coefficients.empty()) all.pop_back();
-    if (all.size() < 2 || (all.size() == 2 && !all[1].varies())) return nullptr;
+    if (all.size() < 2 || (all.size() == 2 && !all[1].varies())) return nullptr;  // a sine
     // Again, since the harmonics are not quite independent of each other.
     for (int pass = 0; pass < passes; ++pass)
         for (std::size_t k = 0; k < all.size(); ++k) {
@@ -330,7 +340,7 @@ std::shared_ptr<const MeasuredLoad> MeasuredLoad::of(
 
 Complex MeasuredLoad::excess(double sigma, const UnknownValues& v) const {
     const Complex z = Complex(v[Unknown::force_cos], -v[Unknown::force_sin]) / fundamental;
-    // Phase of the fitted fundamental before that of the channel, up to a reversed sign.
+    // Lead of the fitted fundamental over that of the channel, which can be inverted: modulo pi.
     const double lead = std::remainder(elementary::atan2(z.imag(), z.real()), std::numbers::pi),
                  u = 0.5 + sigma / length_;
     const Complex phasor = elementary::phasor(v[Unknown::Omega] * sigma),
@@ -358,15 +368,16 @@ LoadResponse::Excess::Excess(const MeasuredLoad& load, const UnknownValues& valu
         at.push_back(load.excess(begin + 0.5 * step * static_cast<double>(n), values));
 }
 
-/// Runge-Kutta steps of fourth order.
-LoadResponse::LoadResponse(const Excess& excess, double k, double c, double by)
+/// x'' + damping x' + stiffness x = by_force excess from rest, by Runge-Kutta steps of fourth
+/// order.
+LoadResponse::LoadResponse(const Excess& excess, double stiffness, double damping, double by_force)
     : begin_(excess.begin),
       step_(excess.step) {
     Complex x = 0, v = 0;
     const double h = step_;
     for (std::size_t n = 0; n < excess.at.size(); n += 2) {
-        const auto rate = [&](std::size_t at, Complex x_at, Complex v_at) {
-            return by * excess.at[at] - k * x_at - c * v_at;
+        const auto rate = [&](std::size_t i, Complex x_at, Complex v_at) {
+            return by_force * excess.at[i] - stiffness * x_at - damping * v_at;
         };
         const Complex a1 = rate(n, x, v);
         nodes_.push_back({x, v, a1});
@@ -381,10 +392,10 @@ LoadResponse::LoadResponse(const Excess& excess, double k, double c, double by)
 
 /// The polynomial of degree 5 through both states of a cell and their accelerations.
 LoadResponse::Motion LoadResponse::at(double sigma) const {
-    const double at = std::clamp(
+    const double place = std::clamp(
                      (sigma - begin_) / step_, 0.0, static_cast<double>(nodes_.size() - 1)),
-                 cell = std::min(std::floor(at), static_cast<double>(nodes_.size() - 2)),
-                 t = at - cell, h = step_;
+                 cell = std::min(std::floor(place), static_cast<double>(nodes_.size() - 2)),
+                 t = place - cell, h = step_;
     const Node &from = nodes_[static_cast<std::size_t>(cell)],
                &to = nodes_[static_cast<std::size_t>(cell) + 1];
     const Complex v = h * from.x_dot, a = h * h * from.x_ddot, x_off = to.x - from.x - v - 0.5 * a,

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <optional>
 
+#include "core/measurement/measured_load.hpp"
 #include "core/motion/elementary.hpp"
 
 namespace vines {
@@ -39,15 +40,15 @@ void mark_clipped(const std::vector<double>& v, std::vector<char>& bad) {
 /// Marks held samples as bad too; returns those that are not clipped.
 std::vector<char> mark_held(const std::vector<double>& v, std::vector<char>& bad) {
     std::vector<char> held(v.size(), 0);
-    const std::vector<double> steps = steps_of(v);
-    if (static_cast<double>(std::ranges::count(steps, 0)) > coarse_share * count_of(v)) return held;
-    for (std::size_t k = 0; k < v.size();) {
-        std::size_t end = k + 1;
+    double samples = 0, equal = 0;  // of a long drop-out only held_samples count
+    for (std::size_t k = 0, end = 0; k < v.size(); k = end) {
         while (end < v.size() && v[end] == v[k]) ++end;
-        for (std::size_t j = k; end - k >= held_samples && j < end; ++j)
-            if (!bad[j]) bad[j] = held[j] = 1;
-        k = end;
+        samples += static_cast<double>(std::min(end - k, held_samples));
+        equal += static_cast<double>(std::min(end - k, held_samples) - 1);
+        for (std::size_t j = k; end - k >= held_samples && j < end; ++j) held[j] = !bad[j];
     }
+    if (equal > coarse_share * samples) return std::vector<char>(v.size(), 0);
+    for (std::size_t k = 0; k < v.size(); ++k) bad[k] |= held[k];
     return held;
 }
 
@@ -150,10 +151,10 @@ struct NearLine {
     }
 };
 
-/// Removes the line near Omega, if there is one that is no harmonic of the forcing.
+/// Removes the line near Omega, if there is one that is no harmonic of a forcing.
 std::optional<Hum> remove_line(
-    const std::vector<double>& tau, std::vector<double>& v, double Omega, double forcing,
-    const Look& look) {
+    const std::vector<double>& tau, std::vector<double>& v, double Omega,
+    const std::array<double, 2>& forcings, const Look& look) {
     if ((tau.back() - tau.front()) * Omega > most_periods * 2 * std::numbers::pi)
         return std::nullopt;
     const NearLine near(tau, v, Omega, look);
@@ -173,8 +174,10 @@ std::optional<Hum> remove_line(
     const double noise = third_difference_noise(tau, v);
     if (!(highest > stands_above * median(std::move(around)) && highest > above_noise * noise))
         return std::nullopt;
-    const double orders = (Omega + best) / forcing;
-    if (std::abs(orders - std::round(orders)) * forcing < near.resolution) return std::nullopt;
+    for (const double forcing : forcings) {
+        const double orders = (Omega + best) / forcing;
+        if (std::abs(orders - std::round(orders)) * forcing < near.resolution) return std::nullopt;
+    }
     const Complex line = near.at(best);
     for (std::size_t k = 0; k < tau.size(); ++k)
         v[k] -= (line * elementary::phasor((Omega + best) * (tau[k] - tau.front()))).real();
@@ -212,10 +215,13 @@ RecordStatistics::RecordStatistics(const MeasuredRecord& r) : step(median(steps_
 std::vector<Hum> remove_hum(
     MeasuredRecord& r, const std::vector<double>& mains, double forcing, const Look& look) {
     std::vector<Hum> found;
+    // The given frequency can be wrong.
+    const auto own = harmonic_of(r.tau, r.x.empty() ? r.x_ddot : r.x, look);
+    const std::array forcings = {forcing, own ? own->omega : forcing};
     for (const double Omega : mains)
         for (std::vector<double>* channel : {&r.x, &r.x_ddot}) {
             if (channel->empty()) continue;
-            const std::optional<Hum> hum = remove_line(r.tau, *channel, Omega, forcing, look);
+            const std::optional<Hum> hum = remove_line(r.tau, *channel, Omega, forcings, look);
             if (hum) found.push_back({hum->Omega, hum->amplitude, channel == &r.x});
         }
     return found;

@@ -5,11 +5,8 @@
 #include <cmath>
 #include <utility>
 
-#include "core/measurement/robust.hpp"
 #include "core/measurement/search.hpp"
 #include "core/measures/energy.hpp"
-#include "core/motion/elementary.hpp"
-#include "core/motion/record.hpp"
 
 namespace vines {
 

@@ -4,9 +4,6 @@
 #include <cmath>
 #include <random>
 
-#include "core/motion/elementary.hpp"
-#include "core/motion/record.hpp"
-
 namespace vines {
 
 namespace {

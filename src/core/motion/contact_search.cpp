@@ -119,6 +119,10 @@ std::optional<double> first_crossing(
 
 namespace {
 
+/// The part of a cell in which to search up to a time `left`. Far beyond it the Taylor polynomial
+/// of a load much faster than a cell grows without bound.
+double searched(double h, double left) { return left < 0.125 * h ? left : h; }
+
 /// CellSearch for a contact in a single cell of one flight.
 struct CellSearch {
     const Flow& flow;
@@ -226,7 +230,8 @@ struct CellSearch {
             const int zeros = first && wall == start.side ? start.zeros : 0;
             std::optional<double> tangent;
             const auto d = first_crossing(
-                {f.data(), static_cast<std::size_t>(f.size())}, zeros, h, eta, tangent);
+                {f.data(), static_cast<std::size_t>(f.size())}, zeros, searched(h, limit - k * h),
+                eta, tangent);
             if (tangent && k * h + *tangent <= limit) grazing.push_back({k * h + *tangent, wall});
             if (!d || (found && found->s <= k * h + *d)) continue;
             for (int n = 0; n < zeros; ++n) f[n] = 0;
@@ -313,7 +318,8 @@ std::optional<double> first_zero(
         positive = cells > 0 ? static_cast<int>(std::min<double>(cells, Flow::cells)) : 0;
         if (positive > 0) continue;
         std::optional<double> tangent;
-        if (const auto d = first_crossing(falling(k), vanishing, h, 0, tangent))
+        const double end = searched(h, limit - k * h);
+        if (const auto d = first_crossing(falling(k), vanishing, end, 0, tangent))
             return k * h + *d <= limit ? std::optional(k * h + *d) : std::nullopt;
     }
     return {};

@@ -12,8 +12,9 @@ constexpr std::size_t longest_table = 64;
 // Largest rounding of a sample time that two Taylor terms correct; their error is its square.
 constexpr double most_rounding = 1e-9;
 
-/// Threshold of kappa = |x''/(x'- - y'-)| above which an impact counts as nearly tangent. The
-/// condition number of M is about 14 kappa^2 at R = .6: an ulp becomes a relative error of 1e-8.
+/// Threshold of kappa = |(x'' - y'')/(x'- - y'-)| above which an impact counts as nearly tangent.
+/// The condition number of M is about 14 kappa^2 at R = .6: an ulp becomes a relative error of
+/// 1e-8.
 constexpr double nearly_tangent_ratio = 1800;
 
 // Length of the longest list that the service makes; longer ones are reallocated.
@@ -21,8 +22,9 @@ constexpr std::size_t most_reserved = 2000000;
 
 /// Impacts of a chatter are slow as well, but neighbouring motions have them too.
 bool is_nearly_tangent(const Impact& i) {
-    return !(i.side * i.x_ddot_before > 0) &&
-           std::abs(i.x_ddot_before) > nearly_tangent_ratio * std::abs(i.relative_speed_before);
+    const double apart = i.x_ddot_before - i.y_ddot_before;
+    return !(i.side * apart > 0) &&
+           std::abs(apart) > nearly_tangent_ratio * std::abs(i.relative_speed_before);
 }
 
 class Repetition : public Observer {

@@ -3,8 +3,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "core/measures/energy.hpp"
-#include "core/motion/elementary.hpp"
 #include "core/motion/load.hpp"
 #include "core/sweep/basins.hpp"
 
@@ -269,12 +267,14 @@ std::vector<const Motion*> ranked(const SweepPoint& point) {
 
 std::optional<bool> depends_on_start(const SweepPoint& point, bool default_set) {
     const auto motions = ranked(point);
-    const auto is_elsewhere = [&](const Motion& m) {
-        return !motions.empty() && m.result.measured &&
-               differs_in_steady_state(motions.back()->result, m.result);
+    const auto is_elsewhere = [&](const Motion* m) {
+        return differs_in_steady_state(motions.back()->result, m->result);
     };
-    if (default_set) return std::ranges::any_of(point.motions, is_elsewhere);
-    return point.second ? std::optional(is_elsewhere(*point.second)) : std::nullopt;
+    if (default_set && std::ranges::any_of(motions, is_elsewhere)) return true;
+    if (default_set && motions.size() == point.motions.size()) return false;
+    if (default_set || motions.empty() || !point.second || !point.second->result.measured)
+        return std::nullopt;
+    return is_elsewhere(&*point.second);
 }
 
 RowSummary summary_of(std::span<const SweepPoint> row, bool largest, bool default_set) {

@@ -157,7 +157,8 @@ Lifetime lifetime_of(std::span<const Motion> motions);
 /// Measured motions in ascending order of the objective: the worst is the last.
 std::vector<const Motion*> ranked(const SweepPoint& point);
 
-/// True if the point's steady state depends on the start. Empty if only one start was tried.
+/// True if the point's steady state depends on the start. Empty if no second motion was measured,
+/// or not all of a default set without a difference.
 std::optional<bool> depends_on_start(const SweepPoint& point, bool default_set);
 
 /// Highest or lowest objective along a row.

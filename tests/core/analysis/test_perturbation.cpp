@@ -35,9 +35,13 @@ State settled(const Parameters& p, int cycles) {
 
 /// Largest relative deviation of the distance from the tangent vector's length up to tau.
 double largest_miss(const Perturbation& r, double tau) {
+    REQUIRE(r.distance.size() > 1);
     double most = 0;
-    for (std::size_t i = 0; i < r.distance.size() && r.series.tau[i] <= tau; ++i)
-        most = std::max(most, std::abs(r.distance[i] / r.tangent[i] - 1));
+    for (std::size_t i = 0; i < r.distance.size() && r.series.tau[i] <= tau; ++i) {
+        const double miss = std::abs(r.distance[i] / r.tangent[i] - 1);
+        REQUIRE(std::isfinite(miss));
+        most = std::max(most, miss);
+    }
     return most;
 }
 
@@ -58,7 +62,7 @@ TEST_CASE("the distance equals the tangent vector's length to first order in the
         // A sticking phase changes the tangent vector before the second run sticks.
         if (alone.impacts.size() < 10 || !alone.sticks.empty() || !alone.touches.empty()) continue;
         const double tau = alone.impacts[9].tau;
-        if (std::abs(s.start.x - s.start.y) > 0.999 * s.parameters.b) continue;
+        if (std::abs(s.start.x - s.start.y) > 0.999 * s.parameters.b) continue;  // at a wall
         const auto miss = [&](double size) {
             return largest_miss(
                 perturbed(s.parameters, s.start, random_difference(n, size), tau), tau);
@@ -89,7 +93,9 @@ TEST_CASE("without forcing a shift in time stays a shift in time through every i
             shift * std::sqrt(
                         std::pow(a.series->x_ddot[i], 2) + std::pow(a.series->x_dot[i], 2) +
                         std::pow(a.series->y_dot[i], 2));
-        most = std::max(most, std::abs(a.perturbation->distance[i] / expected - 1));
+        const double miss = std::abs(a.perturbation->distance[i] / expected - 1);
+        REQUIRE(std::isfinite(miss));
+        most = std::max(most, miss);
     }
     CHECK(most < 1e-4);
 }
@@ -106,8 +112,8 @@ TEST_CASE("near a stable periodic motion the distance shrinks by lambda1 down to
 }
 
 TEST_CASE(
-    "in a chaotic motion the distance grows by lambda1 up to the size of the motion and stays "
-    "there") {
+    "in a chaotic motion the distance grows by lambda1 up to the size of the motion, where it "
+    "remains") {
     const Parameters p = table1(0.003, Damping::closed_form);
     const State start = settled(p, 100);
     const Perturbation r = perturbed(p, start, random_difference(1, 1e-10), 600);
@@ -121,6 +127,7 @@ TEST_CASE(
     REQUIRE(r.parted);
     CHECK(*r.parted > tau - 10);
     const double largest = *std::max_element(r.distance.begin(), r.distance.end());
+    CHECK(*std::max_element(r.distance.end() - 100, r.distance.end()) > 0.3 * largest);
     CHECK(largest > 0.01);
     CHECK(largest < 0.2);
     // The linear prediction continues to grow.
@@ -135,6 +142,18 @@ TEST_CASE("the linear stretch ends before the distance misses the prediction by 
     CHECK(largest_miss(r, r.linear->tau.to) <= linear_share);
 }
 
+TEST_CASE("one sample after the first impact has no slope") {
+    Parameters p;
+    p.b = 0.002;
+    State start = default_state(p);
+    start.y_dot = 0.01;
+    const Analysis a = analyse_with(p, start, random_difference(1, 1e-10), p.cycle(), 1);
+    CHECK_FALSE(a.perturbation->linear);
+    CHECK(std::ranges::any_of(a.warnings, [](const Warning& warning) {
+        return std::holds_alternative<warning::NoDistanceSlope>(warning);
+    }));
+}
+
 TEST_CASE("of a long run the first impacts are compared, and a warning says so") {
     const Parameters p = table1(0.015, Damping::closed_form);
     AnalysisRequest w{.parameters = p, .start = settled(p, 400), .tau_end = 7e5};
@@ -144,6 +163,7 @@ TEST_CASE("of a long run the first impacts are compared, and a warning says so")
     w.perturbation = random_difference(1, 1e-6);
     const Analysis a = analyse(w);
     REQUIRE(a.outcome.impacts > static_cast<long>(most_compared));
+    // Half of them are the second run's.
     CHECK(a.perturbation->outcome.impacts == static_cast<long>(most_compared / 2));
     CHECK_FALSE(a.perturbation->parted);
     CHECK(a.perturbation->distance.back() < 1e-11);
@@ -177,7 +197,7 @@ TEST_CASE("distances do not depend on which of two runs is the perturbed one") {
     }
 }
 
-TEST_CASE("chatters of two hundred impacts that end in sticking do not separate the runs") {
+TEST_CASE("chatters of more than 150 impacts that end in sticking do not separate the runs") {
     Parameters p;
     p.epsilon = 1, p.lambda = 6, p.b = 0.002;
     p.R_plus = p.R_minus = 0.9;
@@ -241,7 +261,8 @@ TEST_CASE("a second run that is interrupted early is compared up to there, with 
     const Analysis whole = analyse(w);
     CHECK(whole.perturbation->outcome.tau == 1500);
     polls = 0;
-    const Analysis cut = analyse(w, {.run = [&] { return ++polls > by_first + 1; }});
+    const Analysis cut =
+        analyse(w, {.run = [&] { return ++polls > by_first + 1; }});  // in the second
     CHECK(cut.outcome.tau == 1500);
     CHECK(cut.perturbation->outcome.reason == End::stopped);
     const std::size_t size = cut.perturbation->distance.size();

@@ -112,6 +112,13 @@ TEST_CASE("grazing contacts and nearly tangent impacts have separate warnings") 
     CHECK(warning->count == 1);
     CHECK(warning->tau == doctest::Approx(std::numbers::pi / 2).epsilon(1e-3));
     CHECK(warning->speed_ratio == 1);
+    // In a chatter under gravity x'' can be away from the wall, but the ball is pressed to it.
+    Parameters pressed = table1(0.05, Damping::equation_of_motion);
+    pressed.gravity = 0.009, pressed.R_plus = pressed.R_minus = 0.5;
+    const Analysis chatters =
+        analyse(request(pressed, 100 * pressed.cycle(), {.impacts = true, .exponents = true}));
+    CHECK_FALSE(chatters.sticks.empty());
+    CHECK_FALSE(only<warning::NearlyTangent>(chatters.warnings));
 }
 
 TEST_CASE("overflow of the unscaled product is reported if raw_product is requested") {
@@ -241,6 +248,18 @@ TEST_CASE("standard errors are not said to cover where the energy drifts for eve
     const Analysis drift = analyse(request(conservative, 1709, {.exponents = true}));
     REQUIRE(only<warning::NotStationary>(drift.warnings));
     CHECK(only<warning::NotStationary>(drift.warnings)->conservative);
+    // R of the speed dissipates although it is 1 at zero speed, and so does friction.
+    const auto is_conservative = [](const Parameters& p) {
+        const Analysis a = analyse(request(p, 600, {.exponents = true}));
+        const auto* found = only<warning::NotStationary>(a.warnings);
+        return found && found->conservative;
+    };
+    Parameters rubbing = conservative, tabled = conservative;
+    rubbing.friction = 0.002;
+    tabled.table_plus = tabled.table_minus = std::make_shared<const RestitutionTable>(
+        RestitutionTable{.speed = {0, 0.5}, .R = {1, 0.3}});
+    CHECK_FALSE(is_conservative(rubbing));
+    CHECK_FALSE(is_conservative(tabled));
 
     const Analysis steady =
         analyse(request(table1(0.025, Damping::closed_form), 5000, {.exponents = true}));

@@ -122,6 +122,21 @@ TEST_CASE("the acceleration alone suffices: its pulses show the impacts") {
     CHECK_FALSE(s.verdict_wrong);
 }
 
+TEST_CASE("a channel that is held for a while does not change the frequency of the forcing") {
+    for (const auto& [b, share] : {std::pair{0.012, 0.03}, {0.015, 0.06}}) {
+        CAPTURE(b);
+        Experiment m = measured(settled_motion(b, 0.85, 0.85, 12), {});
+        m.record.x = {};
+        std::vector<double>& a = m.record.x_ddot;
+        const auto middle = a.begin() + std::ssize(a) * 3 / 10,
+                   from = std::max_element(middle, middle + 300);
+        std::fill(from, from + static_cast<long>(share * count_of(a)), *from);
+        CHECK(
+            identified(m).refined->fit.values[Unknown::Omega] ==
+            doctest::Approx(m.parameters.Omega).epsilon(1e-4));
+    }
+}
+
 TEST_CASE("a motion that reaches no wall has no impacts despite its noise") {
     // b = 0.5 m is out of reach.
     const Experiment m = measured(settled_motion(0.5, 0.85, 0.85, 12), {});

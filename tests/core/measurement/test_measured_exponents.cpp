@@ -116,6 +116,44 @@ TEST_CASE("a list of impacts without a chatter and its sticking phase is complet
     CHECK(exponents.all().qr()[0] == doctest::Approx(motion.exponents.qr()[0]).epsilon(0.01));
 }
 
+TEST_CASE("an impact missing from a chatter spoils none of the others") {
+    const TrueMotion motion = motion_after(20, 0.015, 0.5, 0.5, 20);
+    const Parameters& p = motion.parameters;
+    const std::vector<IdentifiedImpact> all = listed(motion.impacts);
+    int tried = 0;
+    for (std::size_t k = 2; k + 2 < all.size(); ++k) {
+        if (all[k - 1].side != all[k].side || all[k + 1].side != all[k].side) continue;
+        CAPTURE(k);
+        ++tried;
+        std::vector<IdentifiedImpact> list = all;
+        list.erase(list.begin() + static_cast<std::ptrdiff_t>(k));
+        insert_missing_impacts(p, fit_forcing(p, list), list);
+        set_flight_velocities(p, list);
+        complete_impacts(p, list, 0);
+        CHECK(std::ranges::count_if(list, &IdentifiedImpact::is_left_out) == 0);
+    }
+    CHECK(tried > 5);
+}
+
+TEST_CASE("impacts are inserted whichever way the damping is stated") {
+    const TrueMotion motion = settled_motion(0.015, 0.85, 0.85, 100);
+    Parameters doubled = motion.parameters;
+    REQUIRE(doubled.damping == Damping::equation_of_motion);
+    doubled.damping = Damping::closed_form, doubled.lambda *= 0.5;
+    std::vector<IdentifiedImpact> list = without(listed(motion.impacts), 0.1), other = list;
+    insert_missing_impacts(motion.parameters, fit_forcing(motion.parameters, list), list);
+    insert_missing_impacts(doubled, fit_forcing(doubled, other), other);
+    CHECK(other.size() == list.size());
+}
+
+TEST_CASE("one impact of a wall gives its R without a standard error") {
+    IdentifiedImpact impact{};
+    impact.side = 1, impact.R = 0.6;
+    const Restitution one = restitution_of({impact}, 1);
+    CHECK(one.R == 0.6);
+    CHECK(std::isnan(one.error));
+}
+
 TEST_CASE("impacts missing from a list are inserted at their true times, and no others") {
     for (const double b : {0.015, 0.012, 0.009}) {
         CAPTURE(b);

@@ -16,7 +16,9 @@ Impact impact(double tau, int side) {
 
 }  // namespace
 
-TEST_CASE("each impact is a contact, and a chatter that ends in sticking is one contact") {
+TEST_CASE(
+    "each impact is a contact; a chatter that ends in sticking is one, with the side and time of "
+    "its first impact") {
     ContactRecord record;
     record.on_impact(impact(1, 1));
     for (const double tau : {2.0, 2.5, 2.75}) record.on_impact(impact(tau, -1));
@@ -44,8 +46,7 @@ TEST_CASE("sticking after one impact, or after none, removes no contact") {
     CHECK(record.sticks.size() == 2);
 }
 
-TEST_CASE(
-    "a chatter that ends in sticking is one contact, with the side and time of its first impact") {
+TEST_CASE("in a run the chatter before a sticking phase counts as one contact") {
     const Parameters p = table1(0.015, Damping::closed_form);
     ContactRecord contacts;
     const Record run = record(p, default_state(p), 100, 1000000, {&contacts});
@@ -57,8 +58,8 @@ TEST_CASE(
 }
 
 TEST_CASE(
-    "a chatter consists of the impacts joined by a pressing wall, without impacts from half a "
-    "cycle before") {
+    "the impacts of a chatter are on one side, within half a cycle, each after the first under a "
+    "pressing wall") {
     // At small R the ball often meets the same wall twice in a cycle, the first time while it
     // recedes, and sticks at the second.
     std::mt19937_64 engine(429);

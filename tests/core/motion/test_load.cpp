@@ -193,6 +193,26 @@ TEST_CASE("formulas move the base as they say, to rounding") {
           }) < 2e-12 * a);  // the rounding of t in this formula
 }
 
+TEST_CASE("a load far faster than the oscillator is a blow: m1 and the ball move as after it") {
+    for (const double duration : {0.02, 5e-3, 1e-4}) {
+        CAPTURE(duration);
+        const double Omega = std::numbers::pi / duration, blow = 0.01;
+        Parameters p, free;
+        p.epsilon = free.epsilon = 0.02, p.lambda = free.lambda = 1;
+        p.G = free.G = 0, p.b = free.b = 0.004;
+        p.load = std::make_shared<const Load>(
+            LoadKind::force, 0.5 * blow * Omega, duration,
+            [Omega](double tau) { return Polynomial{Omega * tau, Omega}; });
+        const Record struck = record(p, {}, 20), moved = record(free, {.x_dot = blow}, 20);
+        REQUIRE(struck.impacts.size() > 3);
+        REQUIRE(moved.impacts.size() > 3);
+        for (int k = 0; k < 3; ++k)
+            CHECK(
+                std::abs(struck.impacts[k].tau - moved.impacts[k].tau - 0.5 * duration) <
+                2 * duration * duration);
+    }
+}
+
 TEST_CASE("noise has its rms, its band and its bound, and leaves the base at rest") {
     constexpr double rms = 0.03, T = 300;
     const Load noise = Load::noise(rms, 0.5, 3, T, 7), same = Load::noise(rms, 0.5, 3, T, 7);

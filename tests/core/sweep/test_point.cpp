@@ -121,8 +121,10 @@ TEST_CASE(
     CHECK(depends_on_start(point, true) == false);
     point.motions.push_back(motion("c", 2));
     CHECK(depends_on_start(point, true) == true);
-    point.motions = {motion("a", 1), unmeasured("b")};
-    CHECK(depends_on_start(point, true) == false);
+    point.motions = {motion("a", 1), motion("b", 2), unmeasured("c")};
+    CHECK(depends_on_start(point, true) == true);
+    point.motions = {motion("a", 1), motion("b", 1), unmeasured("c")};
+    CHECK_FALSE(depends_on_start(point, true).has_value());
 }
 
 TEST_CASE("without the default set dependence on the start is known only from a second start") {
@@ -134,7 +136,10 @@ TEST_CASE("without the default set dependence on the start is known only from a 
     point.second = motion("", 2);
     CHECK(depends_on_start(point, false) == true);
     point.second = unmeasured("");
-    CHECK(depends_on_start(point, false) == false);
+    CHECK_FALSE(depends_on_start(point, false).has_value());
+    point.motions = {unmeasured("")};
+    point.second = motion("", 1);
+    CHECK_FALSE(depends_on_start(point, false).has_value());
 }
 
 TEST_CASE(
@@ -170,12 +175,12 @@ TEST_CASE(
     CHECK(low.x_free == 6);
 }
 
-TEST_CASE("a second start without a measured motion shows no dependence on the start") {
+TEST_CASE(
+    "a row in which no second motion was measured does not say whether it depends on the start") {
     std::vector<SweepPoint> row(1);
     row[0].motions = {motion("", 2)};
     row[0].second = unmeasured("");
-    CHECK(depends_on_start(row[0], false) == false);
-    CHECK(summary_of(row, true, false).depends_on_start == false);
+    CHECK_FALSE(summary_of(row, true, false).depends_on_start);
 }
 
 TEST_CASE("a row without measured motions has no peak and no dependence on the start") {
