@@ -61,7 +61,7 @@ inline double rank_correlation(const std::vector<double>& a, const std::vector<d
     return product / (static_cast<double>(a.size()) - 1) / (m_a.deviation * m_b.deviation);
 }
 
-/// Quantile at `share` (0 to below 1); NaN without values.
+/// The value of rank floor(share n), 0 <= share < 1, without interpolation; NaN without values.
 inline double quantile(std::vector<double> values, double share) {
     if (values.empty()) return nan;
     const auto at =

@@ -1,7 +1,6 @@
 #include "api/columns.hpp"
 
 #include "api/describe.hpp"
-#include "core/motion/elementary.hpp"
 
 namespace vines::api {
 

@@ -239,7 +239,8 @@ public:
     }
     std::size_t bytes(int threads) const override {
         if (!r_.given.contains("forcing")) return 0;
-        return static_cast<std::size_t>(threads) * ForcingField(r_.given["forcing"]).bytes();
+        return static_cast<std::size_t>(threads) *
+               ForcingField(r_.given["forcing"]).bytes(r_.plan.host.si.f0());
     }
     std::string end() override { return design_ ? json_line(described(r_, *design_)) : ""; }
     const char* remedy() const override { return "request fewer R, b_count, f_count or cycles"; }

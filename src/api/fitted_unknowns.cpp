@@ -8,7 +8,8 @@ namespace vines::api {
 
 namespace {
 
-// Tolerances of calibration and of cable delay of a channel of the forcing: relative, and in rad.
+// Deviations of a forcing channel from the fit that are reported: of F (relative), of its phase
+// (rad).
 constexpr double amplitude_off = 0.05, phase_off = 0.1;
 
 double hertz(double Omega, double omega0) { return Omega * omega0 / (2 * std::numbers::pi); }
@@ -20,14 +21,14 @@ struct ValueWithError {
 /// Value and standard error in SI.
 ValueWithError in_si(const JointFit& fit, Unknown u, double omega0) {
     const double value = fit.values[u], error = fit.errors[u],
-                 faster = std::sqrt(fit.values[Unknown::stiffness]);
+                 ratio = std::sqrt(fit.values[Unknown::stiffness]);  // of the frequencies
     switch (u) {
         case Unknown::Omega: return {hertz(value, omega0), hertz(error, omega0)};
         case Unknown::x_delay: return {value / omega0, error / omega0};
         case Unknown::a_offset:
         case Unknown::a_drift: return {value * omega0 * omega0, error * omega0 * omega0};
-        case Unknown::stiffness: return {omega0 * faster, 0.5 * omega0 / faster * error};
-        case Unknown::damping: return {0.5 * value / faster, 0.5 * error / faster};
+        case Unknown::stiffness: return {omega0 * ratio, 0.5 * omega0 / ratio * error};
+        case Unknown::damping: return {0.5 * value / ratio, 0.5 * error / ratio};
         default: return {value, error};
     }
 }
@@ -39,8 +40,8 @@ Json described(const ValueWithError& v, bool fixed) {
         {"fixed", fixed}};
 }
 
-/// F and phase of the base motion F sin(2 pi f t + phase), eq. (3). The fit has the phase at the
-/// middle of the record; extrapolated to t = 0 it also has the error of the frequency.
+/// F and phase of the base motion F sin(2 pi f t + phase), eq. (3). The fit knows the phase at the
+/// middle of the record; its error at t = 0 includes that of the frequency.
 void add_forcing(Json& j, const JointFit& fit, const Parameters& p) {
     const double sin = fit.values[Unknown::force_sin], cos = fit.values[Unknown::force_cos],
                  sin_error = fit.errors[Unknown::force_sin],
@@ -57,8 +58,8 @@ void add_forcing(Json& j, const JointFit& fit, const Parameters& p) {
         fit.forcing.phase.has_value());
 }
 
-// Smaller variations of the forcing, relative to its amplitude, are only part of the errors: in
-// short or noiseless records they can be numerical.
+// Smaller variations of the forcing, relative to its amplitude, enlarge the errors without a
+// warning: in short or noiseless records they can be numerical.
 constexpr double named_variation = 0.01;
 
 double force_of(const JointFit& fit) {
@@ -78,12 +79,13 @@ std::string effect_size_text(const FittedEffect& e, const JointFit& fit, double 
                 e.effect == Effect::second_harmonic ? 2 : 3, 100 * e.size / amplitude);
         case Effect::forcing_varies:
             return fmt::format(
-                "amplitude or phase of the forcing vary during the record{}, by about {:.2g} %",
-                fit.forcing.load ? " otherwise than in its channel" : "", 100 * e.size / amplitude);
+                "the amplitude or phase of the forcing varies during the record{}, by about {:.2g} "
+                "%",
+                fit.forcing.load ? " beyond what its channel shows" : "", 100 * e.size / amplitude);
         case Effect::stiffness_varies:
             return fmt::format(
                 "the stiffness changes with the amplitude, by about {:.2g} % at 10 mm",
-                75 * e.size * compared * compared);
+                100 * 0.75 * e.size * compared * compared);  // of x + size x^3, by averaging
         case Effect::displacement_drifts:
             return fmt::format(
                 "the displacement drifts by about {:.2g} um, other than linearly", 1e6 * e.size);
@@ -106,13 +108,13 @@ std::string effect_size_text(const FittedEffect& e, const JointFit& fit, double 
     return "";
 }
 
-/// The same with its consequence.
+/// The same, and how much b and R would change if the model contained the effect.
 std::string effect_text(const FittedEffect& e, const JointFit& fit, double omega0) {
     const auto percent = [&](Unknown u) {
         return 100 * std::abs(e.change[static_cast<std::size_t>(u)] / fit.values[u]);
     };
     std::string text = effect_size_text(e, fit, omega0) + ", which the model does not contain";
-    if (std::isnan(fit.values[Unknown::b])) return text;  // withheld
+    if (std::isnan(fit.values[Unknown::b])) return text;  // b and R are withheld
     return text + fmt::format(
                       ": the standard errors include the change that it would cause, {:.2g} % of "
                       "b, {:.2g} % of R at +b and {:.2g} % at -b",
@@ -191,7 +193,7 @@ Json describe_measured_forcing(
 void add_fitted_warnings(
     const JointFit& fit, const UnknownValues& given, double omega0, Warnings& warnings) {
     // A deviation is reported if it is far beyond its error and large enough to matter in a
-    // laboratory.
+    // laboratory: gain and frequency relative, the delay in s.
     constexpr double sigmas = 6, gain_off = 0.01, delay_off = 1e-4, frequency_off = 2e-4;
     const auto off = [&](Unknown u, double least) {
         const double by = std::abs(fit.values[u] - given[u]);
@@ -199,12 +201,12 @@ void add_fitted_warnings(
     };
     if (off(Unknown::x_gain, gain_off))
         warnings.push_back(fmt::format(
-            "the displacement is {:.4g} times the one that the acceleration implies, which is "
-            "corrected: is a sensitivity wrong?",
+            "the displacement is {:.4g} times the one that the acceleration implies (corrected): "
+            "is a sensitivity wrong?",
             fit.values[Unknown::x_gain]));
     if (off(Unknown::x_delay, delay_off * omega0))
         warnings.push_back(fmt::format(
-            "the displacement {} the acceleration by {:.4g} ms, which is corrected",
+            "the displacement {} the acceleration by {:.4g} ms (corrected)",
             fit.values[Unknown::x_delay] > 0 ? "lags" : "leads",
             1000 * std::abs(fit.values[Unknown::x_delay]) / omega0));
     if (off(Unknown::Omega, frequency_off * given[Unknown::Omega]))

@@ -9,7 +9,7 @@ namespace vines::api {
 namespace {
 
 constexpr std::size_t most_samples = 200000;
-constexpr double most_chirp_periods = 5000;
+constexpr double most_periods = 5000;  // of a half sine or a chirp
 constexpr std::size_t most_harmonics = 64;
 
 /// The moved quantities, in the order of LoadKind: a record's column or a formula's amplitude.
@@ -116,23 +116,30 @@ struct Reader {
         refuse_any(errors);
     }
 
-    Maker half_sine(LoadKind kind, double amplitude) const {
+    /// Refuses a load with too many pieces; `fastest`: Omega.
+    void limit_periods(double fastest) {
+        const double duration = number("duration_s"),
+                     periods = std::max(fastest, 1.0) * duration * si.f0();
+        if (periods > most_periods)
+            fail(
+                "/duration_s", given["duration_s"],
+                Json::array({0, duration * most_periods / periods}),
+                "of the kind " + given["kind"].get<std::string>() +
+                    " is limited to 5000 periods of its highest frequency, and of the oscillator");
+        refuse_any(errors);
+    }
+
+    Maker half_sine(LoadKind kind, double amplitude) {
         const double duration = number("duration_s") * omega0, Omega = std::numbers::pi / duration;
+        limit_periods(0);
         const auto theta = [Omega](double tau) { return Polynomial{Omega * tau, Omega}; };
         return [=] { return std::make_shared<const Load>(kind, amplitude, duration, theta); };
     }
 
     Maker chirp(LoadKind kind, double amplitude) {
         const double from = Omega("f_from"), to = Omega("f_to"),
-                     duration = number("duration_s") * omega0, phase = number("phase"),
-                     periods = std::max({from, to, 1.0}) * duration / (2 * std::numbers::pi);
-        if (periods > most_chirp_periods)
-            fail(
-                "/duration_s", given["duration_s"],
-                Json::array({0, number("duration_s") * most_chirp_periods / periods}),
-                "of the kind chirp is limited to 5000 periods of its highest frequency, and of the "
-                "oscillator");
-        refuse_any(errors);
+                     duration = number("duration_s") * omega0, phase = number("phase");
+        limit_periods(std::max(from, to));
         const bool logarithmic = given.value("rate", "linear") == "logarithmic" && from != to;
         const double growth =
             (logarithmic ? elementary::log(to / from) : 0.5 * (to - from)) / duration;
@@ -154,9 +161,9 @@ struct Reader {
 
     Maker noise() {
         const double low = Omega("f_low"), high = Omega("f_high"),
-                     duration = number("duration_s") * omega0,
-                     cycle = 2 * std::numbers::pi / duration;
-        if (!(std::floor(high / cycle) * cycle >= low && high >= cycle))
+                     duration = number("duration_s") * omega0;
+        const auto [first, last] = Load::noise_lines(low, high, duration);
+        if (first > last)
             fail(
                 "/f_high", given["f_high"], nullptr,
                 "of the kind noise needs a multiple of 1/duration_s between f_low and f_high");
@@ -231,13 +238,13 @@ std::shared_ptr<const Load> ForcingField::load(const SiParameters& si) const {
 
 void ForcingField::check(const SiParameters& si) const { Reader{given_, si}.checked(); }
 
-std::size_t ForcingField::bytes() const {
+std::size_t ForcingField::bytes(double f0) const {
     constexpr double of_sample = 40, of_period = 2600, most = 16 << 20;
     const SiParameters any;
     const Reader field{given_, any};
     const double samples = given_.contains("time_s") ? given_["time_s"].size() : 0,
                  f = std::max(
-                     {field.number("f_high"), field.number("f_from"), field.number("f_to")}),
+                     {f0, field.number("f_high"), field.number("f_from"), field.number("f_to")}),
                  periods = f * field.number("duration_s");
     return static_cast<std::size_t>(std::min(most, of_sample * samples + of_period * periods));
 }

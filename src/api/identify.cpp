@@ -276,10 +276,12 @@ MeasurementResult watched_result(const IdentifyRequest& r, const IdentificationW
     try {
         return evaluate_measurement(r.measurement, watch);
     } catch (const TooFewImpacts& few) {
+        if (!r.measurement.impact_times.empty())
+            refuse("/impact_times_s", "at fewer than two of the given times the velocity jumps");
         throw Problem(
             422,
             fmt::format(
-                "no impacts found in the record: {} pulse(s) or kink(s) with threshold = {:.3g} "
+                "no impacts found in the record: {} pulse(s) or kink(s) with threshold = {:g} "
                 "standard deviations of the noise",
                 few.seen, r.measurement.threshold),
             {{"/threshold", r.measurement.threshold, Json::array({3, 1000}),

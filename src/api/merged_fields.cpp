@@ -127,6 +127,8 @@ void restate_system(Json& preset, const Json& given) {
              {"lambda", si.lambda()},
              {"G", si.G()},
              {"Omega", si.Omega()}});
+        if (preset.contains("forcing"))
+            for (const char* name : {"G", "Omega"}) preset.erase(name);
     }
 }
 

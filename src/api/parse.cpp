@@ -64,8 +64,8 @@ public:
 private:
     void measure(char c) {
         if (in_text_) {
-            limit(++length_, longest_string, "bytes", 400, "the JSON text has a string of");
             if (c == '"' && !escaped_) in_text_ = false, length_ = 0;
+            else limit(++length_, longest_string, "bytes", 400, "the JSON text has a string of");
             escaped_ = c == '\\' && !escaped_;
             return;
         }

@@ -100,8 +100,10 @@ void refuse(std::vector<FieldError> errors) {
     const std::string detail =
         errors.size() == 1 ? errors[0].detail
         : errors.size() >= most_errors
-            ? "the first " + std::to_string(errors.size()) + " errors are listed"
+            ? "the first " + std::to_string(most_errors) + " errors are listed"
             : std::to_string(errors.size()) + " fields are invalid";
+    if (errors.size() > most_errors)
+        errors.erase(errors.begin() + static_cast<long>(most_errors), errors.end());
     throw Problem(422, detail, std::move(errors));
 }
 

@@ -134,8 +134,9 @@ std::map<std::string, std::string> origins_of(const MergedFields& l, const Syste
     auto follows = [&](const std::string& name) {
         return "follows from " + joined(sources_of(name, l.fields));
     };
+    const bool reduced = !present(l.fields, reduced_names).empty();
     for (const std::string& name : reduced_names)
-        origin[name] = s.si && !l.fields.contains(name) ? follows(name) : l.origin(name);
+        origin[name] = s.si && !reduced ? follows(name) : l.origin(name);
     for (const char* name : {"b", "damping"}) origin[name] = l.origin(name);
     for (const std::string name : {"R_plus", "R_minus"}) {
         const std::string table = "restitution" + name.substr(1);
@@ -147,7 +148,6 @@ std::map<std::string, std::string> origins_of(const MergedFields& l, const Syste
     for (const char* name : {"gravity", "friction"})
         origin[name] = present(l.fields, sources.at(name)).empty() ? l.origin(name) : follows(name);
     if (!s.si) return origin;
-    const bool reduced = !present(l.fields, reduced_names).empty();
     for (const auto& group : si_groups) {
         const bool other = group.size() > 1 && l.fields.contains(group[1]);
         origin[group[0]] =

@@ -64,8 +64,8 @@ public:
     std::shared_ptr<const Load> load(const SiParameters& si) const;
     /// The same without making it, which takes up to a tenth of a second.
     void check(const SiParameters& si) const;
-    /// Memory of the load, about, also of an invalid one.
-    std::size_t bytes() const;
+    /// Memory of the load, about, also of an invalid one. f0: of the oscillator, Hz.
+    std::size_t bytes(double f0) const;
 
 private:
     const Json given_;

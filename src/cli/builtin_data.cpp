@@ -78,11 +78,6 @@ std::string text_of_presets(const std::string& name) {
 using api::Field;
 using api::FieldTable;
 
-constexpr std::pair<const char*, const FieldTable& (*)()> tables[] = {
-    {"simulate", api::simulate_fields}, {"manifold", api::manifold_fields},
-    {"sweep", api::sweep_fields},       {"an axis of a sweep", api::axis_fields},
-    {"identify", api::identify_fields}, {"any answer", api::form_fields}};
-
 std::string line_of(const Field& f) {
     return fmt::format(
         "  {:<21} {:<14} {}\n", f.name, f.unit.empty() ? api::enum_name(f.type) : f.unit,
@@ -98,7 +93,7 @@ std::string text_of(const Field& f) {
         f.fallback.is_string() ? f.fallback.get<std::string>() : api::json_text(f.fallback);
     if (!f.symbol.empty()) add("symbol", f.symbol);
     add("default", f.fallback_note.empty() ? plain : f.fallback_note);
-    if (f.range) add("range", fmt::format("[{:g}, {:g}]", f.range->minimum, f.range->maximum));
+    if (f.range) add("range", fmt::format("[{}, {}]", f.range->minimum, f.range->maximum));
     else if (!f.choices.empty()) add("one of", api::joined(f.choices));
     for (const Field& part : f.fields) text += "  " + f.name + "." + line_of(part).substr(2);
     return text;
@@ -108,7 +103,7 @@ std::string text_of(const Field& f) {
 std::string text_of_fields(const std::string& name) {
     std::string text;
     FieldTable all;
-    for (const auto& [title, table] : tables) {
+    for (const auto& [key, title, table] : api::listed_tables) {
         const FieldTable& fields = table();
         all = std::move(all) + fields;
         if (!name.empty() && !api::find(fields, name)) continue;

@@ -8,7 +8,6 @@
 #include <mutex>
 #include <utility>
 
-#include "api/problem.hpp"
 #include "cli/files.hpp"
 #include "program/process.hpp"
 

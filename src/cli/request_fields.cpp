@@ -3,10 +3,6 @@
 #include <array>
 #include <filesystem>
 
-#include "api/parse.hpp"
-#include "api/problem.hpp"
-#include "api/schema/field.hpp"
-
 namespace vines::cli {
 
 namespace {

@@ -329,6 +329,7 @@ int sweep(const SweepOptions& o) {
     if (o.plot) return sweep_drawn(run, path);
     if (format != api::Format::json) return sweep_to_table(std::move(run), format, path);
     Destination to = destination_of(path);
+    if (o.resume && to.is_stream()) throw api::Problem(422, "--resume needs an output file (-o)");
     return to.is_stream() ? sweep_to_stream(std::move(run), std::move(to))
                           : sweep_to_file(std::move(run), to, o.resume);
 }

@@ -6,7 +6,6 @@
 #include <memory>
 #include <optional>
 
-#include "api/problem.hpp"
 #include "cli/exit.hpp"
 #include "cli/files.hpp"
 #include "program/process.hpp"

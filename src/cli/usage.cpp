@@ -2,7 +2,7 @@
 //
 // `vines completion SHELL` prints a short function of the shell, which passes the words of an
 // unfinished command line to `vines complete -- WORD...` at each Tab. That prints what can follow:
-// words, or that the shell should complete the name of a file. `vines manual` prints roff.
+// words, or /file or /directory, for which the shell completes a name. `vines manual` prints roff.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -28,7 +28,7 @@ std::vector<const CLI::App*> subcommands_of(const CLI::App& app) {
 std::vector<const CLI::Option*> positionals_of(const CLI::App& command) {
     return command.get_options([](const CLI::Option* option) { return option->get_positional(); });
 }
-/// Options that are no positionals.
+/// Options with dashes, which the help calls flags, with or without a value.
 std::vector<const CLI::Option*> flags_of(const CLI::App& command) {
     return command.get_options([](const CLI::Option* option) { return !option->get_positional(); });
 }
@@ -75,7 +75,7 @@ constexpr const char* bash_function = R"(_vines() {
 complete -F _vines vines
 )";
 
-// The file is found in the fpath, or read by `source`.
+// Works as a file in the fpath, where it is called _vines, and with `source`.
 constexpr const char* zsh_function = R"(#compdef vines
 _vines() {
     local -a found=("${(@f)$(command vines complete -- "${(@)words[2,CURRENT]}" 2>/dev/null)}")
@@ -138,7 +138,7 @@ std::string candidate_values(
 
 /// Candidates for the last word, one per line.
 std::string candidates(const CLI::App& app, std::vector<std::string> words) {
-    // bash passes --flag=value as three words.
+    // bash passes --flag=value as three words, other shells as one.
     if (words.back() == "=") words.back().clear();
     std::erase(words, "=");
     const std::string& word = words.back();
@@ -190,7 +190,7 @@ std::string sentence(std::string text) {
     return text + (text.ends_with('.') ? "" : ".");
 }
 
-/// Keeps line breaks.
+/// Escaped for roff, with its line breaks.
 std::string lines_kept(const std::string& text) {
     return CLI::detail::find_and_replace(roff(text), "\n", "\n.br\n");
 }
@@ -302,7 +302,7 @@ std::string manual_page(const CLI::App& app) {
 
 int complete_words(const CLI::App& app, const std::vector<std::string>& words) {
     if (!words.empty()) print(candidates(app, words));
-    return complete;
+    return 0;
 }
 
 Command add_completion(CLI::App& app) {

@@ -132,7 +132,7 @@ int verify_answer(const api::Unsealed& stored, const VerifyOptions& o) {
     const std::string reason = word_of(part(stored.answer, "/status/reason"));
     if (reason == "deadline" || reason == "interrupted") {
         print_line("not decided: a time limit or a signal ended the run early");
-        return incomplete;
+        return stored.is_unmodified ? incomplete : differs;
     }
     const std::optional<Recomputed> computed =
         recomputed(read_provenance(stored.provenance), record);
@@ -175,8 +175,8 @@ int verify_sweep(const SweepFile& file, const std::string& name) {
     });
     print_line(fmt::format("recomputed: {} of {} points are the same", same, file.points.size()));
     if (first) print_line(*first);
-    if (all < file.points.size()) return stopped_code();
-    return first ? differs : complete;
+    if (first) return differs;
+    return all < file.points.size() ? stopped_code() : complete;
 }
 
 /// The text with each JSON object on a line of its own, as in a sweep's file. Line ends are blanks

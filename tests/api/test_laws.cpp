@@ -118,6 +118,8 @@ TEST_CASE("an invalid load is named at its pointer") {
     CHECK(
         at(R"({"kind":"noise","duration_s":10,"rms_m_s2":1,"f_low":1.01,"f_high":1.09})") ==
         "/forcing/f_high");
+    // A load of 5000 periods of the oscillator takes 13 MB.
+    CHECK(at(R"({"kind":"half_sine","duration_s":400,"force_N":1})") == "/forcing/duration_s");
     CHECK(at(R"({"kind":"harmonics","f":[1,2],"F":[0.1]})") == "/forcing/F");
     CHECK(at(R"({"kind":"harmonics","f":[1,-2],"F":[0.1,0.1]})") == "/forcing/f/1");
     CHECK(at(R"({"time_s":[0,"a"],"force_N":[0,1]})") == "/forcing/time_s/1");
@@ -125,6 +127,18 @@ TEST_CASE("an invalid load is named at its pointer") {
         pointers(refused(forced(R"("forcing":{"time_s":[0,1],"force_N":[0,1]})"))) ==
         "/F /f /forcing");
     CHECK(pointers(refused(R"({"forcing":{"time_s":[0,1],"force_N":[0,1]}})")) == "/forcing");
+}
+
+TEST_CASE("noise of one frequency at both ends of its band is not lost to rounding") {
+    for (const char* band :
+         {R"("f_low":6.99,"f_high":7,"duration_s":50)",
+          R"("f_low":8.428571428571429,"f_high":8.428571428571429,"duration_s":7)"}) {
+        CAPTURE(band);
+        const Json a = answer(with(
+            R"("include":["energy"],"forcing":{"kind":"noise","rms_m_s2":1,)" + std::string(band) +
+            "}"));
+        CHECK(a["energy"]["rms"] > 0);
+    }
 }
 
 TEST_CASE("each kind of load moves the base or the oscillator as its fields say") {

@@ -54,6 +54,10 @@ TEST_CASE("fields over a preset with a load replace it, and drop its windows") {
              {"forcing", {{"kind", "half_sine"}, {"force_N", 10}, {"duration_s", 0.1}}}}),
         {});
     CHECK(loaded["parameters"]["G"] == 0);
+    // A load has no F and no f, also in reduced units.
+    const Json reduced = simulated(
+        read_simulate_request({{"preset", "shock"}, {"Omega", 1.1}, {"tau_end", 10}}), {});
+    CHECK(reduced["parameters"]["origin"]["G"] == "default");
     const Json windows = simulated(
         read_simulate_request(
             {{"preset", "table2_1"},

@@ -34,6 +34,9 @@ test("an answer contains its provenance, and verify reproduces it", async () => 
   const changed = await verify(answer.replace(/"z":[\d.]+/, '"z":9'));
   assert.equal(changed.code, 1);
   assert.match(changed.out, /the answer was modified\nrecomputed: \/regime\/z: 9 became /);
+  const cutOff = await verify(answer.replace(/"reason":"\w+"/, '"reason":"deadline"'));
+  assert.equal(cutOff.code, 1);
+  assert.match(cutOff.out, /the answer was modified\nnot decided/);
   // A recomputed hash does not hide the change.
   const forged = answer.replace(/"z":[\d.]+/, '"z":9');
   const hash = contentHash(JSON.parse(forged));
@@ -531,6 +534,9 @@ test("an existing file is not overwritten; --resume completes one that was cut a
   const whole = await readFile(at("whole.ndjson"), "utf8");
   assert.equal((await run(["sweep", "-o", at("whole.ndjson")], {input: sweep})).code, 1);
   const resume = (name, input) => run(["sweep", "--resume", "-o", at(name)], {input});
+  const nowhere = await run(["sweep", "--resume"], {input: sweep});
+  assert.equal(nowhere.code, 2);
+  assert.match(nowhere.errors, /--resume needs an output file/);
   const n = whole.length;
   for (const cut of [0, 10, whole.indexOf("\n") + 1, Math.floor(n / 2), n - 3, n]) {
     await writeFile(at("cut"), whole.slice(0, cut));

@@ -224,6 +224,8 @@ test("presets and parameters print the service's lists", async () => {
   const all = await outputOf(["parameters"]);
   assert.match(all, / {2}y_dot0 +m per unit of tau velocity of the ball at tau = 0\n/);
   assert.match(all, / {2}base_acceleration_column choice /);
+  for (const name of ["box", "b_count", "second_from"])
+    assert.match(await outputOf(["parameters", name]), new RegExp(`^ {2}${name} `, "m"));
   for (const {name, description} of fields)
     assert.ok(
       all.split("\n").some((line) => line.startsWith(`  ${name} `) && line.endsWith(description)),

@@ -3,10 +3,6 @@
 #include <algorithm>
 #include <map>
 
-#include "api/problem.hpp"
-#include "api/schema/field.hpp"
-#include "api/schema/tables.hpp"
-
 namespace vines::api {
 
 namespace {

@@ -1,6 +1,6 @@
-// JSON; CSV, the only table of an answer; CBOR (RFC 8949) with lists of numbers as typed arrays
-// (RFC 8746), for which the JSON library writes a binary value's subtype as its tag; npz, the
-// format of numpy.load, a .npy file for each list of the answer, and answer.json with the rest.
+// Encodes an answer as JSON, CSV (its only table), CBOR or npz. CBOR (RFC 8949) has lists of
+// numbers as typed arrays (RFC 8746): the JSON library writes a binary value's subtype as its tag.
+// npz, for numpy.load, has a .npy file for each list of the answer, and answer.json with the rest.
 #include "api/format/encode.hpp"
 
 #include <fmt/format.h>
@@ -12,7 +12,6 @@
 
 #include "api/cancellation.hpp"
 #include "api/problem.hpp"
-#include "api/schema/field.hpp"
 
 namespace vines::api {
 
@@ -34,19 +33,16 @@ std::string json_with_provenance(
     return text;
 }
 
-// Usual size of what an answer has beside its lists, in bytes.
-constexpr std::size_t room_for_rest = 16 << 10;
-
 // --- Lists ---
 
-/// Replaces infinities, which stand for null, by NaN.
+/// Replaces infinities, which stand for null here, by NaN, which readers expect.
 void nan_for_null(std::span<std::uint8_t> doubles) {
     change_numbers(doubles, [](double number) {
         return std::isfinite(number) ? number : std::numeric_limits<double>::quiet_NaN();
     });
 }
 
-/// Entries of one type. Valid as long as the value that it refers to.
+/// A list of numbers, flags or words. Refers to the JSON value, which must outlive it.
 struct AnswerList {
     /// The entries as they lie in memory; NaN and infinities stand for null. Packed::no: words.
     PackedList packed{Packed::no, {}};
@@ -181,9 +177,8 @@ void put_csv_entry(const AnswerList& list, std::size_t row, std::string& text) {
     for_each_entry(one, [&text](const auto& entry) { put_csv(entry, text); });
 }
 
-/// One table: an object of lists of equal length, one column each. A list of exponents has four
-/// columns, a list of matrices sixteen; their numbers follow the name. Null is an empty cell.
-/// Problem 422 naming the tables if the answer does not have exactly one.
+/// The only table of an answer. A list of exponents has four columns, a list of matrices sixteen;
+/// their numbers follow the name. Null is an empty cell.
 std::string csv_text(const Json& answer, const std::function<bool()>& gives_up) {
     const Table table = only_table(answer);
     std::string text;
@@ -212,7 +207,7 @@ std::string csv_text(const Json& answer, const std::function<bool()>& gives_up) 
 static_assert(
     std::endian::native == std::endian::little);  // required by the tags in answer_json.hpp
 
-/// The entries of a list as to_cbor() writes them as documented: four doubles as a typed array.
+/// An entry of a list in its documented CBOR form: four doubles are a typed array.
 template <class Entry>
 Json cbor_of(const Entry& entry) {
     return entry;
@@ -261,7 +256,8 @@ public:
         std::size_t size = 0;
         for (const std::string_view part : parts) {
             const auto* const data = reinterpret_cast<const Bytef*>(part.data());
-            if (data) crc = ::crc32(crc, data, static_cast<uInt>(part.size()));  // null resets it
+            if (data)
+                crc = ::crc32(crc, data, static_cast<uInt>(part.size()));  // null would reset it
             size += part.size();
         }
         std::string common;
@@ -350,7 +346,7 @@ void visit_lists(const Json& answer, const Visit& visit, const std::string& path
     }
 }
 
-/// Removes the lists, which have their own files.
+/// Removes the packed lists, which have their own files; lists of words stay in both.
 void take_out_lists(Json& object) {
     std::vector<std::string> lists;
     for (auto& [name, value] : object.items()) {
@@ -359,6 +355,9 @@ void take_out_lists(Json& object) {
     }
     for (const std::string& name : lists) object.erase(name);
 }
+
+// Usual size of what an answer has beside its lists, in bytes.
+constexpr std::size_t room_for_rest = 16 << 10;
 
 }  // namespace
 
@@ -385,6 +384,7 @@ std::string npz_bytes(
     Archive archive(packed_bytes(answer) + packed_bytes(only_in_files) + room_for_rest);
     const auto add = [&](const std::string& path, const AnswerList& list) {
         cancel.poll();
+        // Lists of the answer itself, as warnings, are in answer.json alone.
         if (path.find('.') != std::string::npos) add_list(archive, path + ".npy", list);
     };
     visit_lists(answer, add);

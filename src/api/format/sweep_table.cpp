@@ -5,8 +5,6 @@
 #include <algorithm>
 #include <utility>
 
-#include "api/answer_json.hpp"
-
 namespace vines::api {
 
 namespace {
@@ -178,8 +176,9 @@ std::size_t SweepStream::listed() const {
 }
 
 std::size_t SweepStream::bytes_of_point() const {
-    const auto& forcing = request_.systems->kinds[0].fields.forcing;
-    return listed() * bytes_of_row + (forcing ? forcing->bytes() : 0);
+    const SystemFields& fields = request_.systems->kinds[0].fields;
+    const double f0 = fields.number("f0", std::sqrt(fields.number("k1") / fields.number("m1", 1)));
+    return listed() * bytes_of_row + (fields.forcing ? fields.forcing->bytes(f0) : 0);
 }
 
 /// How many of these threads compute.

@@ -40,7 +40,9 @@ Keys start_of_line() {
 }
 
 Keys depends() {
-    return {"depends_on_start?", flag, "true if the starts end in different motions"};
+    return {
+        "depends_on_start?", flag,
+        "true if the starts end in different motions; absent if not all of them were measured"};
 }
 
 Keys extremes_keys() {

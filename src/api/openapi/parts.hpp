@@ -13,7 +13,7 @@ namespace vines::api::document {
 
 using enum ValueType;
 
-/// The schema of a value. A ValueType stands for its own.
+/// A JSON Schema. A ValueType is converted to its schema.
 struct Schema {
     Schema(Json schema) : json(std::move(schema)) {}  // NOLINT(google-explicit-constructor)
     Schema(ValueType type);                           // NOLINT(google-explicit-constructor)
@@ -50,7 +50,7 @@ struct Key {
     bool required;
 };
 
-/// The keys of an object, put together from single keys, quantities and other Keys.
+/// The keys of an object. {keys, quantity, column_of(q)} concatenates.
 struct Keys : std::vector<Key> {
     Keys() = default;
     /// One key; it is not required if its name ends with "?".
@@ -62,12 +62,13 @@ struct Keys : std::vector<Key> {
 
 /// The key of a list of a quantity's values, a column of a response.
 Keys column_of(const Quantity& quantity);
-/// The keys of a table of values (properties.hpp) or of columns (columns.hpp).
+/// The keys of a table of values (properties.hpp).
 Keys values_of(const auto& table) {
     Keys keys;
     for (const auto& property : table) keys = {keys, property.quantity};
     return keys;
 }
+/// The keys of a table of columns (columns.hpp).
 Keys columns_of(const auto& table) {
     Keys keys;
     for (const auto& column : table) keys = {keys, column_of(column.quantity)};
@@ -78,16 +79,20 @@ Keys optional(Keys keys);
 /// The same keys, whose values can be null.
 Keys or_null(Keys keys);
 
-/// An object with these keys and no others. The first of two keys with one name counts.
+/// An object with these keys and no others. If two keys have one name, the first counts.
 Json object_of(const Keys& keys);
 /// An object with arbitrary keys.
 Json map_of(Schema values);
+/// An object with a list for each column of a table.
 Json table_of(const auto& table) { return object_of(columns_of(table)); }
 
 /// The schema with the SI counterparts in all of it, as add_si() adds them to a response.
 Json with_si(Json schema);
 /// The schema of `energy` with its counterparts in J, as add_joules() adds them.
 Json with_joules(Json schema);
+
+/// The fields as query parameters; `example`: a valid request.
+Json query_of(const FieldTable& fields, const Json& example);
 
 // Each function adds the schemas of its file to components/schemas, by name.
 
@@ -101,12 +106,10 @@ void add_service(Json& schemas);
 
 /// version, parameters (with the named schema), warnings.
 Keys answer_keys(const std::string& parameters);
-/// The same with provenance.
+/// answer_keys() and provenance.
 Keys sealed_keys(const std::string& parameters);
 /// Columns of a Poincare section at impact, without tau.
 Keys impact_section_keys();
-/// The fields as query parameters; `example`: a valid request.
-Json query_of(const FieldTable& fields, const Json& example);
 
 // Responses and headers (service.cpp).
 

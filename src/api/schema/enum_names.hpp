@@ -18,7 +18,7 @@ struct EnumName {
     const char* name;  ///< null: JSON null stands for the value
 };
 
-/// The table of an enumeration.
+/// The table of an enumeration: an array of any length, for each one below.
 template <class Enum>
 inline constexpr std::array<EnumName<Enum>, 0> enum_names;
 
@@ -78,6 +78,7 @@ inline constexpr EnumName<Toleranced> enum_names<Toleranced>[] = {
     {Toleranced::m2, "m2"},
     {Toleranced::b, "b"},
     {Toleranced::R, "R"},
+    // The amplitude has the name of what excites the host.
     {Toleranced::amplitude, "acceleration"},
     {Toleranced::amplitude, "F"},
     {Toleranced::amplitude, "initial_velocity"},
@@ -104,7 +105,7 @@ template <class Enum>
 const char* enum_name(Enum value) {
     for (const auto& entry : enum_names<Enum>)
         if (entry.value == value) return entry.name;
-    throw std::logic_error("an enumeration's value without a name");
+    throw std::logic_error("a value of an enumeration has no name");
 }
 
 /// The value as JSON: its name, or null.
@@ -114,12 +115,13 @@ Json enum_json(Enum value) {
     return name ? Json(name) : Json(nullptr);
 }
 
-/// The value of this name, which check() has accepted; throws std::logic_error for another name.
+/// The value of a name that the check of the field has accepted; throws std::logic_error for
+/// another name.
 template <class Enum>
 Enum enum_value(std::string_view name) {
     for (const auto& entry : enum_names<Enum>)
         if (entry.name && name == entry.name) return entry.value;
-    throw std::logic_error("no enumeration's value of the name " + std::string(name));
+    throw std::logic_error("no value of an enumeration is named " + std::string(name));
 }
 
 /// All names, in the order of the table: the choices of a field.

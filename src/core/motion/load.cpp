@@ -118,15 +118,22 @@ double Load::response_reach(double damping) const {
     return is_formula ? longest_formula_step / std::max(1.0, damping) : infinity;
 }
 
+std::pair<std::size_t, std::size_t> Load::noise_lines(
+    double Omega_low, double Omega_high, double duration) {
+    constexpr double rounding = 1e-12;
+    const double lines = duration / (2 * std::numbers::pi);
+    return {
+        static_cast<std::size_t>(std::max(1.0, std::ceil(Omega_low * lines * (1 - rounding)))),
+        static_cast<std::size_t>(Omega_high * lines * (1 + rounding))};
+}
+
 /// The acceleration is the real part of the sum of C_k exp(i w_k tau), w_k = 2 pi k/duration. The
 /// base moves from rest and back to rest if the sum of B_k/w_k is zero, C_k = A_k - i B_k. Between
 /// equidistant times it follows the cubic through both displacements and velocities.
 Load Load::noise(
     double rms, double Omega_low, double Omega_high, double duration, std::uint64_t seed) {
     const double w1 = 2 * std::numbers::pi / duration;
-    const auto first =
-                   std::max<std::size_t>(1, static_cast<std::size_t>(std::ceil(Omega_low / w1))),
-               last = static_cast<std::size_t>(std::floor(Omega_high / w1));
+    const auto [first, last] = noise_lines(Omega_low, Omega_high, duration);
     std::mt19937_64 engine(seed);
     Signal C(last + 1);
     double drift = 0, weight = 0, square = 0;
