@@ -1,8 +1,8 @@
 #!/usr/bin/env -S node
 // bundle.mjs OPENAPI.json OUTPUT.cpp: bundles the pages with esbuild and writes each file to
-// OUTPUT.cpp twice: minified, and minified and compressed. The generated table maps request paths
-// to contents. Scripts, style sheets and SVG images lie in a folder named by a hash of their
-// contents, so browsers can cache them indefinitely.
+// OUTPUT.cpp twice: as it is (scripts and style sheets minified), and compressed. The generated
+// table maps request paths to contents. Scripts, style sheets and SVG images lie in a folder named
+// by a hash of their contents, so browsers can cache them indefinitely.
 import {createHash} from "node:crypto";
 import {readdirSync, readFileSync, writeFileSync} from "node:fs";
 import {dirname, join, relative} from "node:path";
@@ -13,7 +13,7 @@ import {helpPages} from "./docs/help.mjs";
 import {docsPage} from "./docs/page.mjs";
 
 const web = dirname(fileURLToPath(import.meta.url));
-const [document, output] = process.argv.slice(2);
+const [openapiPath, output] = process.argv.slice(2);
 const read = (name) => readFileSync(join(web, name), "utf8");
 
 /** Bundles a script and a style sheet, with the modules imported dynamically: [name, text] each. */
@@ -51,12 +51,12 @@ const page = (html) =>
 const documentOf = (name) => read(`../docs/${name}.md`);
 const servedFiles = [
   ["/", page(read("index.html"))],
-  ["/docs", page(docsPage(read("docs.html"), document))],
+  ["/docs", page(docsPage(read("docs.html"), openapiPath))],
   ...helpPages(read("help.html"), documentOf).map(([path, html]) => [path, page(html)]),
   ...files.map(([name, text]) => [`/${hash}/${name}`, text]),
 ];
 
-/** Bytes as a string literal of C++, which compiles much faster than a list of numbers. */
+/** Bytes as a string literal of C++ (without trigraphs), faster to compile than a list of numbers. */
 function literal(bytes) {
   const written = (byte) =>
     byte < 32 || byte > 126 || `"?\\`.includes(String.fromCharCode(byte))

@@ -74,7 +74,8 @@ function addressChanged(name, {edit = false, soon = false} = {}) {
   if (current !== name) return;
   cancelPending();
   const now = performance.now();
-  const isNewEntry = edit && now - lastEdit > editWindow;
+  const isOther = address(name, queryOf(name)) !== location.search; // not after Back
+  const isNewEntry = edit && isOther && now - lastEdit > editWindow;
   if (edit) lastEdit = now;
   if (isNewEntry) writeAddress("pushState");
   else if (soon)
@@ -86,11 +87,12 @@ function addressChanged(name, {edit = false, soon = false} = {}) {
 async function openAddress() {
   cancelPending();
   const query = new URLSearchParams(location.search);
-  query.delete("embed");
+  for (const key of ["embed", current && "story"]) query.delete(key);
   const named = query.get("tab");
   const name = names.includes(named) ? named : "simulation";
   if (name === named) query.delete("tab"); // any other value stays, and open() reports it
   showPanel(name);
+  if (tabs[name] && String(query) === queryOf(name)) return; // keeps what is not sent yet
   try {
     const Tab = await loaders[name]();
     const changed = (how) => addressChanged(name, how);
@@ -101,16 +103,10 @@ async function openAddress() {
   if (current === name) tabs[name].open(query);
 }
 
-/** Opens a request with a tab in its query. */
-function openQuery(text) {
-  const {tab = "simulation", ...query} = Object.fromEntries(new URLSearchParams(text));
-  return navigate(tab, new URLSearchParams(query));
-}
-
 /** Starts a guided story. Returns false for an unknown one. */
 async function tell(name) {
   const {start} = await import("./stories.js");
-  return start(name, openQuery);
+  return start(name, (query) => navigate("simulation", query)); // a step names its tab
 }
 
 function navigate(name, query) {

@@ -81,6 +81,16 @@ test("under a shock the absorbers are compared without a band, and the best one 
   await page.close();
 });
 
+test("where the machine alone does not decay, its time and the shares of it are left out", async () => {
+  const page = await visit(
+    "?tab=design&m1=2&f0=8&damping_ratio=0&m2=0.04&R=0.4&initial_velocity=0.3&b_count=3&cycles=60",
+  );
+  const cards = await page.$$eval("#design-cards dd", (nodes) => nodes.map((n) => n.textContent));
+  assert.equal(cards[0], "– time to a tenth of the energy");
+  for (const card of cards.slice(1)) assert.match(card, /^[\d.]+ s$/);
+  await page.close();
+});
+
 test("after an impulse the times of decay are compared, and the worst case opens as a free decay", async () => {
   const page = await visit(
     `?tab=design&${machine}&m2=0.04&R=0.2&initial_velocity=0.2,0.5&b_count=6&cycles=60`,

@@ -84,6 +84,29 @@ test("a chosen record is drawn and identified; its impacts, section, exponents a
   await page.close();
 });
 
+test("an address fixes the values that it names, and no others", async () => {
+  const page = await visit("?tab=measurement&preset=fig15&fixed=displacement_offset");
+  const fixed = "#measure-fields [role=group][aria-label=fixed] input:checked";
+  assert.deepEqual(await page.$$eval(fixed, (all) => all.map(({value}) => value)), [
+    "displacement_offset",
+  ]);
+  await page.close();
+});
+
+test("a value that is withheld is shown as a dash", async () => {
+  // For a third of the record the sensor of the displacement shows 5 % less.
+  const [head, ...samples] = (await regular()).trim().split("\n");
+  const sagging = samples.map((line) => {
+    const [t, x, a] = line.split(",").map(Number);
+    return [t, t > 2 && t < 4 ? 0.95 * x : x, a].join(",");
+  });
+  const page = await identify([head, ...sagging].join("\n"), "&preset=fig15");
+  assert.match(await page.textContent("#measure-fitted"), /clearance b– mm(?!, as given)/);
+  assert.match(await page.textContent("#measure-summary"), /b fitted– given 9 mm/);
+  assert.deepEqual(browser.complaints, []);
+  await page.close();
+});
+
 test("a spreadsheet's file with a preamble, a row of units and decimal commas is the same record", async () => {
   const g = 9.80665;
   const [, ...samples] = (await regular()).trim().split("\n");

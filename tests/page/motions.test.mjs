@@ -32,7 +32,7 @@ test("motions from several starts, stable and unstable branches and named specia
   await page.click("#figure-motions button.menu");
   const csv = await downloaded(page, "#data button:text-is('CSV')");
   assert.match(csv.text, /^b \(mm\),largest \|x\| \(mm\),rms of x \(mm\),z,kind\n/);
-  assert.match(csv.text, /branch 1, unstable/);
+  assert.match(csv.text, /,"branch 1, unstable"\n/);
   assert.deepEqual(browser.complaints, []);
   await page.close();
 });
@@ -109,6 +109,35 @@ test("a range is required, an error is shown at its field, and the address holds
   assert.equal(requests[0].parameter, "R");
   assert.match(page.url(), /parameter=R&from=0\.5&to=0\.7&count=9&preset=fig11$/);
   browser.complaints.length = 0; // Chromium logs the 422
+  await page.close();
+});
+
+test("Back and Forward lead through the searches, and another tab keeps what is not sent yet", async () => {
+  const page = await visit(`?${query}`);
+  await page.fill(input("to"), "17");
+  await page.click("#motions-form .go");
+  await found(page, 2);
+  await page.goBack();
+  await found(page, 3);
+  assert.match(page.url(), /to=0\.018/);
+  await page.goForward();
+  await found(page, 4);
+  assert.match(page.url(), /to=0\.017/);
+  await page.fill(input("to"), "16.5");
+  await page.click("#tab-simulation");
+  await drawn(page, 1);
+  await page.click("#tab-motions");
+  await page.waitForSelector("#panel-motions:not([hidden])");
+  assert.equal(await page.inputValue(input("to")), "16.5");
+  assert.deepEqual(browser.complaints, []);
+  await page.close();
+});
+
+test("a search over lambda places each motion at its value", async () => {
+  const page = await visit("?tab=motions&parameter=lambda&from=1&to=1.5&count=5&preset=fig11");
+  assert.equal(await page.textContent("#motions-message"), "");
+  assert.ok((await pixels(page, canvas, "c2")) > 30);
+  assert.deepEqual(browser.complaints, []);
   await page.close();
 });
 

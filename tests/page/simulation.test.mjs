@@ -896,6 +896,15 @@ test("the details hold all numbers and plots, are requested when opened, and fol
   await page.close();
 });
 
+test("the details of a ball that starts at a wall are complete", async () => {
+  const page = await visit("?b=0.022&x0=0&y0=-0.022");
+  await page.click("#details > summary");
+  await page.waitForFunction(() => document.getElementById("details").dataset.done);
+  assert.equal(await page.textContent("#details-message"), "");
+  assert.deepEqual(browser.complaints, []);
+  await page.close();
+});
+
 test("the plots of the details zoom with those of the first screen", async () => {
   const page = await still("?b=0.015&tau_end=300");
   await unfoldDetails(page);

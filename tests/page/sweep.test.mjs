@@ -239,10 +239,12 @@ test("errors of a sweep are shown at their fields", async () => {
   await fault("sweep-error-R", "7", "must lie in");
   await fault("sweep-error-starts", "x0=0; x9=1", "unknown field");
   await fault("sweep-error-axis1_count", "1000000", "at most");
-  await page.selectOption(field("sweep-error-axis2_parameter"), "b");
+  // Without a second axis the third one is the second of the request.
+  await page.click("#sweep-group-axis3 > summary");
+  await page.selectOption(field("sweep-error-axis3_parameter"), "b");
   await page.click("#sweep-run");
   await page.waitForFunction(() =>
-    document.getElementById("sweep-error-axis2_from").textContent.includes("needs from"),
+    document.getElementById("sweep-error-axis3_from").textContent.includes("needs from"),
   );
   assert.match(await page.textContent("#sweep-rate"), /24 of 24/, "the last sweep is still there");
   browser.complaints.length = 0; // Chromium logs each 422

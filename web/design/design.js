@@ -5,11 +5,11 @@ import {Form} from "../shared/form.js";
 import {makeAccessible} from "../shared/gestures.js";
 import {RequestTab} from "../shared/job.js";
 import {dots, line} from "../shared/marks.js";
-import {percent, shortTo} from "../shared/numbers.js";
+import {orDash, percent, shortTo} from "../shared/numbers.js";
 import {PlotGroup} from "../shared/plot.js";
 
 const inMm = {unit: "mm", factor: 1000};
-/** What the design makes small: name and unit. */
+/** What a design minimises: name, unit, factor from SI. */
 const objectives = {
   x_max: {title: "largest |x|", ...inMm},
   x_rms: {title: "rms of x", ...inMm},
@@ -102,12 +102,12 @@ export class DesignTab extends RequestTab {
   showCards() {
     const {best, without, tuned_mass_damper: damper} = this.done;
     const {name, unit, factor, title} = this.objective;
-    const text = (found) => `${round(found?.[name] * factor)} ${unit}`;
-    const change = (found) => `${percent(found?.[name] / without[name])} of that`;
+    const text = orDash((value) => `${round(value * factor)} ${unit}`);
+    const change = (value) => value && without[name] && `${percent(value / without[name])} of that`;
     cards($("design-cards"), [
-      ["without absorber", text(without), title],
-      ["vibro-impact absorber", text(best), change(best)],
-      ["tuned mass damper", text(damper), change(damper)],
+      ["without absorber", text(without[name]), title],
+      ["vibro-impact absorber", text(best[name]), change(best[name])],
+      ["tuned mass damper", text(damper?.[name]), change(damper?.[name])],
     ]);
   }
 
@@ -137,7 +137,7 @@ export class DesignTab extends RequestTab {
   /** The worst case over b, with a colour for each R; the best is ringed. */
   drawMap() {
     const {name, factor, unit, title} = this.objective;
-    const all = [...new Set(this.points.map(({R}) => R))].sort();
+    const all = [...new Set(this.points.map(({R}) => R))].sort((a, b) => a - b);
     const marks = all.map((R, i) => {
       const own = this.points.filter((p) => p.R === R && p[name] != null);
       const [x, y] = [own.map(({b}) => 1000 * b), own.map((p) => p[name] * factor)];

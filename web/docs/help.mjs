@@ -19,11 +19,11 @@ const names = [
 const anchorOf = (text) =>
   text
     .toLowerCase()
-    .replace(/<[^>]*>|&\w+;/g, "")
+    .replace(/<[^>]*>|&#?\w+;/g, "")
     .replace(/[^\p{L}\p{N}_ -]/gu, "")
     .replaceAll(" ", "-");
 
-/** Address of a target in a document; null for files that are not served. */
+/** Address of a link's target; null if it is not served. to: prefix of the documents' paths. */
 function addressOf(href, to) {
   const [, name, anchor = ""] = href.match(/^([\w-]*)(?:\.md)?(#.*)?$/) ?? [];
   if (name === "") return anchor;
@@ -32,7 +32,7 @@ function addressOf(href, to) {
 
 const titleOf = (markdown) => markdown.match(/^# (.*)$/m)[1];
 
-/** A document as HTML, links named by titles. to, up: lead to the documents and to the page. */
+/** A document as HTML; links show titles. to, up: prefixes of paths to documents and to the page. */
 function bodyOf(markdown, titles, to, up) {
   const renderer = {
     heading({tokens, depth}) {

@@ -4,7 +4,7 @@ import * as dom from "../shared/dom.js";
 import {$} from "../shared/dom.js";
 import {Form} from "../shared/form.js";
 import {RequestTab} from "../shared/job.js";
-import {joined} from "../shared/numbers.js";
+import {joined, shortTo} from "../shared/numbers.js";
 import {ImpactList} from "./impact_list.js";
 import {summariseMeasurement} from "./measurement_summary.js";
 import * as views from "./measurement_views.js";
@@ -271,7 +271,7 @@ export class MeasurementTab extends RequestTab {
   measure(run) {
     const {parameters} = run;
     this.choosePreset("", records.oscillatorOf(parameters));
-    return this.read(() => fileOf(run, `run-b${parameters.b * 1000}mm.csv`));
+    return this.read(() => fileOf(run, `run-b${shortTo(5, parameters.b * 1000)}mm.csv`));
   }
 
   /** A simulated record of one of the experiments, whose oscillator it selects. */

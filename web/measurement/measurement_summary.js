@@ -54,13 +54,13 @@ function signalCards(signal, milliseconds) {
   const {noise_displacement: x, noise_acceleration: a, pulse_s: pulse} = signal;
   const {samples, sampling_rate: rate} = signal;
   const noise = a == null ? "" : `${shortTo(3, a)} m/s²`;
-  const width = `${shortTo(2, pulse * rate)} samples long`;
+  const width = pulse ? `${shortTo(2, pulse * rate)} samples long` : "too few are visible";
   const duration = `${count(samples, "sample")}, ${(samples / rate).toFixed(1)} s`;
   const answered = `answered in ${milliseconds.toFixed(0)} ms`;
   return [
     ["forcing G", `${shortTo(4, signal.G * 1000)} mm`, "fitted"],
     ["noise", x == null ? "–" : `${shortTo(3, x * 1e6)} µm`, noise],
-    ["pulse of an impact", `${shortTo(3, pulse * 1000)} ms`, width],
+    ["pulse of an impact", pulse ? `${shortTo(3, pulse * 1000)} ms` : "–", width],
     ["sampling", `${shortTo(5, rate)} Hz`, `${duration}; ${answered}`],
   ];
 }
@@ -84,14 +84,15 @@ function showFit({fitted, signal: {forcing}}) {
   for (const cell of $("measure-fitted").querySelectorAll("[data-value]")) {
     const {value: key, unit = "", factor = 1} = cell.dataset;
     const {value, standard_error: error, fixed} = fitted[key];
-    const shown = fixed
+    const given = fixed && value !== null; // null: withheld
+    const shown = given
       ? minus(String(Number((value * factor).toPrecision(6))))
-      : withError(value * factor, error * factor, 4);
-    cell.textContent = `${shown} ${unit}`.trim() + (fixed ? ", as given" : "");
+      : withError(value && value * factor, error * factor, 4);
+    cell.textContent = `${shown} ${unit}`.trim() + (given ? ", as given" : "");
   }
   $("measure-channel").textContent = forcing
     ? `The forcing channel gives f = ${forcing.f.toPrecision(7)} Hz and ` +
       `F = ${(forcing.F * 1000).toPrecision(4)} mm; in the motion it appears ` +
-      `${forcing.phase.toFixed(3)} rad later.`
+      `${minus(forcing.phase.toFixed(3))} rad later.`
     : "";
 }

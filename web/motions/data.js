@@ -22,9 +22,10 @@ export class Motions {
   }
 
   /** Takes a line of a sweep from several starts. */
-  settled({type, starts, ...point}) {
+  settled({type, axes, starts, index}) {
+    if (type === "start") this.values = axes[0].values;
     if (type !== "point" || !starts) return;
-    const value = point[this.request.parameter];
+    const value = this.values[index];
     for (const motion of starts) if (motion.x_max != null) this.attractors.push({...motion, value});
   }
 

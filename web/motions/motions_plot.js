@@ -10,7 +10,7 @@ import * as labels from "../sweep/axis_labels.js";
 const {x_max, x_rms, z} = q.quantities;
 export const quantities = {x_max, x_rms, z};
 
-const names = {symmetry_breaking: "symmetry", end: ""};
+const names = {symmetry_breaking: "symmetry", end: ""}; // short labels of special points
 const stability = ({stable}) => `${stable ? "" : "un"}stable`;
 
 export class MotionsPlot extends ZoomablePlot {

@@ -51,7 +51,7 @@ function show(plot) {
   setTexts({"data-title": title, "data-summary": summary, "data-note": note});
   const shown = rows.slice(0, rowsShown).map((values) => values.map(written));
   $("data-table").replaceChildren(...tableOf(names, shown));
-  const csv = () => [names.map(quoted), ...rows].map((row) => `${row.join(",")}\n`);
+  const csv = () => [names, ...rows].map((row) => `${row.map(quoted).join(",")}\n`);
   const files = {
     csv: () => new Blob(csv(), {type: "text/csv"}),
     svg: () => asSvg(plot, about),

@@ -86,24 +86,25 @@ export const isObject = (value) => typeof value === "object" && value !== null;
 const longest = 24; // entries of a list that an input shows
 
 /** The text that an input shows for a value. */
-export function textOf(value) {
-  if (Array.isArray(value) && value.length > longest) return `${value.length} values`;
-  if (Array.isArray(value)) return value.map(textOf).join(isObject(value[0]) ? "; " : ", ");
+export function textOf(value, most = longest) {
+  if (Array.isArray(value) && value.length > most) return `${value.length} values`;
+  const text = (part) => textOf(part, most);
+  if (Array.isArray(value)) return value.map(text).join(isObject(value[0]) ? "; " : ", ");
   if (!isObject(value)) return String(value);
-  const parts = Object.entries(value).map(([name, part]) => `${name}=${textOf(part)}`);
+  const parts = Object.entries(value).map(([name, part]) => `${name}=${text(part)}`);
   return parts.join(Object.values(value).some(Array.isArray) ? "; " : ", ");
 }
 
-const longestInAddress = 1500; // characters of an object; servers accept addresses of about 8 kB
+const longestInAddress = 1500; // characters of a value; servers accept addresses of about 8 kB
 
-/** A value as text of an address; undefined for an object that is too long for one. */
+/** A value as text of an address; undefined for one that is too long. */
 function queryText(value) {
-  if (!isObject(value) || Array.isArray(value)) return textOf(value).replace(/([,;]) /g, "$1");
-  const text = JSON.stringify(value);
+  const isPlain = !isObject(value) || Array.isArray(value);
+  const text = isPlain ? textOf(value, Infinity).replace(/([,;]) /g, "$1") : JSON.stringify(value);
   return text.length > longestInAddress ? undefined : text;
 }
 
-/** Fields as a query, without objects that are too long for an address. */
+/** Fields as a query, without values that are too long for an address. */
 export const queryOf = (fields) => {
   const texts = Object.entries(fields).map(([name, value]) => [name, queryText(value)]);
   return String(new URLSearchParams(texts.filter(([, text]) => text !== undefined)));
@@ -193,10 +194,11 @@ const types = {
     },
   },
   choices: {
-    make({choices}) {
+    make({choices, name}) {
       const boxOf = (value) => element("input", {type: "checkbox", value});
       const labels = choices.map((c) => element("label", {}, boxOf(c), c));
-      return element("div", {className: "checks line"}, ...labels);
+      const about = {className: "checks line", role: "group", ariaLabel: name};
+      return element("div", about, ...labels);
     },
     get({input, default: standard}) {
       const chosen = [...input.querySelectorAll("input:checked")].map((box) => box.value);
@@ -204,7 +206,9 @@ const types = {
     },
     set({input, default: standard}, chosen) {
       for (const box of input.querySelectorAll("input"))
-        box.checked = (chosen ?? standard).includes(box.value);
+        box.checked = String(chosen ?? standard)
+          .split(",")
+          .includes(box.value);
     },
   },
   number: typed(number),

@@ -137,6 +137,7 @@ export class RequestTab extends Job {
     this.asked = this.formQuery();
     this.form.showErrors([]);
     this.changed({edit});
+    this.say("");
     this.markStale();
     this.start(this.request());
   }

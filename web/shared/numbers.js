@@ -13,7 +13,7 @@ export function roundedRange([from, to]) {
 export const minus = (text) => text.replace("-", "−");
 
 /** Wraps a formatter: a missing value becomes a dash. */
-const orDash =
+export const orDash =
   (text) =>
   (value, ...more) =>
     value == null ? "–" : minus(text(value, ...more));
@@ -31,7 +31,7 @@ export const short = orDash((value) =>
 export const shortTo = (n, value) => short(value == null ? value : Number(value.toPrecision(n)));
 
 /** Lengths in m as mm. */
-export const mm = (metres) => metres.map((v) => v * 1000);
+export const mm = (metres) => metres.map((v) => v && v * 1000);
 
 /** A length in m as text in mm, with n digits. */
 export const inMm = (metres, n = 4) =>

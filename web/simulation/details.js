@@ -11,7 +11,7 @@ import {plotsIn} from "./words.js";
 
 const include = ["series", "impacts", "exponents", "eigenvalues", "section", "energy", "regime"];
 const parts = {include: [...include, "manifold"]};
-const perturbation = {size: 1e-9}; // needs a motion in closed form
+const perturbation = {x_dot: 1e-9}; // possible at a wall; needs a motion in closed form
 
 const details = $("details");
 const say = sayIn("details-message");
@@ -189,7 +189,7 @@ function accountEnergy(energy, units) {
   $("energy-parts").replaceChildren(...tableOf(["energy to", "fraction", "amount"], rows));
   $("energy-compared").replaceChildren(...tableOf(["|x|", "with absorber", "without"], compared));
   const supply = joined([
-    input && `${inUnit(input, units.energy)} from the base`,
+    input && `${inUnit(input, units.energy)} from the forcing`,
     start && `${inUnit(start, units.energy)} at the start`,
   ]);
   const left = (name, what) =>

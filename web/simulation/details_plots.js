@@ -125,7 +125,7 @@ function divergence(perturbation) {
     of("linear theory", linear, {colour: "soft", dash: [5, 4]}),
   ];
   const style = {colour: "before", width: 2.5};
-  if (slope) marks.push(of(`slope ${digits(slope.lambda1)}`, fitted(perturbation), style));
+  if (slope?.lambda1) marks.push(of(`slope ${digits(slope.lambda1)}`, fitted(perturbation), style));
   return {marks, y: {log: true, label: "distance (m)"}};
 }
 

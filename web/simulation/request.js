@@ -19,7 +19,7 @@ export class Request {
     return this.presetOf(this.name);
   }
 
-  /** Selects a preset, or none, and sets fields. Without either, the preset's values become given. */
+  /** Selects a preset, or none, and sets fields. With neither, the values shown become given ones. */
   choose(name, fields) {
     const chosen = this.presetOf(name);
     this.form.set(fields ?? (chosen ? {} : this.givenValues()));
@@ -49,7 +49,7 @@ export class Request {
   }
 
   /** A request as text: its preset and the given fields of the motion. */
-  textOf({preset: name, ...given}, parameters) {
+  describe({preset: name, ...given}, parameters) {
     const preset = this.presetOf(name);
     const names = Object.keys(given).filter((field) => isOfMotion(this.fieldOf[field]));
     if (!preset) return parameterLine(parameters);
@@ -92,7 +92,7 @@ export const toQuery = (fields) => queryOf(fields) || "preset=";
 // Presets: in a menu and as chips; and the plots that correspond to them.
 const chips = document.querySelectorAll("#chips button");
 
-/** choose(name) gets a preset's name, or "" for none; read(query) the query of a machine. */
+/** choose(name) gets a preset's name, or "" for none; read(query) the query of a chip without one. */
 export function start(presets, choose, read) {
   const menu = $("preset");
   for (const {name, source, title} of presets) menu.append(new Option(`${source}: ${title}`, name));

@@ -49,7 +49,7 @@ function remark({exponents: {verdict, verdict_reason: why}, regime, warnings}, m
 }
 
 // Parts of the same run with a ball too light to matter: without the absorber.
-const lightParts = {m2: undefined, mass_ratio: 1e-9, include: ["impacts", "series"]};
+const lightParts = {m2: undefined, mass_ratio: 1e-7, include: ["impacts", "series"]};
 
 export class SimulationTab extends RequestTab {
   mistyped = false; // true while a slider's number differs from the request
@@ -148,7 +148,7 @@ export class SimulationTab extends RequestTab {
   busy(is, cancelled) {
     super.busy(is, cancelled);
     if (is && !$("message").classList.contains("fault")) this.say("computing …");
-    else if (cancelled) this.say("cancelled: the previous run is shown");
+    else if (cancelled && run) this.say("cancelled: the previous run is shown");
   }
 
   /** Errors are shown at sliders, or else at fields, without moving the focus. */
@@ -207,7 +207,7 @@ export class SimulationTab extends RequestTab {
     pin.compare();
     mainPlots.draw();
     player.show();
-    describe(answer, request.textOf(fields, parameters));
+    describe(answer, request.describe(fields, parameters));
     presetMenu.markPlots(request.edited ? null : request.preset);
     dom.reveal({regimes: !parameters.forcing}); // which need a period
     if (!parameters.forcing) this.strip.show(request.systemOf(fields), parameters, slider);

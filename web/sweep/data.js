@@ -2,8 +2,6 @@
 import {linesOf, TemporaryError} from "../shared/api.js";
 import {defaultSet} from "../shared/form.js";
 
-const same = (v) => v;
-
 /** Borders of the cells of ascending places: the midpoints, and one beyond each end. */
 function borders(at, log) {
   const room = log ? 0.1 : Math.abs(at[0]) * 0.1 || 1;
@@ -21,7 +19,7 @@ function arrange({parameter, values}, scale) {
   const order = [...values.keys()].sort((a, b) => values[a] - values[b]);
   const sorted = order.map((i) => values[i]);
   const log = scale === "log";
-  const [to, from] = log ? [Math.log, Math.exp] : [same, same];
+  const [to, from] = log ? [Math.log, Math.exp] : [Number, Number];
   const at = sorted.map(to);
   const edges = borders(at, log);
   return {parameter, log, order, given: values, values: sorted, at, borders: edges, to, from};

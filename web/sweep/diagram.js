@@ -51,7 +51,7 @@ function section(view) {
     marks: [levels({y}), ...view.byStart.map(ofStart)],
     height: () => null, // several values
     columns: {[label]: null},
-    rows: (p) => Array.from(of(p), (v) => [v]),
+    rows: (p) => Array.from(of(p), (v) => [Number.isNaN(v) ? null : v]),
   };
 }
 

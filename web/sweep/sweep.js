@@ -3,7 +3,7 @@ import {asCurl} from "../shared/api.js";
 import * as dom from "../shared/dom.js";
 import {$} from "../shared/dom.js";
 import {RequestTab} from "../shared/job.js";
-import {joined, percent} from "../shared/numbers.js";
+import {joined, percent, shortTo} from "../shared/numbers.js";
 import * as q from "../shared/quantities.js";
 import * as labels from "./axis_labels.js";
 import {receive, SweepData} from "./data.js";
@@ -27,8 +27,8 @@ const time = (seconds) =>
 
 /** Failed and truncated points of a complete sweep, as text. */
 function remarksOn({points}) {
-  const found = Map.groupBy(points, ({error, reason}) => {
-    if (error) return `failed: ${error}`;
+  const found = Map.groupBy(points, ({error, reason, points_missing: missing}) => {
+    if (error || missing) return `failed: ${error ?? "some values of the reduced axis"}`;
     return reason && reason !== "complete" ? "stopped at max_impacts" : "";
   });
   found.delete("");
@@ -112,7 +112,7 @@ function showPeaks(data) {
   const head = ["start", "largest |x| (mm)", `at ${labels.label(parameter)}`, "regime", "verdict"];
   const rows = [...peaks.values()].map(([m]) => [
     startsAndFree[m.start] ?? m.start,
-    m.x_max == null ? "–" : (m.x_max * 1000).toFixed(1),
+    m.x_max == null ? "–" : shortTo(3, m.x_max * 1000),
     m.where == null ? "–" : labels.text(parameter, m.where),
     m.regime ? q.regimeText(m.regime) : "–",
     q.verdicts[m.verdict] ?? "–",
@@ -239,7 +239,7 @@ export class SweepTab extends RequestTab {
 
   /** Shows the empty diagrams of a new sweep. */
   present(data) {
-    const edit = this.data && !data.ends;
+    const edit = this.data !== null;
     this.data = data;
     this.asked = SweepForm.toQuery(data.request);
     data.folded = data.reduced && labels.of(data.reduced);

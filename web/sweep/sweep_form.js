@@ -141,14 +141,13 @@ export class SweepForm extends BaseForm {
 
   /** The field of an error; for one of a whole axis the end with the value at fault. */
   nameOf({pointer, value}) {
-    const [, part, name, field] = pointer.split("/");
-    if (part === "base") return name;
+    const [, part, key, field] = pointer.split("/");
+    if (part === "base") return key;
     if (part !== "axes") return part;
-    const axis = axisNames[name ?? 0];
+    const axis = axisNames.filter((a) => this.input(parameterOf(a)).value !== none)[key ?? 0];
     if (field) return `${axis}_${field}`;
-    if (!name) return `${axis}_count`;
-    const values = this.values();
-    return endsOf(axis).find((end) => values[end] === value) ?? parameterOf(axis);
+    if (!key) return `${axis}_count`;
+    return endsOf(axis).find((end) => this.values()[end] === value) ?? parameterOf(axis);
   }
 
   /** Shows the number of points and cycles, if the fields are filled. */
