@@ -10,8 +10,7 @@ process.once("exit", () => {
   for (const child of started) child.kill("SIGKILL");
 });
 
-// A machine under load starts a service within a second.
-const startLimit = 60000; // ms
+const startLimit = 60000; // ms; on a machine under load it takes a second
 
 /**
  * Starts `vines serve`. freePort: on a free port; otherwise the port is in `flags` or
@@ -30,10 +29,10 @@ export async function startService(flags = [], environment = {}, freePort = true
   child.stderr.on("data", (data) => {
     log += data;
   });
-  let late;
+  let timer;
   const url = await new Promise((resolve, reject) => {
     let text = "";
-    const fail = (how) => reject(new Error(`${program} ${how}: ${text}`));
+    const fail = (how) => reject(new Error(`${program} ${how}: ${text}${log}`));
     child.on("error", reject);
     child.stdout.on("data", (data) => {
       text += data;
@@ -41,11 +40,11 @@ export async function startService(flags = [], environment = {}, freePort = true
       if (found) resolve(found[1]);
     });
     ended.then((code) => fail(`ended with ${code}`));
-    late = setTimeout(() => {
+    timer = setTimeout(() => {
       child.kill("SIGKILL");
       fail("does not listen");
     }, startLimit);
-  }).finally(() => clearTimeout(late));
+  }).finally(() => clearTimeout(timer));
   // A running service does not keep the test process alive; stop() waits for its end.
   child.unref();
   child.stdout.unref();

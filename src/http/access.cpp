@@ -5,7 +5,6 @@
 #include <sstream>
 
 #include "api/provenance.hpp"
-#include "api/schema/field.hpp"
 #include "program/descriptor.hpp"
 #include "program/whole_number.hpp"
 

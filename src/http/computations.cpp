@@ -312,75 +312,6 @@ std::string encoded(
     }
 }
 
-/// RunControl of a streamed answer: one slot for each run, none while its lists are sent. It
-/// releases the slot while requests wait. A started answer is finished even if sweeps are stopped.
-class StreamPace : public RunControl {
-public:
-    StreamPace(AdmissionControl& admission, std::string client, Writer& out)
-        : admission_(admission),
-          client_(std::move(client)),
-          out_(out) {}
-    void begin() override {
-        const auto gives_up = [this] { return !out_.connected() || admission_.all_stopped(); };
-        slot_ = admission_.acquire_background(client_);
-        if (!slot_) slot_ = admission_.resume(client_, gives_up, nullptr);
-    }
-    void end() override { slot_.reset(); }
-    bool stop_or_yield() override {
-        if (slot_ && admission_.must_yield(slot_)) {
-            end();
-            begin();
-        }
-        if (const auto now = Stopwatch::Clock::now(); now - checked_ >= client_check_interval) {
-            checked_ = now;
-            connected_ = out_.connected();
-        }
-        return !slot_ || !connected_;
-    }
-
-private:
-    AdmissionControl& admission_;
-    const std::string client_;
-    Writer& out_;
-    AdmissionControl::Slot slot_;
-    Stopwatch::Clock::time_point checked_ = Stopwatch::Clock::now();
-    bool connected_ = true;
-};
-
-// Text of an impact in a list.
-constexpr std::size_t bytes_of_impact = 240;
-
-// Memory of a run while its lists are made and sent: measured at 22 MB beside 63 others.
-constexpr std::size_t held_by_answer = 22 << 20;
-
-/// Sends an answer whose lists of impacts are computed meanwhile.
-Response stream_answer(
-    api::Answer answer, const Request& request, AdmissionControl& admission, Computing& computing) {
-    // Shared, because a response can be copied.
-    auto shared = std::make_shared<api::Answer>(std::move(answer));
-    const auto stream = [shared, client = request.sender.client(), &admission](Writer& out) {
-        trim_memory();  // of the run
-        StreamPace control(admission, client, out);
-        bool whole = true;
-        try {
-            api::write_answer(std::move(*shared), control, [&out](std::string_view piece) {
-                if (!out.write(piece)) throw api::Cancelled();
-            });
-        } catch (const api::Cancelled&) {
-            whole = false;
-        }
-        trim_memory();
-        return whole;
-    };
-    computing.wait_for_stream(held_by_answer);
-    return {
-        .headers = {{"Cache-Control", "no-store"}, varies},
-        .stream = stream,
-        .held = held_by_answer,
-        .length = static_cast<std::size_t>(shared->impacts) * bytes_of_impact,
-        .compressible = true};
-}
-
 /// The request that read(json, gives_up) makes of the body.
 template <class Read>
 auto read_body(const Request& r, const Service& service, Stopwatch& watch, const Read& read) {
@@ -429,7 +360,12 @@ Response answer(Request& r, const Service& service, Stopwatch& watch) {
     computing.lap("solve");
     if (!renewed) computing.throw_without();
     service.metrics.count_runs(0, static_cast<std::size_t>(answer.impacts));
-    if (answer.run) return stream_answer(std::move(answer), r, service.admission, computing);
+    if (answer.run) {
+        Response response = stream_answer(std::move(answer), r, service);
+        computing.wait_for_stream(response.held);
+        response.headers.push_back(varies);
+        return response;
+    }
     computing.wait_for_lists(3 * api::packed_bytes(answer.json));  // about the bytes of its text
     const auto ends = [&] { return r.left() || !computing.renew(); };
     std::string bytes = encoded(

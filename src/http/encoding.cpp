@@ -2,7 +2,6 @@
 
 #include <fmt/chrono.h>
 
-#include "api/schema/field.hpp"
 #include "http/connection.hpp"
 
 namespace vines::http {

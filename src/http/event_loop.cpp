@@ -26,19 +26,19 @@ constexpr auto longest_turn = 1ms, all_turns = 200ms;
 // Time for turns before new connections and other clients are looked for.
 constexpr auto round_time = 5ms;
 
-// Time for which a resource counts as scarce after a request was refused for lack of it: longer
-// than a client that reads slowly may pause then, and than a refused one waits (Retry-After: 1).
+// Time for which a resource counts as scarce after a refusal for lack of it: longer than the pause
+// that a slow reader may then make, and than Retry-After (1 s).
 constexpr auto scarce_time = 4s;
 
-// Connections accepted before the open ones get their turn: in a flood each closes another one,
-// which is searched for.
+// Connections accepted before the open ones get their turn: at the limit a search for another one
+// to close goes before each.
 constexpr int max_accepted = 32;
 
 // Time in which a new connection is not closed for others whose client has more, all at work.
 constexpr auto time_of_new = 1s;
 
-// Bytes of requests and answers, and requests at work, after which free memory is returned once
-// nothing is left to do.
+// If so many bytes of requests and answers were held, or so many requests at work, free memory is
+// returned to the system once nothing is left to do.
 constexpr std::size_t much_held = 16 << 20, many_at_work = 8;
 
 // Bytes sent to one client before the others get their turn.
@@ -108,16 +108,19 @@ void EventLoop::wait() {
     const int n = ::epoll_wait(
         poll_.number(), events.data(), events.size(),
         ready_.empty() ? static_cast<int>((stopping_ ? 20ms : expiry_interval).count()) : 0);
+    bool is_new_one = false;
     for (int i = 0; i < n; ++i) {
         const epoll_event& event = events[static_cast<std::size_t>(i)];
         const int socket = event.data.fd;
-        if (socket == listening_.number()) accept(max_accepted);
+        if (socket == listening_.number()) is_new_one = true;
         else if (socket == wake_.number()) {
             std::uint64_t count = 0;
             static_cast<void>(!::read(wake_.number(), &count, sizeof count));
         } else if (event.events & (EPOLLERR | EPOLLHUP)) handle(socket, true);
         else queue(socket);
     }
+    // Last, since it can close one of these sockets and give its number to the new one.
+    if (is_new_one) accept(max_accepted);
     const Clock::time_point until = Clock::now() + round_time;
     while (const std::optional<int> socket = ready_.pop()) {
         queued_.erase(*socket);
@@ -137,9 +140,9 @@ void EventLoop::change_events(int operation, int socket, std::uint32_t events) c
     ::epoll_ctl(poll_.number(), operation, socket, &event);
 }
 
-/// Waits for a connection: until it can be read, or until the socket takes more of the answer. The
-/// latter edge-triggered: a stream can have nothing to send.
-void EventLoop::wait_for(int operation, const Connection& connection) const {
+/// Sets what is awaited of a connection: a request, or that the socket takes more of the answer;
+/// the latter edge-triggered, since a stream can have nothing to send.
+void EventLoop::await(int operation, const Connection& connection) const {
     change_events(
         operation, connection.socket(), connection.is_delivering() ? EPOLLOUT | EPOLLET : EPOLLIN);
 }
@@ -167,12 +170,13 @@ void EventLoop::accept(int most) {
             ::accept4(listening_.number(), peer, &size, SOCK_NONBLOCK | SOCK_CLOEXEC);
         if (socket < 0 && (errno == EINTR || errno == ECONNABORTED)) continue;
         if (socket < 0 && (errno == EMFILE || errno == ENFILE)) {
-            pollfd pending{listening_.number(), POLLIN, 0};  // it also fails if there is none
+            pollfd pending{listening_.number(), POLLIN, 0};  // also without a pending one
             if (::poll(&pending, 1, 0) == 0) return;
             if ((other = eviction_candidate())) {
                 close(other->socket());
                 continue;
             }
+            connections_scarce_ = Clock::now();
             return listen(false);
         }
         if (socket < 0 && errno != EAGAIN) return listen(false);  // out of memory
@@ -227,7 +231,7 @@ void EventLoop::watch(Owned connection) {
     Connection& watched = *(connections_[socket] = std::move(connection));
     ++count_;
     if (watched.is_delivering()) ++delivering_;
-    wait_for(EPOLL_CTL_ADD, watched);
+    await(EPOLL_CTL_ADD, watched);
 }
 
 EventLoop::Owned EventLoop::release(int socket) {
@@ -292,7 +296,7 @@ bool EventLoop::answer_here(Connection& connection) {
     handler_.answer(connection, connection.take());
     ++delivering_;
     connection.deliver();
-    if (connection.is_delivering()) wait_for(EPOLL_CTL_MOD, connection);
+    if (connection.is_delivering()) await(EPOLL_CTL_MOD, connection);
     else --delivering_;
     return !connection.is_delivering() && !connection.is_closing();
 }
@@ -304,7 +308,7 @@ void EventLoop::deliver(Connection& connection) {
         return;
     }
     --delivering_;
-    wait_for(EPOLL_CTL_MOD, connection);
+    await(EPOLL_CTL_MOD, connection);
     if (!connection.is_closing()) read(connection);
 }
 
@@ -319,7 +323,7 @@ void EventLoop::collect_returned() {
             watch(std::move(connection));
             --with_workers_;
             queue(socket);
-        } else handle(socket);
+        } else handle(socket);  // its stream has ended
     if (!closing_ && !returned.empty()) listen(true);
 }
 
@@ -336,7 +340,7 @@ void EventLoop::expire() {
     const bool scarce = memory_is_scarce();
     for (const Owned& c : connections_) {
         if (c && c->awaits_memory()) {
-            wait_for(EPOLL_CTL_MOD, *c);
+            await(EPOLL_CTL_MOD, *c);
             queue(c->socket());
         }
         if (c && !c->is_delivering() &&
@@ -393,9 +397,9 @@ void EventLoop::work(Owned connection) {
             ::poll(&next_one, 1, next_request_wait) > 0)
             progress = connection->advance();
         if (progress == Connection::Progress::ended) connection->begin_closing();
-        // At the limit of connections it can be closed for a new one.
+        // At the limit of connections it goes back to the loop, which can close it for a new one.
         if (progress != Connection::Progress::complete || !listens_) break;
-        // Others have waited longer, or the thread is another client's, behind a proxy.
+        // Others wait, or the next request is that of another client behind the same proxy.
         const std::string next = connection->client();
         if (workers_.jobs_wait() || next != client)
             return workers_.put_back(next, std::move(connection));

@@ -59,7 +59,7 @@ private:
     Connection* eviction_candidate() const;
     Connection* eviction_candidate(const std::string& owner) const;
     void change_events(int operation, int socket, std::uint32_t events) const;
-    void wait_for(int operation, const Connection& connection) const;
+    void await(int operation, const Connection& connection) const;
     void listen(bool on);
     void watch(Owned connection);
     Owned release(int socket);

@@ -11,7 +11,6 @@
 #include <filesystem>
 
 #include "api/version.hpp"
-#include "http/memory.hpp"
 
 namespace vines::http {
 

@@ -1,9 +1,7 @@
 #include "http/routes.hpp"
 
-#include "api/json_text.hpp"
 #include "api/openapi/openapi.hpp"
 #include "api/presets.hpp"
-#include "api/schema/tables.hpp"
 #include "api/version.hpp"
 #include "http/encoding.hpp"
 

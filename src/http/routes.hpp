@@ -63,6 +63,9 @@ Response stream_lines(
 /// sweep of lines is computed once for all equal requests that come while it runs.
 Response stream_sweep(
     api::SweepRequest request, api::Format format, const Request& asked, const Service& service);
+/// An answer whose lists of impacts are computed while they are sent, as background work. The
+/// memory that it holds is not reserved yet.
+Response stream_answer(api::Answer answer, const Request& asked, const Service& service);
 
 /// All routes; `admission` and `metrics` must outlive them. Throws std::runtime_error if the folder
 /// of the web page cannot be read.

@@ -65,6 +65,7 @@ struct Layout {
 constexpr std::array unicode_marks = {"•", "×", "+", "◦", "▪", "▵", "◇"};
 constexpr std::array ascii_marks = {"o", "x", "+", "#", "@", "%", "&"};
 
+/// One plot; Axes has its ranges and ticks.
 class TextPlot : Axes {
 public:
     TextPlot(const Plot& of, const Range& x, const Layout& layout, const Terminal& terminal)
@@ -152,7 +153,7 @@ private:
             if (!std::isfinite(v)) continue;
             const double before = i > 0 ? value(c.y[i - 1]) : v;
             const std::size_t from = i > 0 && std::isfinite(before) ? i - 1 : i;
-            // A value next to a gap is drawn as a single dot.
+            // After a gap a line begins with a single dot.
             stroke(c.x[from], from == i ? v : before, c.x[i], v, c);
         }
     }
@@ -215,7 +216,8 @@ int longest_label(const std::vector<Plot>& plots) {
     int longest = 0;
     for (const Plot& p : plots)
         for (const Curve& c : p.curves)
-            longest = std::max(longest, length(c.label) + (c.dots && !c.label.empty() ? 2 : 0));
+            longest = std::max(
+                longest, length(c.label) + (c.dots && !c.label.empty() ? 2 : 0));  // its mark
     return longest;
 }
 
@@ -231,7 +233,8 @@ Layout layout_of(const std::vector<Plot>& plots, const Terminal& terminal) {
 }
 
 /// Axis with ticks, the numbers below them, and the label.
-std::string abscissa(const Range& x, const Layout& layout, const std::string& label, bool ascii) {
+std::string abscissa_lines(
+    const Range& x, const Layout& layout, const std::string& label, bool ascii) {
     const auto [left, width] = layout;
     std::string axis, numbers(static_cast<std::size_t>(left + width), ' ');
     std::map<int, std::string> at;
@@ -261,7 +264,7 @@ std::string text(const std::vector<Plot>& plots, const Terminal& terminal) {
     const Layout layout = layout_of(plots, terminal);
     std::string out;
     for (const Plot& p : plots) out += TextPlot(p, x, layout, terminal).draw();
-    if (!plots.empty()) out += abscissa(x, layout, plots.back().x_label, terminal.ascii);
+    if (!plots.empty()) out += abscissa_lines(x, layout, plots.back().x_label, terminal.ascii);
     return out;
 }
 

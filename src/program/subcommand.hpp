@@ -14,7 +14,7 @@ struct Command {
     std::function<int()> run;
 };
 
-/// Registers a subcommand with its options and help.
+/// A function that registers a subcommand with its options and help; "AddCommand f;" declares one.
 using AddCommand = Command(CLI::App& app);
 
 /// Subcommands that need no server. They read and write the same JSON as the service, from a file
@@ -30,9 +30,10 @@ AddCommand add_merge;     ///< combines the files of all shards, byte for byte
 AddCommand add_verify;    ///< recomputes an answer and compares it
 AddCommand add_plot;      ///< draws an answer in the terminal or as SVG
 AddCommand add_presets, add_parameters, add_openapi, add_example;  ///< print built-in data
-/// Function of a shell that completes commands, and the manual page of all subcommands.
+/// Print a shell's function that completes commands, and the manual page.
 AddCommand add_completion, add_manual;
 /// Prints what can stand in place of the last word of a command line; `words` without "vines".
+/// Returns the exit code.
 int complete_words(const CLI::App& app, const std::vector<std::string>& words);
 }  // namespace cli
 namespace http {

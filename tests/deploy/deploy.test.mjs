@@ -173,11 +173,12 @@ test("every flag and variable in a file belongs to the program or is defined in 
 });
 
 test("every stop timeout exceeds the drain time and the time of the shutdown", async () => {
-  // The service ends finish_time + final_time after the drain; the source defines them in this
-  // order. The unit states its longest drain in a comment.
+  // The service ends finish_time + final_time after the drain, its process 0.3 s later. The unit
+  // states its longest drain in a comment.
   const source = await readFile(join(root, "src/http/serve.cpp"), "utf8");
-  const [finish, final] = [...source.matchAll(/_time = std::chrono::seconds\((\d+)\)/g)];
-  const end = Number(finish[1]) + Number(final[1]) + 0.3; // 0.3 s to end
+  const times = [...source.matchAll(/_time = std::chrono::seconds\((\d+)\)/g)];
+  assert.equal(times.length, 2);
+  const end = times.reduce((sum, [, seconds]) => sum + Number(seconds), 0.3);
   const checkGrace = (what, grace, drain) =>
     assert.ok(grace > drain + end, `${what}: ${grace} s for ${drain} + ${end} s`);
   for (const [name, service] of Object.entries(compose.services))
@@ -240,6 +241,8 @@ test("HAProxy accepts its file, with addresses and with names that cannot be res
   }
 });
 
+const alerts = () => parse(texts["alerts.yml"]).groups.flatMap(({rules}) => rules);
+
 /** promtool of the PATH, or the one fetched by scripts/setup. */
 const promtool = (args) =>
   run("promtool", args, {
@@ -255,6 +258,8 @@ test("Prometheus accepts its files, and each alert is raised by its cause", asyn
     const {code, text} = await promtool(args);
     assert.equal(code, 0, `${args.join(" ")}: ${text}`);
   }
+  const tests = await readFile(join(root, "tests/deploy/alerts.test.yml"), "utf8");
+  for (const {alert} of alerts()) assert.ok(tests.includes(`        alertname: ${alert}\n`), alert);
 });
 
 const dashboard = () => JSON.parse(texts["grafana.json"]).panels.flatMap(({targets}) => targets);
@@ -270,14 +275,13 @@ test("Prometheus accepts each query of the dashboard", async (t) => {
   assert.match(text, new RegExp(`${rules.length} rules found`));
 });
 
-test("every metric in an alert or in the dashboard is exported by the service", async () => {
+test("every metric in an alert or in the dashboard is exported by the service", async (t) => {
   const service = await startService();
+  t.after(() => service.stop());
   await (await fetch(`${service.url}/v1/simulate?tau_end=20`)).text();
   const text = await (await fetch(`${service.url}/metrics`)).text();
-  await service.stop();
   const served = new Set([...text.matchAll(/^\w+/gm)].map(([name]) => name));
-  const rules = parse(texts["alerts.yml"]).groups.flatMap((group) => group.rules);
-  const names = [...rules, ...dashboard()].flatMap(
+  const names = [...alerts(), ...dashboard()].flatMap(
     ({expr}) => expr.match(/\b(?:vines|process)_\w+/g) ?? [],
   );
   assert.ok(names.length >= 20);

@@ -23,7 +23,7 @@ export const simulations = [
   {preset: "fig11", tau_end: 300, include: everything},
   {preset: "fig16", include: everything, windows: [[100, 300]], perturbation: {size: 1e-8}},
   {...platform, F: 0, x0: 0.01, y0: 0.02, tau_end: 400, include: everything},
-  // Tangent contacts: the oscillator swings by the width of the cavity, in units where omega0 = 1.
+  // Tangent contacts: the oscillator's amplitude is b up to rounding, in units where omega0 = 1.
   {m1: 1, k1: 1, c1: 0, m2: 0.0084, F: 0, b: 0.01, R: 0.6, x0: 0.01 - 3e-17, y0: 0, tau_end: 21},
   // The laws of the ball and of its walls.
   {
@@ -188,14 +188,18 @@ const toleranced = [
   {f0: spread, damping_ratio: spread, b: spread, R: spread, F: spread},
 ];
 
-/** Small searches, one for each objective; the first takes long enough to report its progress. */
+/** Small searches, one for each objective. */
 const designs = ["x_max", "x_rms", "x_relative_max", "x_acceleration_max", "impact_speed_max"].map(
   (objective, k) => ({
     base: {m1: 2, f0: 8, damping_ratio: 0.01, m2: 0.04},
     f: [7.8, 8.2],
     ...(k % 2 ? {F: 0.002} : {acceleration: [2, 5]}),
     objective,
-    ...{R: 0.4, b_count: k ? 3 : 200, f_count: k ? 3 : 41, starts: "one", transient_cycles: 10},
+    R: 0.4,
+    b_count: 3,
+    f_count: 3,
+    starts: "one",
+    transient_cycles: 10,
     cycles: 20,
     samples: 2,
     tolerances: toleranced[k % 2],
@@ -205,12 +209,19 @@ const designs = ["x_max", "x_rms", "x_relative_max", "x_acceleration_max", "impa
 designs.push({
   base: designs[0].base,
   forcing: {kind: "half_sine", acceleration_m_s2: 30, duration_s: 0.03},
-  ...{R: 0.4, b_count: 3, cycles: 20, samples: 2, tolerances: {load_factor: spread}},
+  R: 0.4,
+  b_count: 3,
+  cycles: 20,
+  samples: 2,
+  tolerances: {load_factor: spread},
 });
 designs.push({
   base: designs[0].base,
   initial_velocity: 0.3,
-  ...{R: 0.4, b_count: 3, samples: 2, tolerances: {initial_velocity: spread}},
+  R: 0.4,
+  b_count: 3,
+  samples: 2,
+  tolerances: {initial_velocity: spread},
 });
 
 /** The lines of a stream. */
@@ -255,7 +266,23 @@ async function noteContinuation(keys, url, request) {
   }
 }
 
-/** The progress of a long sweep, and the last line of its stream when the service is told to stop. */
+/** A progress line of a design that takes minutes. */
+async function noteProgressOfDesign(keys, url) {
+  const body = JSON.stringify({...designs[0], b_count: 400, f_count: 41, cycles: 2000});
+  const leaving = new AbortController();
+  const response = await fetch(`${url}/v1/design`, {method: "POST", body, signal: leaving.signal});
+  let text = "";
+  for await (const piece of response.body.pipeThrough(new TextDecoderStream())) {
+    text += piece;
+    const [progress] = text.match(/^\{"type":"progress".*\n/m) ?? [];
+    if (!progress) continue;
+    keys.note("design.progress", JSON.parse(progress), ["request"]);
+    break;
+  }
+  leaving.abort();
+}
+
+/** A progress line of a long sweep, and the last line of its stream when the service is told to stop. */
 async function noteBrokenSweep(keys) {
   const service = await startService(["--sweeps", "1"]);
   const body = JSON.stringify({axes: [{parameter: "b", from: 0.008, to: 0.03, count: 20000}]});
@@ -332,6 +359,7 @@ export async function answeredKeys(url) {
   for (const request of basins) await noteBasins(keys, url, request);
   for (const request of continuations) await noteContinuation(keys, url, request);
   for (const request of designs) await noteDesign(keys, url, request);
+  await noteProgressOfDesign(keys, url);
   await noteBrokenSweep(keys);
   const csv = await measured(url, "fig20", 6);
   const identify = "/v1/identify?preset=fig20&b=0.015";

@@ -1,7 +1,7 @@
 // Requests to all routes and subcommands. An internal change of the program must not change a bit of their
 // answers.
 //
-// {name, path, body?, type?, method?}: request to the service. {name, args, input?, environment?, files?}:
+// {name, path, body?, type?, limited?}: request to the service (limited: with a small answer limit). {name, args, input?, environment?, files?}:
 // subcommand, run in a folder of its own; its `files` are part of the answer.
 import {csvOf, sensed} from "../record.mjs";
 

@@ -527,7 +527,7 @@ test("requests that wait for a compute slot get it in the order of arrival", asy
   const {signal} = first;
   const left = send(one.url, "/v1/simulate", endless, {signal}).catch(({name}) => name);
   await until(async () => (await running(one.url)) === 1);
-  const body = '{"damping": "closed_form", "tau_end": 100000, "include": ["regime"]}';
+  const body = '{"damping": "closed_form", "tau_end": 300000, "include": ["regime"]}';
   const order = [];
   const all = [];
   for (let i = 0; i < 16; ++i) {

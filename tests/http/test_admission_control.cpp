@@ -4,6 +4,7 @@
 
 #include <array>
 #include <atomic>
+#include <list>
 #include <mutex>
 #include <optional>
 #include <string>
@@ -693,8 +694,9 @@ TEST_CASE("each client's first large body waits; others make space for those of 
     auto first = admission.acquire_body("first", 260 << 20, true, {});
     std::atomic<int> admitted = 0, displaced = 0;
     std::vector<std::thread> threads;
+    std::list<std::atomic<bool>> waiting;
     const auto wait_with = [&](const std::string& name, std::size_t bytes) {
-        std::atomic<bool> waits = false;
+        std::atomic<bool>& waits = waiting.emplace_back(false);
         threads.emplace_back([&, name, bytes] {
             const auto permit = admission.acquire_body(name, bytes, true, [&] {
                 waits = true;

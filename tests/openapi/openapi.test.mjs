@@ -186,6 +186,7 @@ test("an interrupted sweep matches the document, including its last line", async
     text += piece;
     if (text.includes('"point"') && text.includes('"progress"')) ended ??= stopped.stop();
   }
+  assert.ok(ended, "no progress was reported");
   assert.equal(await ended, 0);
   document.check({status, headers, text}, "/v1/sweep", "POST");
   const types = new Set(

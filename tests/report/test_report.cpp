@@ -336,7 +336,8 @@ TEST_CASE("the rank correlation is 1 for equal order and -1 for opposite order")
     CHECK(rank_correlation({1, 2, 3, 4, 5}, {2, 1, 4, 3, 5}) == doctest::Approx(0.8));
 }
 
-TEST_CASE("mean, sample deviation, median and quantiles, which are NaN for an empty list") {
+TEST_CASE(
+    "mean, sample deviation, median and quantiles are those of the list, NaN if it is empty") {
     const Moments m = moments({1, 2, 3, 4, 5});
     CHECK(m.mean == 3);
     CHECK(m.deviation == doctest::Approx(std::sqrt(2.5)));
@@ -345,5 +346,6 @@ TEST_CASE("mean, sample deviation, median and quantiles, which are NaN for an em
     CHECK(quantile({4, 3, 2, 1}, 0.75) == 4);
     CHECK(quantile({4, 3, 2, 1}, 0) == 1);
     CHECK(std::isnan(median({})));
+    CHECK(std::isnan(quantile({}, 0.25)));
     CHECK(std::isnan(moments({}).mean));
 }

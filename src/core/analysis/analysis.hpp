@@ -42,13 +42,13 @@ struct AnalysisRequest {
     ExponentOptions estimators = {};
     /// Initial difference of a second run that is compared with this one.
     std::optional<State> perturbation = {};
-    double settle_cycles = 0;       ///< for which a chaotic run is continued, see RegimeEvidence
+    double settle_cycles = 0;       ///< how long a chaotic run is continued, see RegimeEvidence
     double samples_per_cycle = 32;  ///< of the series, also of the perturbed one
     double section_phase = 0;       ///< stroboscopic section: rad after each whole cycle
     /// Maximum length of the series, which is thinned; other lists keep their last entries.
     std::size_t most_points = everything;
     std::size_t most_listed = everything;  ///< of the lists of impacts, sticks, touches
-    /// Longest list of impacts kept in memory; a longer one is described by unkept_impacts.
+    /// Impacts held in memory: if there are more, none is, and unkept_impacts describes them.
     std::size_t most_kept = everything;
 };
 
@@ -89,7 +89,7 @@ struct EnergyResult {
     EnergyBalance balance;
     std::optional<Unattached> unattached;
     std::optional<double> rms_ratio, peak_ratio;  ///< with absorber over without
-    double peak_least = nan;  ///< CyclePeaks::least(); like these only with Parts::unattached
+    double peak_least = nan;  ///< CyclePeaks::least(); as the ratios, only with Parts::unattached
     struct Decays {
         DecayTimes with_absorber, without;
     };
@@ -153,17 +153,17 @@ struct SectionsCut {
     std::size_t cycles;
 };
 struct StretchesCut {
-    std::size_t seen, most;  ///< synchronised parts of the run
+    std::size_t seen, most;  ///< synchronised intervals of the run; the last `most` are listed
 };
 struct OrbitSearchStopped {};  ///< the search for a periodic orbit was interrupted
 /// A chaotic transient was captured by an orbit.
 struct CapturedTransient {
-    double before, after;       ///< lambda1
+    double before, after;       ///< lambda1 before and after the capture
     std::optional<double> tau;  ///< of the capture
-    bool in_run;                ///< the run includes it
+    bool in_run;                ///< it happened within the run
 };
-/// The means of a window, lambda1 or x_rms, differ between its halves by more than chance permits,
-/// so that standard errors do not cover. `conservative`: without dissipation the energy drifts.
+/// The means of a window, lambda1 or x_rms, differ between its halves by more than chance permits:
+/// standard errors do not cover. `conservative`: without dissipation the energy drifts.
 struct NotStationary {
     bool lambda1, x_rms, conservative;
 };
@@ -192,8 +192,8 @@ using Warning = std::variant<
 /// Appends the warnings about a product; without `histories` only the violation of the sum rule.
 void add_warnings(const TransferProduct& product, bool histories, std::vector<Warning>& warnings);
 
-/// Result of analyse(). Parts that were not requested are empty, except that regime and exponents
-/// come together, also with windows, and a section with the impacts, but without touches.
+/// Result of analyse(). Parts that were not requested are empty, but regime, exponents and windows
+/// come together, and a section brings the impacts (without touches).
 struct Analysis {
     Outcome outcome;
     Interval reached;  ///< the part of the window that the run reached
@@ -217,7 +217,7 @@ struct Analysis {
     std::vector<Warning> warnings;
 };
 
-/// Upper estimate for most responses, four per cycle; for reservations.
+/// Impacts for which memory is reserved: four per cycle, which few motions exceed.
 std::size_t impacts_expected(const AnalysisRequest& wanted);
 
 Analysis analyse(const AnalysisRequest& wanted, const Interrupt& interrupt = {});

@@ -6,7 +6,6 @@
 #include <utility>
 
 #include "core/continuation/branch_node.hpp"
-#include "core/motion/elementary.hpp"
 
 namespace vines {
 

@@ -3,9 +3,6 @@
 #include <cmath>
 #include <span>
 
-#include "core/motion/elementary.hpp"
-#include "core/stability/linear.hpp"
-
 namespace vines {
 
 namespace {
@@ -15,7 +12,7 @@ namespace {
 constexpr double least_imaginary = 1e-7, on_circle = 1e-6;
 // Arclengths of the first step onto another branch, in the order of trial.
 constexpr double first_arcs[] = {1e-3, 1e-4, 1e-2, 1e-5, 1e-6};
-// The same past the birth of a sticking phase, next to which grazing contacts accumulate.
+// The same past the birth of a sticking phase: grazing contacts accumulate there.
 constexpr double shortest_first[] = {1e-7, 1e-6, 1e-5, 1e-4, 1e-3};
 // Largest residual of an orbit's equations.
 constexpr double largest_residual = 1e-10;
@@ -31,20 +28,21 @@ double doubling_test(const Eigenvalues& m) {
     return product.real();
 }
 
-/// Empty without a point, or if it is no orbit.
+/// The node at a point; empty without one, or if it is no orbit.
 std::optional<BranchNode> node_of(
     std::shared_ptr<const OrbitEquations> equations, std::optional<CurvePoint> at) {
     if (!at) return std::nullopt;
     const auto values = equations->values(at->z);
-    // Next to an event without speed a return has no derivative, and Newton's method stops early.
+    // Next to grazing a return map has no derivative: Newton's method can end beside the orbit.
     if (!values || !(values->residual.cwiseAbs().maxCoeff() < largest_residual))
         return std::nullopt;
     const Eigenvalues m = eigenvalues_of(values->transfer);
-    const double fold = at->tangent(at->tangent.size() - 1);
+    const double fold = at->tangent(at->tangent.size() - 1);  // changes sign at one
     return BranchNode{std::move(equations), std::move(*at), values->approach, m, fold,
                       doubling_test(m),     torus_test(m)};
 }
 
+/// The node at arclength h from a, in the direction of its tangent.
 std::optional<BranchNode> node_after(
     const std::shared_ptr<const OrbitEquations>& equations, const CurvePoint& a, double h) {
     const Eigen::VectorXd guess = a.z + h * a.tangent;

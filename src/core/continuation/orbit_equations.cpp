@@ -1,7 +1,6 @@
 #include "core/continuation/orbit_equations.hpp"
 
 #include "core/continuation/periodic_impacts.hpp"
-#include "core/motion/record.hpp"
 
 namespace vines {
 

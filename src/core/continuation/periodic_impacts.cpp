@@ -3,9 +3,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "core/motion/elementary.hpp"
-#include "core/stability/exterior.hpp"
-
 namespace vines {
 
 namespace {

@@ -12,8 +12,6 @@
 #include <cmath>
 #include <mutex>
 
-#include "core/measures/manifold.hpp"
-#include "core/motion/elementary.hpp"
 #include "core/sweep/sweep.hpp"
 
 namespace vines {

@@ -1,6 +1,6 @@
 // Which absorber to build: the clearance b, the restitution coefficient R and the mass m2 with the
-// smallest response over a band of frequencies and a range of amplitudes of the base, over the
-// worst of all starts; or from rest, under a load or after an impulse.
+// smallest response over a band of frequencies and a range of amplitudes of the base, for the worst
+// of all starts. Under a load or after an impulse the run begins at rest.
 //
 // The motion depends on the amplitude of the base and on b by their ratio alone, a scale of all
 // lengths. One map over (b, f) at the largest amplitude therefore holds the responses at all
@@ -18,14 +18,15 @@ namespace vines {
 /// Values with scatter, in the order in which they are set: f0 changes k1, damping_ratio c1.
 enum class Toleranced { m1, k1, f0, c1, damping_ratio, m2, b, R, amplitude };
 
-/// A distribution of a value, or of a factor on the nominal value.
+/// The distribution of a value.
 struct Tolerance {
     Toleranced what;
-    bool is_normal, is_factor;  ///< otherwise uniform; otherwise of the value in SI
-    double first, second;       ///< mean and standard deviation, or both ends
+    bool is_normal;        ///< otherwise uniform
+    bool is_factor;        ///< on the nominal value; otherwise the value itself, in SI
+    double first, second;  ///< mean and standard deviation, or both ends
 };
 
-/// An absorber and its host. The amplitude is that of the base over its nominal value.
+/// An absorber and its host. The amplitude is that of the excitation over its nominal value.
 struct BuiltAbsorber {
     SiParameters si;  ///< without F and f
     double b, R, amplitude = 1;
@@ -33,7 +34,7 @@ struct BuiltAbsorber {
 
 double value_of(const BuiltAbsorber& absorber, Toleranced what);
 
-/// The values of a sample. A value is drawn again until it is valid, R up to 1, others positive;
+/// The values of a sample. A value is drawn again until it is valid: R in [0, 1], others positive;
 /// after a thousand draws it becomes the nearest valid one.
 BuiltAbsorber drawn(
     const std::vector<Tolerance>& tolerances, const BuiltAbsorber& nominal, std::uint64_t seed,
@@ -50,7 +51,7 @@ struct DesignPlan {
     std::vector<double> R, m2;
     Objective objective = Objective::x_max;
     bool mean = false;        ///< over band and amplitudes, instead of the largest value
-    bool default_set = true;  ///< worst of all starts, otherwise of the default start
+    bool default_set = true;  ///< the worst of several starts, otherwise the default one
     int b_count = 40, f_count = 41;
     double transient_cycles = 100, cycles = 200;
     std::vector<Tolerance> tolerances = {};
@@ -58,11 +59,11 @@ struct DesignPlan {
     std::uint64_t seed = 1;
 };
 
-/// An absorber and its response, of the worst start, m, s or as the objective.
+/// An absorber and its objective, in SI, for the worst start.
 struct DesignPoint {
     double b, R, m2;
     double objective;     ///< infinity if a motion was not measured, for too many impacts
-    double f, amplitude;  ///< of the worst case: Hz, over the largest amplitude
+    double f, amplitude;  ///< of the worst case: in Hz, and as a share of the largest
 };
 
 /// Largest values at one frequency and the largest amplitude, of the worst start; in SI.
@@ -74,7 +75,7 @@ struct DesignResponse {
     double impacts_per_second;
 };
 
-/// Factors on a value with which the objective exceeds its best by this fraction, as far as tried.
+/// Factors on a value up to which the objective is at most this much worse, as far as tried.
 struct DesignMargin {
     Interval five_percent, twenty_percent;
 };
@@ -95,9 +96,8 @@ struct Design {
     BandMaximum with_tuned_mass_damper, with_den_hartog;
     std::vector<DesignResponse> response;
     DesignMargin b, R, f0, damping;
-    /// Amplitudes, over the largest, with at least half of the reduction at the largest; and that
-    /// from which on the manifold permits impacts (empty if it has no fold).
-    Interval works;
+    Interval works;  ///< amplitudes, over the largest, with at least half of its reduction
+    /// The one from which on the manifold permits impacts; empty if it has no fold.
     std::optional<double> activation;
     std::vector<ToleranceSample> samples;  ///< in any order
     bool complete = true;  ///< false if stopped: later members are then empty or NaN
@@ -108,13 +108,13 @@ using DesignSink = std::function<void(const DesignPoint&)>;
 /// Receives each sample, on any thread, one at a time.
 using SampleSink = std::function<void(const ToleranceSample&)>;
 
-/// The objective with a linear absorber, at a frequency f if the host is harmonic. Otherwise it
-/// throws Stopped once stop() returns true.
+/// The objective with a linear absorber, at the frequency f of a harmonic host. For other hosts f
+/// has no meaning, and Stopped is thrown once stop() returns true.
 using LinearResponse = std::function<double(const LinearAbsorber& absorber, double f)>;
 LinearResponse linear_response_of(
     const DesignPlan& plan, Objective objective, const StopRequest& stop);
 
-/// Number of motions of the first map and of the samples; others are a few more.
+/// Motions of the first map and of the samples, nearly all of a search.
 std::size_t design_runs(const DesignPlan& plan);
 
 /// Searches on `threads` threads. After a stop: the best absorber so far, empty without one.

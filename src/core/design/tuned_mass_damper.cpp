@@ -7,7 +7,6 @@
 #include <vector>
 
 #include "core/measures/golden_section.hpp"
-#include "core/motion/elementary.hpp"
 
 namespace vines {
 

@@ -7,8 +7,6 @@
 #include <cstdio>
 #include <set>
 
-#include "core/motion/impact.hpp"
-
 namespace vines {
 
 namespace {

@@ -5,7 +5,6 @@
 #include <cmath>
 
 #include "core/measures/energy.hpp"
-#include "core/motion/elementary.hpp"
 
 namespace vines {
 

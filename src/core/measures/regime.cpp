@@ -4,7 +4,6 @@
 #include <cmath>
 
 #include "core/measures/energy.hpp"
-#include "core/motion/elementary.hpp"
 
 namespace vines {
 

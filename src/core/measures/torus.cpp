@@ -15,27 +15,28 @@ namespace {
 
 constexpr std::size_t most_points_of_torus = 2048, fewest_points_of_torus = 128;
 constexpr int most_curves = 6, lines_tried = 4;
-// Largest deviation of the ratios from 1: a set with a thickness has 4 and 16.
+// Largest deviations from 1 of length and curvature, by neighbours over by every fourth point: on a
+// curve both ratios are 1, in a set with a thickness 4 and 16.
 constexpr double length_tolerance = 0.1, curvature_tolerance = 0.4;
 constexpr std::size_t coarse_neighbours = 4;
 // Largest gap between phases, in turns.
 constexpr double most_phase_gap = 0.05;
 
-// Largest ratio of the curvature of the second half about the first to that of all points: a motion
-// that still approaches a curve or an orbit has a larger one.
+// Largest ratio of the curvature at the points of the second half, from neighbours in the first, to
+// that of all points: a motion that still approaches a curve or an orbit has a larger one.
 constexpr double most_drift = 3;
 // Largest error of the rotation number, in turns over all points.
 constexpr double most_error = 0.01;
-// Error of a refined frequency, in turns: a maximum is flat within rounding.
+// Error of a refined frequency, in turns: rounding hides the top of a maximum.
 constexpr double refinement_error = 3e-10;
 // Largest relative difference of the line's amplitude between both halves: constant on a torus.
 constexpr double most_decay = 0.01;
 
-// Largest relative strength at half the frequency of a line, which leakage of the window reaches.
+// Largest relative strength at half the frequency of a line: leakage of the window stays below it.
 constexpr double most_half = 1e-6;
 
-// Distance of two points that is a return: the closest of 65,536 on a curve are 1e-5 apart.
-constexpr double is_return = 1e-8;
+// Closer points are equal (a period): the closest of 65,536 on a curve are 1e-5 apart.
+constexpr double return_distance = 1e-8;
 // Smallest median gap between the phases over the mean gap: periodic points coincide.
 constexpr double least_median_gap = 0.01;
 
@@ -194,7 +195,8 @@ bool lie_apart(std::span<const State> points, std::span<const State> others, con
     return median_of(std::move(nearest)) > 4 * median_of(std::move(neighbours));
 }
 
-/// True if all points lie on one curve, not every `apart`-th on its own.
+/// True if all points lie on one curve, rather than on `apart` separate ones. One of the candidates
+/// is the rotation number from point to point; its sign only reverses the order.
 bool is_one_curve(
     std::span<const State> states, const State& scale, const QuasiPeriodic& found, int apart) {
     for (int k = 0; k < apart; ++k) {
@@ -250,7 +252,7 @@ std::optional<QuasiPeriodic> on_one_curve(std::span<const State> points, const S
 
 std::optional<QuasiPeriodic> quasi_periodic(std::span<const State> states, const State& scale) {
     const auto returns = [&](const State& s) {
-        return distance(s, states.back(), scale) < is_return;
+        return distance(s, states.back(), scale) < return_distance;
     };
     if (states.empty() || std::ranges::any_of(states.first(states.size() - 1), returns))
         return std::nullopt;
@@ -264,7 +266,7 @@ std::optional<QuasiPeriodic> quasi_periodic(std::span<const State> states, const
             points.push_back(states[k]);
         auto found = on_one_curve(points, scale);
         if (!found) continue;
-        // Fewer curves than assumed: points of each of them are found as several.
+        // With fewer curves than assumed, points of one of them were taken for several.
         for (std::size_t later = 1; later < apart; ++later) {
             if (apart % later != 0) continue;
             std::vector<State> others;

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "core/motion/elementary.hpp"
 #include "core/stability/linear.hpp"
 
 namespace vines {

@@ -8,19 +8,18 @@
 #include <algorithm>
 #include <cmath>
 
-#include "core/motion/elementary.hpp"
 #include "core/stability/linear.hpp"
 
 namespace vines {
 
 namespace {
 
-// Products of lengths, and squares of areas and volumes, stay within these bounds, a third of the
-// exponent range of double, by extracting their logarithms.
+// The squares of length, area and volume, and the determinants, are kept within these bounds, a
+// third of the exponent range of double: logarithms are extracted.
 constexpr double least_product = 1e-100, most_product = 1e100;
 constexpr double rounding = std::numeric_limits<double>::epsilon();
-// Typical rounding error per impact. Among 1500 strongly damped systems a full ulp makes the
-// exponents of ten NaN although they are accurate to 1e-7; a tenth of an ulp does so for one.
+// Typical rounding error per impact. Among 1500 strongly damped systems a full ulp withholds the
+// exponents of ten, which are accurate to 1e-7; a tenth of an ulp those of one.
 constexpr double typical_rounding = 0.1 * rounding;
 // Sine of an angle that should be zero, far above the effect of rounding.
 constexpr double widest_separation = 1e-6;
@@ -82,7 +81,7 @@ Exponents descending(Exponents logs, int rank, double T) {
 struct Qr {
     Flag flag;
     std::array<double, 4> extracted_logs{};  // logarithms extracted from its four sizes
-    double log_det = 0;                      // exact value for the flights: -2 zeta s
+    double log_det = 0;                      // exact: -2 zeta times the duration of the flights
     // Product of the determinants of the impacts, and the logarithm extracted from it.
     double determinant_product = 1, log_determinants = 0;
     /// Variances of the rounding errors in the logarithms of length, area and volume.
@@ -327,12 +326,13 @@ double TransferProduct::sum_rule_residual() const {
 void Lyapunov::on_transfer(const Impact& impact, const Saltation& M, std::span<const Leg> legs) {
     product_.append(legs, M, impact.tau);
     const bool is_steep = steepness_of(M) > steep;
-    chatters_ = is_steep && steep_ && impact.side == side_;
+    chatters_ = is_steep && steep_ && impact.side == side_;  // on the way to sticking
     steep_ = is_steep;
     side_ = impact.side;
 }
 
 const TransferProduct& Lyapunov::product() {
+    // Ended within a chatter, whose last impacts have lost all accuracy: it counts as sticking.
     if (chatters_ && !(product_.sum_rule_residual() <= most_residual)) product_.end_sticking();
     chatters_ = false;
     return product_;

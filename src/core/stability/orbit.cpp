@@ -3,8 +3,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "core/motion/record.hpp"
-
 namespace vines {
 
 namespace {

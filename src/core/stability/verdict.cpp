@@ -5,8 +5,6 @@
 #include <cmath>
 #include <numeric>
 
-#include "core/motion/elementary.hpp"
-
 namespace vines {
 
 namespace {

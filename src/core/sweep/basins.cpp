@@ -2,9 +2,6 @@
 
 #include <cmath>
 
-#include "core/motion/elementary.hpp"
-#include "core/stability/orbit.hpp"
-
 namespace vines {
 
 namespace {

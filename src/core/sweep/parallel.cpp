@@ -31,10 +31,10 @@ void parallel(
     };
     std::vector<std::thread> others;
     const std::size_t wanted = std::min(count, static_cast<std::size_t>(std::max(threads, 1)));
+    others.reserve(wanted);
     try {
         for (std::size_t t = 1; t < wanted; ++t) others.emplace_back(work);
-        // no more threads available: continue with those already started
-    } catch (const std::system_error&) {}
+    } catch (const std::system_error&) {}  // no more threads: those already started continue
     work();
     for (std::thread& t : others) t.join();
     if (failure) std::rethrow_exception(failure);

@@ -12,10 +12,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "core/measures/energy.hpp"
-#include "core/measures/manifold.hpp"
-#include "core/motion/elementary.hpp"
-
 namespace vines {
 
 namespace {

@@ -9,8 +9,6 @@
 #include <bit>
 #include <cassert>
 
-#include "core/motion/elementary.hpp"
-
 namespace vines {
 
 namespace {
