@@ -123,9 +123,9 @@ TEST_CASE("the acceleration alone suffices: its pulses show the impacts") {
 }
 
 TEST_CASE("a channel that is held for a while does not change the frequency of the forcing") {
-    for (const auto& [b, share] : {std::pair{0.012, 0.03}, {0.015, 0.06}}) {
-        CAPTURE(b);
-        Experiment m = measured(settled_motion(b, 0.85, 0.85, 12), {});
+    for (const double share : {0.03, 0.06}) {
+        CAPTURE(share);
+        Experiment m = measured(settled_motion(share > 0.03 ? 0.015 : 0.012, 0.85, 0.85, 12), {});
         m.record.x = {};
         std::vector<double>& a = m.record.x_ddot;
         const auto middle = a.begin() + std::ssize(a) * 3 / 10,
