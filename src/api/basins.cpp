@@ -58,8 +58,12 @@ void check_basins(const SweepRequest& r, const Json& box) {
         refuse("/base/forcing", "basins need a harmonic forcing: under a load no motion lasts");
     if (r.axes.empty()) return;
     const std::string& parameter = r.axes[0].parameter;
-    if (box.contains(parameter))
-        refuse({{"/axis/parameter", parameter, nullptr, "the box states " + parameter + ", too"}});
+    // The box is in reduced units.
+    const std::string stated = parameter == "x_velocity0"   ? "x_dot0"
+                               : parameter == "y_velocity0" ? "y_dot0"
+                                                            : parameter;
+    if (box.contains(stated))
+        refuse({{"/axis/parameter", parameter, nullptr, "the box states " + stated + ", too"}});
     const std::size_t values = r.axes[0].values.size();
     if (values > most_values)
         refuse(

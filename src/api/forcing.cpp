@@ -187,7 +187,9 @@ struct Reader {
                 "/f", count, Json::array({1, most_harmonics}),
                 "of the kind harmonics needs 1 to 64 frequencies");
         for (const std::string name : {"F", "phase"})
-            if (given.contains(name) && (!given[name].is_array() || given[name].size() != count))
+            if (given.contains(name) && !given[name].is_array())
+                fail("/" + name, given[name], nullptr, "needs a list in " + name);
+            else if (given.contains(name) && given[name].size() != count)
                 fail(
                     "/" + name, given[name].size(), Json::array({count, count}),
                     "of the kind harmonics needs one value in " + name + " for each frequency");

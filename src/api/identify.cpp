@@ -260,7 +260,8 @@ System identified_system(const IdentifyRequest& r, const MeasurementResult& resu
         used.origin["R_plus"] = used.origin["R_minus"] = "estimated from the impacts";
     if (r.forcing_fitted) {
         if (used.si) used.si->F = result.parameters.G * result.parameters.epsilon;
-        used.origin["F"] = used.origin["G"] = "fitted to the " + measured;
+        used.origin["G"] = "fitted to the " + measured;
+        if (used.si) used.origin["F"] = used.origin["G"];
     }
     if (r.measurement.is_record()) {
         if (!result.refined->fit.fixed[Unknown::Omega]) {

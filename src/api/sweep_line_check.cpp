@@ -102,7 +102,7 @@ std::string fault_among(const std::string& name, const Json& value, const Sample
     Samples alike, parts;
     std::ranges::copy_if(
         samples, std::back_inserter(alike), [&](auto* sample) { return is_alike(*sample, value); });
-    if (alike.empty()) return fmt::format("{} is {}", name, value.dump());
+    if (alike.empty()) return fmt::format("{} is {}", name, shortened(value.dump()));
     if (value.is_object()) {
         if (std::string fault = fault_of_names(name, value, alike); !fault.empty()) return fault;
         for (const auto& [field, of_field] : value.items()) {
@@ -159,7 +159,8 @@ std::string SweepLineCheck::fault_of_index(const Json& parsed) const {
     const Json index = canonical(parsed["index"]);  // 7.0 equals 7
     if (index.is_number_integer() && index >= 0 && index < lines) return "";
     return fmt::format(
-        "point {} is outside the sweep, which has {} points, from 0", index.dump(), lines);
+        "point {} is outside the sweep, which has {} points, from 0", shortened(index.dump()),
+        lines);
 }
 
 std::string SweepLineCheck::fault_of_place(const std::string& line, const Json& parsed) const {
@@ -173,7 +174,7 @@ std::string SweepLineCheck::fault_of_place(const std::string& line, const Json& 
         if (given == parsed.end()) return name + " is missing";
         if (given->type() != value.type() || *given != value)
             return fmt::format(
-                "{} is {}, but point {} lies at {}", name, given->dump(), index.dump(),
+                "{} is {}, but point {} lies at {}", name, shortened(given->dump()), index.dump(),
                 value.dump());
     }
     return "";
@@ -188,7 +189,7 @@ std::string SweepLineCheck::fault_of(const std::string& line, const Json& parsed
                                        : request_.plan.tries_second_start(index) ? tried_
                                                                                  : single_;
     if (const auto reason = parsed.find("reason"); reason != parsed.end() && !reason->is_string())
-        return "reason is " + reason->dump();
+        return "reason is " + shortened(reason->dump());
     const Samples of_kind = samples_for(parsed, samples);
     if (of_kind.empty()) return "reason does not belong to such a line";
     if (std::string fault = fault_among("", parsed, of_kind); !fault.empty()) return fault;

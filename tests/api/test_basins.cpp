@@ -130,6 +130,11 @@ TEST_CASE("errors of basins are reported at their field") {
         "/axis/parameter");
     CHECK(
         basins_faults(
+            R"("base":{"m1":4,"f0":8,"f":8,"F":0.0004,"damping_ratio":0.01,"mass_ratio":0.01},
+               "box":{"x_dot0":[0,0.001]},"axis":{"parameter":"x_velocity0","values":[0,1]})") ==
+        "/axis/parameter");
+    CHECK(
+        basins_faults(
             twin_system +
             R"(,"count":2,"axis":{"parameter":"R","from":0.5,"to":0.6,"count":1001})") == "/axis");
     CHECK(

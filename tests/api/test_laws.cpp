@@ -121,6 +121,7 @@ TEST_CASE("an invalid load is named at its pointer") {
     // A load of 5000 periods of the oscillator takes 13 MB.
     CHECK(at(R"({"kind":"half_sine","duration_s":400,"force_N":1})") == "/forcing/duration_s");
     CHECK(at(R"({"kind":"harmonics","f":[1,2],"F":[0.1]})") == "/forcing/F");
+    CHECK(at(R"({"kind":"harmonics","f":[8],"F":[0.1],"phase":0.5})") == "/forcing/phase");
     CHECK(at(R"({"kind":"harmonics","f":[1,-2],"F":[0.1,0.1]})") == "/forcing/f/1");
     CHECK(at(R"({"time_s":[0,"a"],"force_N":[0,1]})") == "/forcing/time_s/1");
     CHECK(

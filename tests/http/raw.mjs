@@ -81,7 +81,7 @@ export const connectAll = (url, count, bytesOf = () => "") =>
 export const sleep = (ms) => new Promise((resolve) => setTimeout(resolve, ms));
 
 /** Waits until condition() holds; throws after `ms`, which a very busy machine does not reach. */
-export async function until(condition, ms = 120000) {
+export async function until(condition, ms = 600000) {
   const began = performance.now();
   while (!(await condition())) {
     if (performance.now() - began > ms) throw new Error(`not within ${ms} ms: ${condition}`);

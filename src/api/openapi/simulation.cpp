@@ -301,8 +301,8 @@ void add_parts(Json& schemas) {
          column_of(quantity.distance),
          {"predicted", object_of(predicted), "prediction of the linear theory"},
          {"slope", object_of(slope),
-          "fit over the stretch in which distance is within 10 % of the prediction; null with "
-          "fewer than three impacts there"},
+          "fit over the stretch in which distance is within 10 % of the prediction; its values are "
+          "null with fewer than three impacts there"},
          quantity.parted});
 }
 
