@@ -2,7 +2,7 @@
 import assert from "node:assert/strict";
 import {test} from "node:test";
 import {measured} from "../record.mjs";
-import {designed, drawn, found, identified, painted, swept} from "./browser.mjs";
+import {designed, drawn, found, identified, painted, resize, swept} from "./browser.mjs";
 import {leastDifference} from "./palette.mjs";
 import {browser, findingsInBothSchemes, service} from "./support.mjs";
 
@@ -129,12 +129,12 @@ for (const [address, wait] of tabAddresses)
     for (const sizes of screens) {
       const page = await browser.context.newPage();
       for (const [k, [width, height]] of sizes.entries()) {
-        await page.setViewportSize({width, height});
+        await resize(page, {width, height});
         if (k === 0) {
           await page.goto(`${service.url}/${address}`);
           await wait(page, 1);
+          await painted(page);
         }
-        await painted(page);
         await checkLayout(page, width);
         const high = await page.evaluate(() => document.documentElement.scrollHeight);
         if (address.includes("embed") && width === 800)

@@ -98,6 +98,13 @@ export const frames = (page, n) =>
 /** Resolves when pending drawing is done. */
 export const painted = (page) => frames(page, 2);
 
+/** Gives the page another size; resolves when it has been drawn in it. */
+export async function resize(page, size) {
+  await page.setViewportSize(size);
+  await page.waitForFunction(({width}) => innerWidth === width, size);
+  await painted(page);
+}
+
 export const drawn = done("results");
 export const identified = done("measure-results");
 export const swept = done("sweep-results");

@@ -7,8 +7,9 @@ import {tmpdir} from "node:os";
 import {join} from "node:path";
 import {test} from "node:test";
 import {promisify} from "node:util";
+import {until} from "../http/raw.mjs";
 import {startService} from "../service.mjs";
-import {drawn, frames, painted, swept} from "./browser.mjs";
+import {drawn, frames, painted, resize, swept} from "./browser.mjs";
 import {
   asked,
   automatic,
@@ -1188,8 +1189,7 @@ test("a printed page shows the results without the controls", async () => {
   for (const shownOnPaper of ["#sentence", "#reduction", "#figure-x .params", ...instrument])
     assert.ok(await page.isVisible(shownOnPaper), shownOnPaper);
   for (const width of [1440, 718]) {
-    await page.setViewportSize({width, height: 900});
-    await painted(page);
+    await resize(page, {width, height: 900});
     for (const name of overTime) {
       const inside = (selector) =>
         page.$eval(`#figure-${name} ${selector}`, (node) => {
@@ -1586,9 +1586,8 @@ test("one finger scrolls a zoomed plot, two zoom", async () => {
 test("a hidden plot is drawn when it gets a width", async () => {
   const page = await still("?preset=fig11", narrow);
   assert.equal(await shown(page), 1);
-  await page.setViewportSize({width: 1440, height: 900});
-  await painted(page);
-  for (const canvas of instrument) assert.ok((await colours(page, canvas)) > 3, canvas);
+  await resize(page, {width: 1440, height: 900});
+  for (const canvas of instrument) await until(async () => (await colours(page, canvas)) > 3);
   await page.close();
 });
 
