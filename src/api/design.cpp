@@ -49,6 +49,7 @@ Json described(const DesignMargin& m) {
 
 /// "48.9 mm".
 std::string quantity_text(const DesignRequest& r, double value) {
+    if (std::isinf(value)) return "infinite";
     switch (r.plan.objective) {
         case Objective::x_acceleration_max: return fmt::format("{:.3g} m/s^2", value);
         case Objective::impact_speed_max: return fmt::format("{:.3g} m/s", value);

@@ -97,6 +97,20 @@ TEST_CASE("under a load a design has neither frequency nor amplitude") {
         "/forcing/duration_s");
 }
 
+TEST_CASE("the time in which a machine without damping decays is infinite") {
+    const auto stream = design_lines(read_design_request(
+        {{"base", {{"m1", 2}, {"f0", 8}, {"damping_ratio", 0}, {"m2", 0.04}}},
+         {"initial_velocity", 0.3},
+         {"R", 0.4},
+         {"b_count", 3},
+         {"cycles", 60}}));
+    vines::RunControl control;
+    CHECK(stream->compute(2, control, [](const std::string&) {}));
+    const Json last = Json::parse(stream->end());
+    CHECK(last["without"]["decay_time"].is_null());
+    CHECK(contains(last["sentence"], "without absorber it is infinite"));
+}
+
 TEST_CASE("a range of amplitudes and lists of R and m2 are read, and b follows from the host") {
     Json request = design_of_machine();
     request["acceleration"] = {2, 5};
