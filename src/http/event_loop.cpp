@@ -37,8 +37,8 @@ constexpr int max_accepted = 32;
 // Time in which a new connection is not closed for others whose client has more, all at work.
 constexpr auto time_of_new = 1s;
 
-// If so many bytes of requests and answers were held, or so many requests at work, free memory is
-// returned to the system once nothing is left to do.
+// Bytes of requests and answers, or requests at work, from which on free memory is returned to the
+// system once nothing is left to do.
 constexpr std::size_t much_held = 16 << 20, many_at_work = 8;
 
 // Bytes sent to one client before the others get their turn.

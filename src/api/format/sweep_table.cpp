@@ -177,8 +177,8 @@ std::size_t SweepStream::listed() const {
 
 std::size_t SweepStream::bytes_of_point() const {
     const SystemFields& fields = request_.systems->kinds[0].fields;
-    const double f0 = fields.number("f0", std::sqrt(fields.number("k1") / fields.number("m1", 1)));
-    return listed() * bytes_of_row + (fields.forcing ? fields.forcing->bytes(f0) : 0);
+    const std::size_t of_load = fields.forcing ? fields.forcing->bytes(si_of(fields).f0()) : 0;
+    return listed() * bytes_of_row + of_load;
 }
 
 /// How many of these threads compute.

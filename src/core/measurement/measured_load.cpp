@@ -42,10 +42,8 @@ double rough_omega(
         crossings.push_back(time[k]);
     }
     if (count_of(intervals) < fewest_cycles) return 0;
-    const auto middle = intervals.begin() + std::ssize(intervals) / 2;
-    std::ranges::nth_element(intervals, middle);
     double cycles = count_of(intervals), duration = crossings.back() - crossings.front();
-    const double longest = 1.5 * *middle;
+    const double longest = 1.5 * median(intervals);
     for (const double interval : intervals)
         if (interval > longest) --cycles, duration -= interval;
     return cycles < fewest_cycles ? 0 : 2 * std::numbers::pi * cycles / duration;
