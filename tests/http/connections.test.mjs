@@ -397,11 +397,16 @@ test("where all connections have requests at work, one makes place between two a
   await until(() => busy.every(({text}) => statuses(text()).length > 0));
   const others = ["127.0.0.2", "127.0.0.3", "127.0.0.4"];
   for (const localAddress of others) {
-    const other = await connect(one.url, {localAddress});
-    busy.push(...(await connectAll(one.url, 8, () => many))); // want the places of others
-    other.socket.write(get("/livez", separate));
-    await other.ended;
-    assert.deepEqual(statuses(other.text()), [200]);
+    for (let answered = false; !answered; ) {
+      const began = performance.now();
+      const other = await connect(one.url, {localAddress});
+      busy.push(...(await connectAll(one.url, 8, () => many))); // want the places of others
+      other.socket.write(get("/livez", separate));
+      await other.ended;
+      answered = statuses(other.text())[0] === 200;
+      // One that has sent nothing for a second gives them its place.
+      assert.ok(answered || performance.now() - began > 1000);
+    }
   }
   for (const {text} of busy) assert.ok(statuses(text()).length < 1000);
 });

@@ -176,9 +176,9 @@ test("a long run with a large body does not hold up other runs with large bodies
 });
 
 test("many runs with large series wait for their turn in little memory", async (t) => {
-  const one = await startService([...trust, "--memory-limit", "100000000"]);
+  const one = await startService([...trust, "--memory-limit", "25000000"]);
   const system = {m1: 2, f0: 8, damping_ratio: 0.01, m2: 0.04, b: 0.02, R: 0.5, f: 8, F: 0.0005};
-  const series = {tau_end: 62800, samples_per_cycle: 100, max_points: 1e6, include: ["series"]};
+  const series = {tau_end: 15700, samples_per_cycle: 100, max_points: 2.5e5, include: ["series"]};
   const request = JSON.stringify({...system, ...series});
   const sockets = await connectAll(one.url, 40, () =>
     post("/v1/simulate", request, `${from("192.0.2.1")}Accept-Encoding: gzip\r\n`).repeat(4),
@@ -188,9 +188,9 @@ test("many runs with large series wait for their turn in little memory", async (
     await one.stop();
   });
   const answered = () => sockets.filter(({text}) => text()).length;
-  await until(() => answered() > 20);
+  await until(() => answered() > 8); // 40 runs with all of their points would have 900 MB
   const peak = await memory(one.pid, "VmHWM");
-  assert.ok(peak < 488, `${peak} MB`);
+  assert.ok(peak < 300, `${peak} MB`);
 });
 
 test("uploads that dribble are cut off while another waits for memory", async (t) => {

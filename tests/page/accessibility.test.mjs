@@ -4,7 +4,7 @@ import {test} from "node:test";
 import {measured} from "../record.mjs";
 import {designed, drawn, found, identified, painted, resize, swept} from "./browser.mjs";
 import {leastDifference} from "./palette.mjs";
-import {browser, findingsInBothSchemes, service} from "./support.mjs";
+import {findingsInBothSchemes, newPage, service} from "./support.mjs";
 
 const design =
   "m1=2&f0=8&damping_ratio=0.01&m2=0.04&f=7,9&acceleration=5&R=0.2&b_count=4&f_count=5&starts=one&cycles=20";
@@ -53,7 +53,7 @@ const tabs = {
 
 for (const [name, show] of Object.entries(tabs))
   test(`axe-core finds nothing, light and dark: ${name}`, async () => {
-    const page = await browser.context.newPage();
+    const page = await newPage();
     await page.setViewportSize({width: 1440, height: 900});
     await page.emulateMedia({reducedMotion: "reduce"});
     await show(page);
@@ -127,7 +127,7 @@ async function checkLayout(page, width) {
 for (const [address, wait] of tabAddresses)
   test(`nothing overlaps or scrolls sideways on any screen: ${address}`, async () => {
     for (const sizes of screens) {
-      const page = await browser.context.newPage();
+      const page = await newPage();
       for (const [k, [width, height]] of sizes.entries()) {
         await resize(page, {width, height});
         if (k === 0) {
@@ -167,7 +167,7 @@ test("colours that stand for different things differ for everyone, also with a c
     [["before"], ["after"], 13.5],
     [["c1"], ["without"], 13.5],
   ];
-  const page = await browser.context.newPage();
+  const page = await newPage();
   await page.goto(service.url);
   for (const colorScheme of ["light", "dark"]) {
     await page.emulateMedia({colorScheme});
@@ -184,7 +184,7 @@ test("colours that stand for different things differ for everyone, also with a c
 });
 
 test("forced colours show the selected tab and the pressed chip", async () => {
-  const page = await browser.context.newPage();
+  const page = await newPage();
   await page.emulateMedia({forcedColors: "active"});
   await page.goto(service.url);
   await drawn(page, 1);

@@ -53,15 +53,39 @@ export async function startBrowser() {
   return {context, complaints, stop};
 }
 
+// Empty pages that tests have closed: a visit with one takes half of the time of one with a new page.
+const spare = [];
+
+/** An empty page. Closed, it is emptied of all that a test adds to it, for the next one. */
+export async function emptyPage(context) {
+  const page = spare.pop() ?? (await context.newPage());
+  page.close = async () => {
+    await page.evaluate(() => sessionStorage.clear());
+    await page.goto("about:blank");
+    await page.unrouteAll();
+    page.removeAllListeners("request");
+    await page.mouse.move(-1, -1);
+    await page.setViewportSize({width: 1280, height: 720});
+    await page.emulateMedia({
+      colorScheme: null,
+      forcedColors: null,
+      media: null,
+      reducedMotion: null,
+    });
+    spare.push(page);
+  };
+  return page;
+}
+
 /**
  * Opens a page and waits for its first result: a drawn simulation, a complete sweep, or the
  * measurement form.
  */
 export async function open(context, url, options = {}) {
-  const page = await context.newPage();
-  if (options.viewport) await page.setViewportSize(options.viewport);
-  const {colorScheme, forcedColors} = options;
-  if (colorScheme) await page.emulateMedia({colorScheme, forcedColors});
+  const page = await emptyPage(context);
+  const {viewport, ...media} = options;
+  if (viewport) await page.setViewportSize(viewport);
+  await page.emulateMedia(media);
   await page.goto(url);
   if (url.includes("tab=measurement"))
     await page.waitForFunction(() => document.getElementById("measure-preset").value);

@@ -2,7 +2,17 @@
 import assert from "node:assert/strict";
 import {test} from "node:test";
 import {drawn} from "./browser.mjs";
-import {asked, beyond, browser, cellsByName, fits, narrow, pixels, visit} from "./support.mjs";
+import {
+  asked,
+  beyond,
+  browser,
+  cellsByName,
+  fits,
+  narrow,
+  newPage,
+  pixels,
+  visit,
+} from "./support.mjs";
 
 const search = "b_count=6&f_count=9&starts=one&cycles=40&transient_cycles=40";
 const machine = "m1=2&f0=8&damping_ratio=0.01";
@@ -44,7 +54,7 @@ test("the worst case opens in Simulation, and Back returns to the design without
 });
 
 test("without a request in the address the form shows an example and waits", async () => {
-  const page = await browser.context.newPage();
+  const page = await newPage();
   const requests = asked(page, "/v1/design");
   const {service} = await import("./support.mjs");
   await page.goto(`${service.url}/?tab=design`);

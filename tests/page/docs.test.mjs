@@ -5,11 +5,11 @@ import {tmpdir} from "node:os";
 import {join} from "node:path";
 import {test} from "node:test";
 import {startService} from "../service.mjs";
-import {browser, findingsInBothSchemes, fits, service} from "./support.mjs";
+import {browser, findingsInBothSchemes, fits, newPage, service} from "./support.mjs";
 
 /** The page at a hash, after its script has started. */
 async function visit(place = "", {url = service.url, viewport} = {}) {
-  const page = await browser.context.newPage();
+  const page = await newPage();
   if (viewport) await page.setViewportSize(viewport);
   await page.goto(`${url}/docs${place}`);
   await page.waitForSelector("#docs-message[data-done]", {state: "attached"});
@@ -167,7 +167,7 @@ test("an example asks for a required key, sends it, and all commands then contai
     await closed.stop();
     await rm(folder, {recursive: true});
   });
-  const page = await browser.context.newPage();
+  const page = await newPage();
   await page.goto(`${closed.url}/docs#presets`);
   const answer = tried(page, "presets");
   await page.fill("dialog input", "a-key-of-the-tests-0");
@@ -185,7 +185,7 @@ test("an example asks for a required key, sends it, and all commands then contai
 });
 
 test("the page reports a service that answers 503 or cannot be reached", async () => {
-  const page = await browser.context.newPage();
+  const page = await newPage();
   await page.route("**/version", (route) =>
     route.fulfill({status: 503, json: {detail: "too busy"}}),
   );

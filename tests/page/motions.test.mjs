@@ -10,6 +10,7 @@ import {
   downloaded,
   fits,
   narrow,
+  newPage,
   pixels,
   visit,
 } from "./support.mjs";
@@ -74,7 +75,7 @@ test("a click on a branch opens the orbit there", async () => {
 });
 
 test("the search can be stopped, keeps what it has, and an edited form marks the results as stale", async () => {
-  const page = await browser.context.newPage();
+  const page = await newPage();
   await page.route("**/v1/continue", () => {}); // never answered
   const {url} = (await import("./support.mjs")).service;
   await page.goto(`${url}/?${query}`);

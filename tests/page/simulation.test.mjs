@@ -23,6 +23,7 @@ import {
   hash,
   input,
   narrow,
+  newPage,
   origin,
   pixels,
   platformQuery,
@@ -42,7 +43,7 @@ const wide = {viewport: {width: 1440, height: 900}};
 
 /** A page for a visitor who prefers reduced motion: the player does not start. */
 async function still(query = "", options = wide) {
-  const page = await browser.context.newPage();
+  const page = await newPage();
   await page.emulateMedia({reducedMotion: "reduce"});
   await page.setViewportSize(options.viewport);
   await page.goto(`${service.url}/${query}`);
@@ -347,7 +348,7 @@ test("a run that is sent again gets its deferred results", async () => {
 
 test("an unreachable server is reported, and the request is repeated until it answers", async () => {
   const own = await startService();
-  const page = await browser.context.newPage();
+  const page = await newPage();
   await page.goto(`${own.url}/?preset=fig11`);
   await drawn(page, 1);
   const {port} = new URL(own.url);
@@ -488,7 +489,7 @@ test("R as a function of the speed is typed, stays in the address and reaches th
 });
 
 test("a load of another kind in the address reaches the service unchanged", async () => {
-  const page = await browser.context.newPage();
+  const page = await newPage();
   const runs = asked(page, "/v1/simulate");
   const forcing = {kind: "harmonics", f: [14], F: [0.0004], phase: [0]};
   const text = encodeURIComponent(JSON.stringify(forcing));
@@ -549,7 +550,7 @@ test("an error of a field is shown at the field, and correcting it draws the run
 });
 
 test("a failed request for the version is not reported: the page is usable", async () => {
-  const page = await browser.context.newPage();
+  const page = await newPage();
   let fail;
   await page.route("**/version", (route) => {
     fail = () => route.fulfill({status: 500, json: {title: "broken"}});

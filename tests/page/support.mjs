@@ -3,7 +3,7 @@ import {readFile} from "node:fs/promises";
 import {createRequire} from "node:module";
 import {after, before} from "node:test";
 import {startService} from "../service.mjs";
-import {open, startBrowser} from "./browser.mjs";
+import {emptyPage, open, startBrowser} from "./browser.mjs";
 
 export let service;
 export let browser;
@@ -16,6 +16,8 @@ after(async () => {
   await service.stop();
 });
 
+/** A page for a test that gives it no clock and no script. */
+export const newPage = () => emptyPage(browser.context);
 /** A page of the service with its first result. */
 export const visit = (address = "", options = {}) =>
   open(browser.context, `${service.url}/${address}`, options);

@@ -17,6 +17,7 @@ import {
   hash,
   input,
   narrow,
+  newPage,
   pixels,
   platform,
   service,
@@ -162,7 +163,7 @@ test("the keyboard moves between points and simulates one", async () => {
 test("a cancelled sweep keeps its points, frees the service, and can be resumed", async (t) => {
   const one = await startService(["--sweeps", "1"]);
   t.after(() => one.stop());
-  const page = await browser.context.newPage();
+  const page = await newPage();
   await page.goto(`${one.url}/?${long}`);
   await page.waitForFunction(() => document.getElementById("sweep-bar").value > 2);
   const body = JSON.stringify({axes: [{parameter: "b", values: [0.02]}], cycles: 10});
@@ -190,7 +191,7 @@ test("a cancelled sweep keeps its points, frees the service, and can be resumed"
 });
 
 test("an interrupted stream resumes with the missing points", async () => {
-  const page = await browser.context.newPage();
+  const page = await newPage();
   const asked = [];
   await page.route("**/v1/sweep", async (route) => {
     const request = route.request().postDataJSON();
@@ -595,7 +596,7 @@ test("zoomed diagrams are refined unless their points carry states over", async 
 });
 
 test("a map is filled before a tenth of its points are received", async () => {
-  const page = await browser.context.newPage();
+  const page = await newPage();
   await page.goto(
     `${service.url}/?tab=sweep&axis1=b,0.005,0.035,64&axis2=R,0.4,0.8,64&cycles=6000&map=regime`,
   );
@@ -802,7 +803,7 @@ test("a new parameter of an axis clears its ends, which are typed in the unit sh
 });
 
 test("Enter during a sweep replaces it", async () => {
-  const page = await browser.context.newPage();
+  const page = await newPage();
   await page.goto(`${service.url}/?${long}`);
   await page.waitForFunction(() => document.getElementById("sweep-bar").value > 2);
   const cycles = page.locator(field("sweep-error-cycles"));
