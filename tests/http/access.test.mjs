@@ -18,7 +18,7 @@ const keyFile = async (text) => {
 };
 /** Runs a service that does not start, to its end. */
 const serve = (...args) =>
-  spawnSync(program, ["serve", ...args], {encoding: "utf8", timeout: 5000, killSignal: "SIGKILL"});
+  spawnSync(program, ["serve", ...args], {encoding: "utf8", timeout: 60000, killSignal: "SIGKILL"});
 
 const cors = ["--cors-origin", "https://lab.example.org"];
 const keys = ["first-key-0123456789", "second.key~with+all/of=them=="];

@@ -198,7 +198,7 @@ test("bytes after a refused request are not read as a request, at any offset", a
 
 /** Starts the shipped proxy in front of the services, until the end of the test; resolves to its URL. */
 async function startProxy(t, replicas) {
-  const port = 20000 + Math.floor(Math.random() * 20000);
+  const port = 20000 + Math.floor(Math.random() * 12000); // below those that clients get
   const environment = {VINES_BIND: `127.0.0.1:${port}`};
   replicas.forEach(({url}, i) => {
     environment[`VINES_${i + 1}`] = new URL(url).host;
@@ -209,7 +209,7 @@ async function startProxy(t, replicas) {
   process.once("exit", () => child.kill("SIGKILL"));
   t.after(() => child.kill("SIGKILL"));
   const url = `http://127.0.0.1:${port}`;
-  await until(async () => (await fetch(`${url}/readyz`).catch(() => null))?.status === 200, 10000);
+  await until(async () => (await fetch(`${url}/readyz`).catch(() => null))?.status === 200);
   return url;
 }
 
@@ -443,7 +443,7 @@ test("the idle timeout starts at the end of an answer", {skip: !long}, async () 
   const {socket, text} = await connect(service.url);
   const body = '{"axes":[{"parameter":"b","from":0.02,"to":0.03,"count":150}],"cycles":1000000}';
   socket.write(`${post("/v1/sweep", body)}GET /ver`);
-  await until(() => /"type":"done"/.test(text()), 120000);
+  await until(() => /"type":"done"/.test(text()));
   await sleep(500);
   socket.write("sion HTTP/1.1\r\nHost: localhost\r\n\r\n");
   await until(() => statuses(text()).length === 2);
@@ -561,10 +561,7 @@ test("a stop under load loses no request; each connection closes after an answer
       for (let n = 1; ; ++n) {
         if (!socket.writable || /^Connection: close\r$/im.test(text())) break;
         socket.write(simulation(body));
-        await Promise.race([
-          until(() => statuses(text()).length === n, 20000).catch(() => {}),
-          ended,
-        ]);
+        await until(() => statuses(text()).length === n || socket.destroyed);
         if (statuses(text()).length < n) {
           lost.push(text().slice(-200));
           break;

@@ -80,8 +80,11 @@ export const connectAll = (url, count, bytesOf = () => "") =>
 
 export const sleep = (ms) => new Promise((resolve) => setTimeout(resolve, ms));
 
-/** Waits until condition() holds; throws after `ms`, which a very busy machine does not reach. */
-export async function until(condition, ms = 600000) {
+// Time that a very busy machine does not need, ms.
+const long = 600000;
+
+/** Waits until condition() holds; throws after `ms`. */
+export async function until(condition, ms = long) {
   const began = performance.now();
   while (!(await condition())) {
     if (performance.now() - began > ms) throw new Error(`not within ${ms} ms: ${condition}`);
@@ -94,7 +97,7 @@ export const statuses = (text) =>
   [...text.matchAll(/^HTTP\/1\.1 ([2-5]\d\d) /gm)].map((found) => Number(found[1]));
 
 /** Sends bytes and returns everything received until the server closes or `ms` are over. */
-export async function exchange(url, bytes, ms = 20000) {
+export async function exchange(url, bytes, ms = long) {
   const connection = await connect(url);
   connection.socket.write(bytes);
   const late = setTimeout(() => connection.socket.destroy(), ms);

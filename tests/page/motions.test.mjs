@@ -96,6 +96,27 @@ test("the search can be stopped, keeps what it has, and an edited form marks the
   browser.complaints.length = 0; // the aborted request
 });
 
+test("where one of its requests fails for a while, the other one is stopped and both are repeated", async () => {
+  const page = await newPage();
+  const {url} = (await import("./support.mjs")).service;
+  const begun = {};
+  /** Gives the first request to a route to `first`, and the later ones to the service. */
+  const route = (path, first) =>
+    page.route(`**/v1/${path}`, (each) => {
+      if (begun[path]) return each.continue();
+      begun[path] = each.request();
+      return first(each);
+    });
+  await route("continue", () => {}); // never answered
+  await route("sweep", (each) => each.fulfill({status: 503, json: {detail: "too busy"}}));
+  const stopped = page.waitForEvent("requestfailed", (request) => request === begun.continue);
+  await page.goto(`${url}/?${query}`);
+  await stopped;
+  await found(page, 1);
+  await page.close();
+  browser.complaints.length = 0; // the 503
+});
+
 test("a range is required, an error is shown at its field, and the address holds the request", async () => {
   const page = await visit(`?${query}`);
   await page.selectOption(input("parameter"), "R");

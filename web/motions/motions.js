@@ -92,8 +92,7 @@ export class MotionsTab extends RequestTab {
     for (let n = 0; n < mostBranches; ++n) {
       const found = this.motions.unexplained();
       if (!found) break;
-      const {value, state} = found;
-      await this.follow({...base, [request.parameter]: value, ...state}, signal);
+      await this.follow({...base, [request.parameter]: found.value, ...found.state}, signal);
     }
   }
 
@@ -153,8 +152,7 @@ export class MotionsTab extends RequestTab {
     if (value == null) return;
     const {label, of} = quantities[this.quantity.value];
     const found = this.motions.distinctAt(value).map((orbit) => {
-      const stability = orbit.stable ? "stable" : "unstable";
-      const text = `${stability}, ${label}: ${short(of(orbit))}`;
+      const text = `${orbit.stable ? "stable" : "unstable"}, ${label}: ${short(of(orbit))}`;
       return Object.assign(button(text, null, {className: "small"}), {orbit});
     });
     const where = `At ${labels.fields({[parameter]: value})}:`;

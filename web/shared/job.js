@@ -68,15 +68,18 @@ export class Job {
 
   /** Repeats the request while it fails temporarily. */
   async #answer(request, signal) {
-    for (;;)
+    for (;;) {
+      const attempt = new AbortController();
       try {
-        return await this.ask(request, signal);
+        return await this.ask(request, AbortSignal.any([signal, attempt.signal]));
       } catch (error) {
+        attempt.abort(); // what else it asked for
         if (signal.aborted || !isTemporary(error)) throw error;
         this.#running.answers = false;
         this.later?.(`${error.message}; retrying every ${retryInterval} s`);
         await delay(retryInterval * 1000, {signal});
       }
+    }
   }
 }
 
@@ -95,8 +98,7 @@ export class RequestTab extends Job {
   /** prefix: of the ids of the tab; changed({edit, soon}): called when query() changes. */
   constructor(prefix, changed) {
     const say = sayIn(`${prefix}message`);
-    const later = (text) => say(text, true);
-    super({changed, say, later, results: $(`${prefix}results`)});
+    super({changed, say, later: (text) => say(text, true), results: $(`${prefix}results`)});
     this.formElement = $(`${prefix}form`);
     this.formElement.onsubmit = () => this.submit();
     this.noteElement = $(`${prefix}note`);
