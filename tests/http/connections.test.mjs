@@ -397,7 +397,7 @@ test("where all connections have requests at work, one makes place between two a
   await until(() => busy.every(({text}) => statuses(text()).length > 0));
   const others = ["127.0.0.2", "127.0.0.3", "127.0.0.4"];
   for (const localAddress of others) {
-    for (let answered = false; !answered; ) {
+    for (let answered = false, attempt = 1; !answered; ++attempt) {
       const began = performance.now();
       const other = await connect(one.url, {localAddress});
       busy.push(...(await connectAll(one.url, 8, () => many))); // want the places of others
@@ -405,7 +405,7 @@ test("where all connections have requests at work, one makes place between two a
       await other.ended;
       answered = statuses(other.text())[0] === 200;
       // One that has sent nothing for a second gives them its place.
-      assert.ok(answered || performance.now() - began > 1000);
+      assert.ok(answered || (performance.now() - began > 1000 && attempt < 10));
     }
   }
   for (const {text} of busy) assert.ok(statuses(text()).length < 1000);

@@ -81,10 +81,10 @@ export const connectAll = (url, count, bytesOf = () => "") =>
 export const sleep = (ms) => new Promise((resolve) => setTimeout(resolve, ms));
 
 // Time that a very busy machine does not need, ms.
-const long = 600000;
+const hanging = 600000;
 
 /** Waits until condition() holds; throws after `ms`. */
-export async function until(condition, ms = long) {
+export async function until(condition, ms = hanging) {
   const began = performance.now();
   while (!(await condition())) {
     if (performance.now() - began > ms) throw new Error(`not within ${ms} ms: ${condition}`);
@@ -97,7 +97,7 @@ export const statuses = (text) =>
   [...text.matchAll(/^HTTP\/1\.1 ([2-5]\d\d) /gm)].map((found) => Number(found[1]));
 
 /** Sends bytes and returns everything received until the server closes or `ms` are over. */
-export async function exchange(url, bytes, ms = long) {
+export async function exchange(url, bytes, ms = hanging) {
   const connection = await connect(url);
   connection.socket.write(bytes);
   const late = setTimeout(() => connection.socket.destroy(), ms);

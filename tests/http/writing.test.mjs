@@ -4,8 +4,8 @@ import {test} from "node:test";
 import {startService} from "../service.mjs";
 import {connect, connectAll, get, memory, post, send, serviceFor, statuses, until} from "./raw.mjs";
 
-// Time within which others get what such a client holds, ms; without them it would be half a minute.
-const soon = 20000;
+// Time within which others get what such a client holds, ms.
+const soon = 5000;
 
 /** A client that sends a request and reads only the beginning of its answer. */
 async function unread(url, path, body, address) {

@@ -11,6 +11,7 @@ import {
   narrow,
   newPage,
   pixels,
+  service,
   visit,
 } from "./support.mjs";
 
@@ -56,7 +57,6 @@ test("the worst case opens in Simulation, and Back returns to the design without
 test("without a request in the address the form shows an example and waits", async () => {
   const page = await newPage();
   const requests = asked(page, "/v1/design");
-  const {service} = await import("./support.mjs");
   await page.goto(`${service.url}/?tab=design`);
   await page.waitForSelector(input("f"));
   assert.equal(await page.inputValue(input("f")), "7, 9");

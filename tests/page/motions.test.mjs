@@ -12,6 +12,7 @@ import {
   narrow,
   newPage,
   pixels,
+  service,
   visit,
 } from "./support.mjs";
 
@@ -77,8 +78,7 @@ test("a click on a branch opens the orbit there", async () => {
 test("the search can be stopped, keeps what it has, and an edited form marks the results as stale", async () => {
   const page = await newPage();
   await page.route("**/v1/continue", () => {}); // never answered
-  const {url} = (await import("./support.mjs")).service;
-  await page.goto(`${url}/?${query}`);
+  await page.goto(`${service.url}/?${query}`);
   await page.waitForFunction(() =>
     /^[1-9]/.test(document.getElementById("motions-count").textContent),
   );
@@ -98,7 +98,6 @@ test("the search can be stopped, keeps what it has, and an edited form marks the
 
 test("where one of its requests fails for a while, the other one is stopped and both are repeated", async () => {
   const page = await newPage();
-  const {url} = (await import("./support.mjs")).service;
   const begun = {};
   /** Gives the first request to a route to `first`, and the later ones to the service. */
   const route = (path, first) =>
@@ -110,7 +109,7 @@ test("where one of its requests fails for a while, the other one is stopped and 
   await route("continue", () => {}); // never answered
   await route("sweep", (each) => each.fulfill({status: 503, json: {detail: "too busy"}}));
   const stopped = page.waitForEvent("requestfailed", (request) => request === begun.continue);
-  await page.goto(`${url}/?${query}`);
+  await page.goto(`${service.url}/?${query}`);
   await stopped;
   await found(page, 1);
   await page.close();
