@@ -42,14 +42,7 @@ const instrument = [
 const wide = {viewport: {width: 1440, height: 900}};
 
 /** A page for a visitor who prefers reduced motion: the player does not start. */
-async function still(query = "", options = wide) {
-  const page = await newPage();
-  await page.emulateMedia({reducedMotion: "reduce"});
-  await page.setViewportSize(options.viewport);
-  await page.goto(`${service.url}/${query}`);
-  await drawn(page, 1);
-  return page;
-}
+const still = (query = "", options = wide) => visit(query, {...options, reducedMotion: "reduce"});
 
 const shown = (page) => page.$eval("#results", (node) => Number(node.dataset.shown));
 /** Performs an action and waits until its run is drawn completely. */
