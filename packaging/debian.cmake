@@ -14,9 +14,10 @@ file(RENAME ${program}/usr/share/zsh/site-functions ${program}/usr/share/zsh/ven
 file(MAKE_DIRECTORY ${program}/etc/default)
 file(COPY_FILE ${debian}/vines.default ${program}/etc/default/vines)
 
-# Copyright of vines, of the header-only libraries that it is built with, and of the page's npm packages.
+# Copyright of vines, of the libraries whose headers it is built with, and of the page's npm packages.
 file(READ ${debian}/copyright copyright)
-foreach(library libcli11-dev libcpp-httplib-dev libeigen3-dev libspdlog-dev nlohmann-json3-dev)
+foreach(library libcli11-dev libcpp-httplib-dev libeigen3-dev libfmt-dev libspdlog-dev nlohmann-json3-dev
+    prometheus-cpp-dev)
     file(READ /usr/share/doc/${library}/copyright text)
     string(APPEND copyright "\n---- ${library}\n\n${text}")
 endforeach()

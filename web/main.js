@@ -119,7 +119,8 @@ const others = {
   /** Opens the simulation of a sweep's point. */
   simulate(fields) {
     scrolled.simulation = 0; // the new simulation is shown from the top
-    navigate("simulation", toQuery(fields));
+    const pinned = new URLSearchParams(queryOf("simulation")).get("pinned");
+    navigate("simulation", toQuery({...fields, ...(pinned !== null && {pinned})}));
   },
   /** Opens the record of a run, an answer of /v1/simulate with impacts. */
   async measure(answer) {

@@ -29,6 +29,7 @@ from typing import Literal, TypedDict
 # Class, schema, docstring.
 KEYWORDS = [
     ("SimulateFields", "SimulateRequest", "Fields of a simulation."),
+    ("ManifoldFields", "ManifoldRequest", "Fields of a manifold."),
     ("SweepFields", "SweepRequest", "Fields of a sweep."),
     ("BasinsFields", "BasinsRequest", "Fields of basins."),
     ("ContinueFields", "ContinueRequest", "Fields of a continuation."),

@@ -59,9 +59,8 @@ void check_basins(const SweepRequest& r, const Json& box) {
     if (r.axes.empty()) return;
     const std::string& parameter = r.axes[0].parameter;
     // The box is in reduced units.
-    const std::string stated = parameter == "x_velocity0"   ? "x_dot0"
-                               : parameter == "y_velocity0" ? "y_dot0"
-                                                            : parameter;
+    std::string stated = parameter;
+    if (parameter.ends_with("_velocity0")) stated.replace(1, 9, "_dot");
     if (box.contains(stated))
         refuse({{"/axis/parameter", parameter, nullptr, "the box states " + stated + ", too"}});
     const std::size_t values = r.axes[0].values.size();

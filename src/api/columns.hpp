@@ -110,7 +110,7 @@ inline constexpr Property<std::vector<StickingPhase>> sticking_columns[] = {
     {quantity.tau_end.with("release, or the end of the run"), at<&StickingPhase::tau_end>},
     {{"impacts",
       "impacts of the chatter, all on this side; it is followed until the remainder would last "
-      "less than 1e-9 in tau",
+      "less than 1e-9 in tau, with friction 1e-6",
       ValueType::whole},
      at<&StickingPhase::start, &StickStart::impacts>},
 };

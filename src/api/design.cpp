@@ -63,9 +63,9 @@ std::string recommendation_of(const DesignRequest& r, const Design& d) {
     const double value = d.best.objective, without = d.without.value,
                  damper = d.with_tuned_mass_damper.value;
     std::string text = fmt::format(
-        "A cavity with b = {:.3g} mm and R = {:.2g} for a ball of {:.3g} g keeps {} at {} {}",
-        1000 * d.best.b, d.best.R, 1000 * d.best.m2, r.objective, quantity_text(r, value),
-        r.excitation->where);
+        "A cavity with b = {:.3g} mm and R = {:.2g} for a ball of {:.3g} g keeps {}{} at {} {}",
+        1000 * d.best.b, d.best.R, 1000 * d.best.m2, r.plan.mean ? "the mean of " : "", r.objective,
+        quantity_text(r, value), r.excitation->where);
     if (std::isnan(damper)) return text + ".";  // an objective of impacts, or a stopped search
     text += fmt::format(
         "; without absorber it is {}, with a tuned mass damper of the same mass (frequency ratio "

@@ -142,8 +142,7 @@ Tolerance read_tolerance(
     if (is_normal == given.contains("uniform") || pair.size() != 2) {
         errors.push_back(
             {"/" + name, given, nullptr,
-             "a distribution is either normal, [mean, standard deviation], or uniform, [from, "
-             "to]"});
+             "a distribution is normal, [mean, standard deviation], or uniform, [from, to]"});
         return {};
     }
     const double first = pair[0], second = pair[1],

@@ -195,8 +195,7 @@ void read_record(IdentifyRequest& r, const Json& fields, Csv csv, CancelCheck& c
     if (!time.column)
         refuse(
             {{"/record", names_of(columns), nullptr,
-              "the record has no column time_s; set time_column to the name of its column of "
-              "times"}});
+              "the record has no column time_s; name its column of times in time_column"}});
     if (!x.column && !a.column)
         refuse(
             {{"/record", names_of(columns), nullptr,

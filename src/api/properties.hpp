@@ -91,7 +91,7 @@ inline constexpr Property<EnergyBalance> balance[] = {
     {energies.at_end, at<&EnergyBalance::at_end>},
     {{"share_impacts_standard_error", "as rms_standard_error, for share_impacts", number_or_null},
      at<&EnergyBalance::share_impacts_error>},
-    {{"rms", "rms of x, m"}, at<&EnergyBalance::rms>},
+    {{"rms", "rms of x, m, relative to the base if a load moves it"}, at<&EnergyBalance::rms>},
     {{"rms_standard_error",
       "standard error of rms as an estimate for an infinite run, m, with four degrees of freedom: "
       "95 % intervals are 2.776 errors on both sides; null for windows of fewer than 32 cycles",
@@ -108,7 +108,7 @@ inline constexpr Property<Unattached> unattached[] = {
      at<&Unattached::rms>},
     {{"peak", "maximum of |x| in the window, m; null like rms", number_or_null},
      at<&Unattached::peak>},
-    {{"amplitude", "steady amplitude, m; null if undamped at resonance", number_or_null},
+    {{"amplitude", "steady amplitude, m; null at undamped resonance, under a load", number_or_null},
      at<&Unattached::amplitude>},
 };
 
@@ -153,8 +153,7 @@ inline constexpr Property<Recommendation> recommendation[] = {
       interval},
      at<&Recommendation::margin_F>},
     {{"margin_f",
-      "factors on f (or Omega) between which at least half of the reduction remains, as far as "
-      "tried",
+      "factors on f (or Omega) between which half of the reduction remains, as far as tried",
       interval},
      at<&Recommendation::margin_f>},
 };
@@ -260,8 +259,8 @@ inline constexpr Property<Exponents> final_exponents[] = {
     {{"final", "four exponents at the end of the window, descending, per unit of tau", exponents},
      [](const Exponents& values) { return json_of(values); }},
     {{"status",
-      "for each exponent: ok, minus_infinity (a sticking phase or R = 0 reduced the rank), "
-      "not_converged",
+      "for each exponent: ok, minus_infinity (the rank is reduced: a sticking phase, R = 0, for "
+      "raw_product also rounding), not_converged",
       statuses},
      statuses_of},
 };
@@ -276,8 +275,8 @@ inline constexpr Property<TransferProduct> window[] = {
      }},
     {{"impacts", "number of impacts in the window", whole}, at<&TransferProduct::impacts>},
     {{"sum_rule_residual",
-      "error of qr in the sum rule of the exponents, or the bound of its rounding errors if that "
-      "exceeds 1e-6",
+      "error of qr in the sum rule of the exponents (after a sticking phase or R = 0 only of its "
+      "angles), or the bound of its rounding errors if that exceeds 1e-6",
       number_or_null},
      at<&TransferProduct::sum_rule_residual>},
 };
@@ -340,15 +339,14 @@ inline constexpr Property<PointResult> point[] = {
      at<&PointResult::regime, &Regime::synchronised>},
     {{"x_max",
       "maximum of |x| over the measured cycles, m, relative to the base if a load moves it; that "
-      "of "
-      "an irregular motion grows with their number"},
+      "of an irregular motion grows with their number"},
      at<&PointResult::x_max>},
-    {{"x_rms", "rms of x, m"}, at<&PointResult::x_rms>},
+    {{"x_rms", "rms of x, m, relative to the base if a load moves it"}, at<&PointResult::x_rms>},
     {{"x_rms_standard_error",
       "standard error of x_rms, m; as those of z and share_impacts null for fewer than 32 cycles",
       number_or_null},
      at<&PointResult::x_rms_error>},
-    {{"x_rms_ratio", "x_rms over that of the steady motion without the absorber"},
+    {{"x_rms_ratio", "x_rms over that without the absorber: steady, or else from the same start"},
      at<&PointResult::x_rms_ratio>},
     {{"x_free", "steady amplitude without the absorber, m"}, at<&PointResult::x_free>},
     {{"share_impacts", "fraction of the energy that impacts dissipate"},
@@ -365,8 +363,7 @@ inline constexpr Property<PointResult> point[] = {
      at<&PointResult::stationary>},
     {{"chaotic_cycles",
       "measured cycles of shown chaos: up to its capture, or as long as the motion was followed; "
-      "null "
-      "without shown chaos",
+      "null without shown chaos",
       number_or_null},
      at<&PointResult::chaotic_cycles>},
 };

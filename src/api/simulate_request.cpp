@@ -31,7 +31,7 @@ void add_notes_on_load(System& system, double tau_end) {
     if (load.sets_length() && tau_end > load.length() * (1 + 1e-12))
         system.notes.push_back(
             "forcing ends at tau = " + Json(load.length()).dump() +
-            "; afterwards the load is zero, and the base moves on with its velocity");
+            "; afterwards an acceleration or force is zero, and a displacement stays");
     const double far = load.largest_base_displacement(tau_end);
     if (far > far_away * system.parameters.b)
         system.notes.push_back(
@@ -126,8 +126,7 @@ std::optional<State> read_perturbation(
         refuse(
             {{"/perturbation", given, nullptr,
               "the distance of two runs is computed for harmonic forcing and a ball without "
-              "gravity "
-              "and friction"}});
+              "gravity and friction"}});
     const auto own = present(given, {"x", "x_dot", "y", "y_dot"}),
                random = present(given, {"seed", "size"});
     std::vector<FieldError> errors;

@@ -402,8 +402,7 @@ SweepRequest read_sweep_request(
     if (!given.contains("axes") || given["axes"].empty())
         errors.push_back(
             {"/axes", nullptr, nullptr,
-             "a sweep needs axes: one to three of {parameter, from, to, count} or {parameter, "
-             "values}"});
+             "a sweep needs 1 to 3 axes: {parameter, from, to, count} or {parameter, values}"});
     if (given.contains("starts") && given["starts"].size() > most_points)
         errors.push_back(
             {"/starts", given["starts"].size(), Json::array({1, most_points}),

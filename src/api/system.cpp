@@ -105,8 +105,7 @@ void check_gravity(const MergedFields& l, const std::optional<SiParameters>& si)
     if (std::abs(l.fields["gravity"].get<double>()) > most)
         refuse(
             {{"/gravity", l.fields["gravity"], Json::array({-most, most}),
-              "with mu, gravity is g sin(inclination)/omega0^2; give friction instead of mu for "
-              "another one"}});
+              "with mu, gravity is g sin(inclination)/omega0^2; for another one give friction"}});
 }
 
 /// A note if R w falls with the speed w: a faster impact then leaves more slowly.

@@ -101,8 +101,9 @@ struct Sentence {
         return text;
     }
     std::string operator()(const NoManifold&) const {
-        return "the manifold of two symmetric impacts needs one constant R at both walls, and no "
-               "gravity or friction of the ball: only the run's points are given";
+        return "the manifold of two symmetric impacts needs a harmonic forcing, one constant R, "
+               "and "
+               "no gravity or friction of the ball: only the run's points are given";
     }
     std::string operator()(const PerturbedRunCut& w) const {
         return fmt::format(
@@ -135,8 +136,7 @@ const char* text_of(ImpactFault fault) {
     switch (fault) {
         case ImpactFault::none: return "";
         case ImpactFault::too_close:
-            return "closer to the previous impact than the length of a pulse: one spike picked "
-                   "twice?";
+            return "closer to the previous impact than a pulse is long: one spike picked twice?";
         case ImpactFault::moves_away:
             return "the ball would move away from the wall that it hits: is a neighbouring impact "
                    "missing, or b wrong?";
@@ -144,8 +144,7 @@ const char* text_of(ImpactFault fault) {
         case ImpactFault::R_impossible:
             return "R lies outside [0, 1]: is a neighbouring impact missing, or b wrong?";
         case ImpactFault::momentum_lost:
-            return "momentum is not conserved: is a neighbouring impact missing or false, or b "
-                   "wrong?";
+            return "momentum is not conserved: is a neighbour missing or false, or b wrong?";
     }
     return "";
 }

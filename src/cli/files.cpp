@@ -21,10 +21,6 @@
 
 namespace vines::cli {
 
-void add_output(CLI::App& command, std::string& path, const std::string& about) {
-    add_file(command, "--output,-o", path, about);
-}
-
 bool is_standard(const std::string& path) { return path.empty() || path == "-"; }
 
 bool is_json(const std::string& text) {

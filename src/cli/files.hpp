@@ -26,9 +26,11 @@ CLI::Option* add_file(
     CLI::App& command, const std::string& names, Paths& paths, const std::string& about) {
     return command.add_option(names, paths, about)->type_name("FILE");
 }
-void add_output(
+inline void add_output(
     CLI::App& command, std::string& path,
-    const std::string& about = "file for the answer; - or nothing: stdout");
+    const std::string& about = "file for the answer; - or nothing: stdout") {
+    add_file(command, "--output,-o", path, about);
+}
 
 /// Returns whether a path stands for stdin or stdout.
 bool is_standard(const std::string& path);

@@ -199,14 +199,13 @@ Plot by_word(
 
 /// Request fields except axes, as "name = value, ...", including those of the base.
 std::string fields_except_axes(const Json& request) {
-    std::string text;
-    for (const auto& [name, value] : request.items()) {
-        if (name == "axes" || name == "indices") continue;
-        const std::string part =
-            name == "base" ? fields_except_axes(value) : name + " = " + api::json_text(value);
-        if (!part.empty()) text += (text.empty() ? "" : ", ") + part;
-    }
-    return text;
+    std::vector<std::string> parts;
+    for (const auto& [name, value] : request.items())
+        if (name != "axes" && name != "indices")
+            parts.push_back(
+                name == "base" ? fields_except_axes(value) : name + " = " + api::json_text(value));
+    std::erase(parts, "");
+    return api::joined(parts);
 }
 
 /// Plots of the section (bifurcation diagram), of lambda1 by verdict, and of the response by regime

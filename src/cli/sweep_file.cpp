@@ -105,6 +105,8 @@ SweepFile parse_sweep_file(const std::string& text, const std::string& name, Lin
             add_point(file, {line, number}, json["index"].get<std::size_t>(), name, false);
         } else if (number == 1 || !is_between_points(type)) {
             fail_in_line(name, number, "not a line of a sweep");
+        } else if (type == "done") {
+            file.done = line;
         }
     }
     return file;

@@ -19,6 +19,7 @@ struct SweepFile {
     };
     std::string start;                   ///< first line; empty in an empty file
     std::map<std::size_t, Line> points;  ///< by index
+    std::string done;                    ///< last line; empty in a file that is not complete
     std::size_t complete_bytes = 0;      ///< bytes of the complete lines
 
     /// Content of a complete file: start, points sorted by index, done. The request holds the

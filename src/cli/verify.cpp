@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "api/format/answer_request.hpp"
+#include "api/json_text.hpp"
 #include "api/parse.hpp"
 #include "api/sweep.hpp"
 #include "api/version.hpp"
@@ -154,28 +155,39 @@ int verify_answer(const api::Unsealed& stored, const VerifyOptions& o) {
     return is_same ? complete : differs;
 }
 
-/// Verifies the points that a file has, even if others are missing.
+/// Verifies the first line, the points that a file has, even if others are missing, and the last.
 int verify_sweep(const SweepFile& file, const std::string& name) {
     const Json start = parse_answer(file.start);
     print_builds(start, start);
     api::SweepRequest request = request_of(file, name);
     request.plan.lines.clear();
     for (const auto& [index, line] : file.points) request.plan.lines.push_back(index);
-    std::optional<std::string> first;
+    std::string first;
+    const auto is_equal = [&first](
+                              const std::string& what, const Json& stored, const Json& computed) {
+        const std::string where = difference(stored, computed);
+        if (!where.empty() && first.empty()) first = what + where;
+        return where.empty();
+    };
+    Json computed_start = parse_answer(api::json_text(api::sweep_start(request)));
+    for (const char* other : {"version", "commit", "of"})  // of the build, of the request's part
+        if (start.contains(other)) computed_start[other] = start[other];
+    is_equal("start: ", start, computed_start);
     std::size_t same = 0, all = 0;
     SignalControl control;
     const Stoppable stoppable(print_early_stop);
     api::run_sweep(request, cores(), control, [&](std::size_t index, const std::string& computed) {
         const std::string& stored = file.points.at(index).text;
         ++all;
-        const std::string where =
-            stored == computed ? "" : difference(parse_answer(stored), parse_answer(computed));
-        same += where.empty();
-        if (!where.empty() && !first) first = fmt::format("point {}: {}", index, where);
+        same += stored == computed ||
+                is_equal(
+                    fmt::format("point {}: ", index), parse_answer(stored), parse_answer(computed));
     });
+    if (all == file.points.size() && !file.done.empty())
+        is_equal("done: ", parse_answer(file.done), parse_answer(api::done_line(all, request)));
     print_line(fmt::format("recomputed: {} of {} points are the same", same, file.points.size()));
-    if (first) print_line(*first);
-    if (first) return differs;
+    if (!first.empty()) print_line(first);
+    if (!first.empty()) return differs;
     return all < file.points.size() ? stopped_code() : complete;
 }
 

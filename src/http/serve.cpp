@@ -52,19 +52,16 @@ void add_connection_options(CLI::App& c, ServerOptions& o) {
     number(c, "--threads", o.limits.workers, 1, 4096, "worker threads: requests answered at once");
     number(
         c, "--connections", o.limits.connections, 1, 1000000,
-        "connections open at once; beyond that the connection that has been idle longest is "
-        "closed");
+        "connections open at once; beyond that one of the client with most of them is closed");
     number(
         c, "--client-connections", o.limits.per_client, 1, 1000000,
-        "connections of one address, except of a trusted proxy; beyond that one of its own is "
-        "closed");
+        "connections of an address, except of a trusted proxy; beyond that one of them is closed");
 }
 
 void add_access_options(CLI::App& c, AccessOptions& o, std::string& key_file) {
     c.add_option(
         "--allow-host", o.hosts,
-        "host name with a dot that requests can use, in addition to this machine's; *: any "
-        "(repeatable)");
+        "host name with a dot that requests can use, beside this machine's; *: any (repeatable)");
     c.add_option(
          "--cors-origin", o.origins,
          "origin of a page that may use this service; *: any (repeatable)")
@@ -74,8 +71,7 @@ void add_access_options(CLI::App& c, AccessOptions& o, std::string& key_file) {
          [&o](const std::vector<std::string>& texts) {
              for (const std::string& text : texts) o.proxies.push_back(*Network::read(text));
          },
-         "address or network (10.0.0.0/8) of a proxy whose X-Forwarded-For names the client "
-         "(repeatable)")
+         "address or network (10.0.0.0/8) of a proxy that names the client (repeatable)")
         ->type_name("ADDRESS")
         ->check([](const std::string& text) {
             return Network::read(text) ? "" : text + " is not an address or ADDRESS/BITS";

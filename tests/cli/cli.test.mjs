@@ -262,6 +262,9 @@ test("verify reproduces the service's answers: runs, manifolds, identifications,
   );
   assert.equal(changed.code, 1);
   assert.match(changed.out, /39 of 40 points are the same\npoint 7: \/z: 9 became /);
+  const start = await verify(swept.replace(/"cycles":\d+/, '"cycles":1'));
+  assert.equal(start.code, 1);
+  assert.match(start.out, /40 of 40 points are the same\nstart: \/cycles: 1\.0 became 10400\.0/);
   await service.stop();
 });
 
@@ -548,7 +551,7 @@ test("an existing file is not overwritten; --resume completes one that was cut a
   assert.equal((await resume("whole.ndjson", sweep.replace("60", "61"))).code, 1);
 });
 
-test("basins are completed from lines of any runs: one that was cut, or all shards in one file", async () => {
+test("basins are verified, and completed from lines of any runs: one that was cut, or all shards in one file", async () => {
   const input = JSON.stringify({
     base: {damping: "closed_form", b: 0.0065, y0: 0},
     box: {x0: [-0.003, 0.003], y_dot0: [-0.02, 0.02]},
@@ -559,6 +562,10 @@ test("basins are completed from lines of any runs: one that was cut, or all shar
   const basins = (name, ...more) => run(["basins", "-o", at(name), ...more], {input});
   const whole = (await run(["basins"], {input})).out;
   const lines = whole.trim().split("\n");
+  assert.equal((await verify(whole)).code, 0);
+  const altered = await verify(whole.replace(/"boundary_entropy":\{"value":/, "$&9"));
+  assert.equal(altered.code, 1);
+  assert.match(altered.out, /400 of 400 points are the same\ndone: \/basins\/0\/boundary_entropy/);
   assert.equal((await basins("basins.ndjson")).code, 0);
   assert.equal(await readFile(at("basins.ndjson"), "utf8"), whole);
   assert.match((await basins("basins.ndjson")).errors, /--resume completes it/);

@@ -149,11 +149,17 @@ function a_design_has_the_best_absorber_and_its_alternatives()
   assert(done.tuned_mass_damper.x_max < done.best.x_max);
 end
 
+function a_manifold_recommends_b()
+  answer = vines.manifold('b', 0.02);
+  assert(answer.manifold.recommended.b > 0);
+end
+
 function basins_have_points_and_a_result()
   base = struct('b', 0.0065, 'damping', 'closed_form', 'y0', 0);
   box = struct('x0', [-0.003 0.003], 'y_dot0', [-0.02 0.02]);
   [points, result] = vines.basins('base', base, 'box', box, 'count', 60, 'pairs', 0);
-  assert(numel(points) == 60 && numel(result.attractors) == 2);
+  same([points.index], 0:59);
+  assert(numel(result.attractors) == 2);
   same(sort({result.attractors.attractor}), unique({points.attractor}));
   same(result.attractors(1).mirror, result.attractors(2).attractor);
 end
@@ -261,6 +267,22 @@ function service_and_program_give_the_same_numbers()
   same(answers{:});
 end
 
+function a_design_that_ends_early_is_incomplete()
+  path = fullfile(getenv('TEST_FOLDER'), 'stopped');
+  file = fopen(path, 'w');
+  fprintf(file, ['#!/bin/sh\ncat >/dev/null\necho ''{"type":"start"}''\n', ...
+                 'echo ''{"type":"done","complete":false}''\necho "vines: stopped" >&2\nexit 3\n']);
+  fclose(file);
+  system(['chmod +x ', path]);
+  program = getenv('VINES_PROGRAM');
+  use_program(path);
+  message = refused('vines:incomplete', @() vines.design('f', [7 9]));
+  setenv('VINES_PROGRAM', program);
+  same(message, 'stopped; received 0 points');
+  problem = vines.problem();
+  same(problem.status, 0);
+end
+
 function a_deadline_is_reported()
   use_locked_service(getenv('TEST_KEY'));
   warning('error', 'vines:partialAnswer', 'local');
@@ -340,6 +362,9 @@ both = {'a_run_has_lists_as_columns_and_parts_as_structs', ...
         'points_with_different_keys_form_one_array', ...
         'an_invalid_sweep_raises', ...
         'a_continuation_has_points_special_points_and_branches', ...
+        'a_design_has_the_best_absorber_and_its_alternatives', ...
+        'basins_have_points_and_a_result', ...
+        'a_manifold_recommends_b', ...
         'an_error_in_the_callback_stops_the_computation', ...
         'an_interrupted_sweep_keeps_the_received_points', ...
         'a_file_and_its_columns_give_the_same_identification', ...
@@ -348,6 +373,7 @@ both = {'a_run_has_lists_as_columns_and_parts_as_structs', ...
         'a_file_can_have_any_name_and_must_exist', ...
         'no_temporary_files_remain'};
 one = {'service_and_program_give_the_same_numbers', ...
+       'a_design_that_ends_early_is_incomplete', ...
        'a_deadline_is_reported', ...
        'the_key_is_sent_if_there_is_one', ...
        'key_and_request_do_not_appear_in_the_process_list', ...

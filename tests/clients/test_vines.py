@@ -222,6 +222,12 @@ class Continuations(WithBothClients):
             self.assertEqual(caught.exception.errors[0].field, "parameter")
 
 
+class Manifolds(WithBothClients):
+    def test_a_manifold_recommends_b(self):
+        for client in self.each():
+            self.assertGreater(client.manifold(b=0.02).manifold.recommended.b, 0)
+
+
 class Designs(WithBothClients):
     FIELDS = {
         "base": {"m1": 2, "f0": 8, "damping_ratio": 0.01, "m2": 0.04},

@@ -1,4 +1,4 @@
-// Times of the service, alone on its machine. LONG=1: durations that an operator would try once.
+// Times of the service. LONG=1: durations that an operator would try once.
 import assert from "node:assert/strict";
 import {execFile} from "node:child_process";
 import {test} from "node:test";

@@ -240,6 +240,22 @@ test("the list is edited by keyboard and plot; a removed impact makes its neighb
   await page.close();
 });
 
+test("impacts added before the first identification stay where the oscillator changes", async () => {
+  const page = await visit("?tab=measurement&preset=fig15&m1=0");
+  await page.setInputFiles("#measure-file", asFile(await regular()));
+  await page.waitForSelector("#measure-message.fault");
+  await page.fill("#measure-add input", "0.5");
+  await page.keyboard.press("Enter");
+  await page.fill("#measure-fields [aria-describedby='measure-error-m1']", "4");
+  await page.keyboard.press("Tab");
+  assert.deepEqual(
+    (await rows(page)).map((row) => row[5]),
+    ["added"],
+  );
+  browser.complaints.splice(0); // the error's status
+  await page.close();
+});
+
 test("without an acceleration the impacts are found at kinks of the displacement", async () => {
   const page = await identify(await regular(), "&preset=fig15");
   const times = (await rows(page)).map((row) => Number(row[1])).filter((t) => t < 2.4);

@@ -891,6 +891,25 @@ test("the details hold all numbers and plots, are requested when opened, and fol
   await page.close();
 });
 
+test("the details are marked while they show the numbers of an earlier run", async () => {
+  const page = await still("?b=0.015&tau_end=300");
+  await unfoldDetails(page);
+  assert.equal(await page.isVisible("#details.stale"), false);
+  await page.route("**/v1/simulate", (route) =>
+    route.request().postDataJSON().include.includes("section")
+      ? route.fulfill({status: 500, json: {title: "broken"}})
+      : route.continue(),
+  );
+  await turn(page, "b", 20);
+  await page.waitForSelector("#details.stale");
+  assert.match(await page.textContent("#message"), /are missing: broken/);
+  await page.unroute("**/v1/simulate");
+  await after(page, () => turn(page, "b", 15));
+  await page.waitForSelector("#details:not(.stale)");
+  assert.match(browser.complaints.splice(0).join(), /^[^,]*500[^,]*$/);
+  await page.close();
+});
+
 test("the details of a ball that starts at a wall are complete", async () => {
   const page = await visit("?b=0.022&x0=0&y0=-0.022");
   await page.click("#details > summary");

@@ -157,6 +157,12 @@ test("the keyboard moves between points and simulates one", async () => {
   await page.keyboard.press("Enter");
   await drawn(page, 1);
   assert.match(page.url(), /\?b=0\.0062/);
+  await page.click("#pin");
+  await page.goBack();
+  await page.focus("#sweep-stack");
+  for (const key of ["Home", "Enter"]) await page.keyboard.press(key);
+  await drawn(page, 2);
+  assert.match(page.url(), /\?b=0\.003&.*&pinned=b%3D0\.0062/, "the pinned run stays");
   await page.close();
 });
 
@@ -513,7 +519,7 @@ test("a platform typed over Fig. 3 is simulated in seconds, and its sweep lists 
   assert.equal(middle[0], "28.7");
   // Peak of a chaotic motion: 13.5 to 15.2 mm for neighbouring starts.
   assert.ok(Math.abs(Number(wall[0]) - 14.4) < 1.2, `${wall[0]} mm from the wall`);
-  assert.equal(middle[2], "no impacts, or no forcing");
+  assert.equal(middle[2], "no impacts, or no harmonic forcing");
   assert.deepEqual(browser.complaints, []);
   await page.close();
 });

@@ -60,8 +60,7 @@ export class MeasurementTab extends RequestTab {
       if (isColumn(name)) input.setAttribute("list", "measure-columns");
     this.list = new ImpactList(() => {
       for (const id of ["measure-again", "measure-reset"]) $(id).disabled = !this.list.edited;
-      const addAt = (...clicked) => this.addAt(...clicked);
-      views.drawRecord(this.record, this.list.rows, this.answer, addAt);
+      views.drawRecord(this.record, this.list.rows, this.answer, (...at) => this.addAt(...at));
     });
     this.presets = Object.fromEntries(presets.map(({name, ...preset}) => [name, preset]));
     this.listen();
@@ -73,7 +72,8 @@ export class MeasurementTab extends RequestTab {
     $("measure-fields").onchange = ({target}) => {
       this.remember();
       if (this.parsed && target.list) this.useColumns();
-      else if (this.parsed && !this.answer) this.drawFile(this.form.values());
+      else if (this.parsed && !this.answer && $("measure-group-record").contains(target))
+        this.drawFile(this.form.values());
     };
     $("measure-samples").onclick = ({target: {value}}) =>
       value && this.read(() => this.sample(value));
@@ -283,7 +283,5 @@ export class MeasurementTab extends RequestTab {
     return fileOf(await simulate(fields), `sample-${name}.csv`);
   }
 
-  redraw() {
-    views.redraw();
-  }
+  redraw = views.redraw;
 }

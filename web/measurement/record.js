@@ -242,11 +242,10 @@ export const keep = (file) =>
 /** The kept file if the page was reloaded, else undefined. */
 export async function afterReload() {
   const [navigation] = performance.getEntriesByType("navigation");
-  return navigation?.type === "reload"
-    ? nextTask()
-        .then(() => get(keptName))
-        .catch(() => undefined)
-    : undefined;
+  if (navigation?.type !== "reload") return undefined;
+  return nextTask()
+    .then(() => get(keptName))
+    .catch(() => undefined);
 }
 
 const samplesPerCycle = 245; // about 2 kHz at 8.35 Hz, the forcing of Li et al. (2018)

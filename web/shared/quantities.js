@@ -8,7 +8,7 @@ export const regimes = {
   III: "two symmetric",
   II: "strongly modulated",
   I: "sparse, irregular",
-  none: "no impacts, or no forcing",
+  none: "no impacts, or no harmonic forcing",
 };
 export const regimeColour = (regime) => `regime-${regime}`;
 export const verdicts = {chaotic: "chaotic", regular: "regular", not_decided: "not decided"};

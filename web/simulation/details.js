@@ -22,7 +22,10 @@ let fieldOf;
 export const wanted = () =>
   details.open ? {...(!run.answer.series && {perturbation}), ...parts} : null;
 
-export const busy = (is) => say(is && details.open ? "computing …" : "");
+export function busy(is) {
+  say(is && details.open ? "computing …" : "");
+  details.classList.toggle("stale", details.open && !run.deferred?.section);
+}
 
 /** Shows the deferred answer of the run if it has what the open details need. */
 export function show() {
@@ -128,8 +131,7 @@ function windowTitle({window, impacts}, {at}, requested) {
 function summarise(answer, units) {
   const {exponents, regime, energy, impacts, sticking, parameters} = answer;
   const {qr, sum_rule_residual: residual} = exponents;
-  const undefinedAfter = residual == null && qr && exponents.impacts > 1;
-  const noResidual = undefinedAfter ? "undefined after sticking" : "";
+  const noResidual = residual == null && qr && exponents.impacts > 1 && "unknown: rounding";
   const {amplitude: free} = energy.without_absorber;
   // Exponents are per unit of tau, even if times are in seconds.
   const perTime = units.time.unit ? " per unit of τ" : "";

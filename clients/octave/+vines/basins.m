@@ -11,11 +11,6 @@ function [points, result] = basins(varargin)
   %
   % POINTS is an array of structs, one for each start in the order of its index; RESULT has the
   % arrays ATTRACTORS, the motions with their basins, and BASINS, the statistics of the boundaries.
-  %
-  % Errors: those of vines.simulate, and vines:incomplete if the computation ended early.
-  given = vines.internal.fields(varargin);
-  request = struct('route', 'basins', 'body', vines.internal.json(given));
-  lines = vines.internal.completed_lines(request);
-  points = vines.internal.of_type(lines, 'point');
-  result = lines{end};
+  % A function as first argument and errors: as those of vines.sweep.
+  [points, ~, result] = vines.internal.points_of('basins', varargin);
 end

@@ -10,12 +10,6 @@ function done = design(varargin)
   % Errors: those of vines.simulate, and vines:incomplete if the computation ended early.
   given = vines.internal.fields(varargin);
   request = struct('route', 'design', 'body', vines.internal.json(given));
-  [lines, outcome] = vines.internal.received_lines(request);
+  lines = vines.internal.completed_lines(request);
   done = lines{end};
-  if ~strcmp(done.type, 'done') || ~done.complete
-    if strcmp(done.type, 'error')
-      outcome.message = done.detail;
-    end
-    vines.internal.raise('incomplete', outcome, outcome.message, struct());
-  end
 end

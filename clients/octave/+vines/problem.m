@@ -1,7 +1,7 @@
 function result = problem(latest)
   % PROBLEM = vines.problem()
   %
-  % Details of the latest failed request:
+  % Details of the latest vines:problem, vines:incomplete or vines:connection:
   %
   %   try
   %     vines.simulate('b', -1);

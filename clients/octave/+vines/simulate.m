@@ -5,7 +5,7 @@ function answer = simulate(varargin)
   % Simulates one run. For the fields, in pairs or in a struct, see docs/api.md:
   %
   %   run = vines.simulate('preset', 'fig11', 'include', {'impacts', 'regime'});
-  %   plot(run.impacts.tau, run.impacts.R)
+  %   plot(run.impacts.tau, run.impacts.relative_speed)
   %
   % ANSWER is a struct with the keys of docs/api.md. Null is NaN; lists of numbers are columns. A
   % run that ends early (answer.status.reason is not 'tau_end') issues the warning

@@ -21,19 +21,5 @@ function [points, info] = sweep(varargin)
   %
   % Errors: those of vines.simulate, and vines:incomplete if points are missing. vines.problem()
   % then has the received ones in points, and missing: request the rest with 'indices', missing.
-  each = [];
-  if nargin > 0 && isa(varargin{1}, 'function_handle')
-    each = varargin{1};
-    varargin(1) = [];
-  end
-  given = vines.internal.fields(varargin);
-  indices = [];
-  if isfield(given, 'indices')
-    indices = given.indices;
-    if iscell(indices)
-      indices = cell2mat(indices);
-    end
-  end
-  request = struct('route', 'sweep', 'body', vines.internal.json(given));
-  [points, info] = vines.internal.follow_sweep(request, each, indices(:)');
+  [points, info] = vines.internal.points_of('sweep', varargin);
 end

@@ -37,14 +37,18 @@ from ._fields import (
     BasinsFields,
     ContinueFields,
     DesignFields,
-    IdentifyFields,
-    Perturbation,
+    Distribution,
     Forcing,
+    IdentifyFields,
+    ManifoldFields,
+    Perturbation,
     RestitutionTable,
     SimulateFields,
     Start,
+    StartBox,
     SweepBase,
     SweepFields,
+    Tolerances,
 )
 from ._problem import FieldError, Incomplete, PartialAnswer, Problem
 from ._program import Program
@@ -57,31 +61,36 @@ if TYPE_CHECKING:
 __all__ = [
     "Answer",
     "Axis",
-    "Client",
     "BasinsFields",
+    "Client",
     "Continuation",
     "ContinueFields",
     "DesignFields",
+    "Distribution",
     "FieldError",
+    "Forcing",
     "IdentifyFields",
     "Incomplete",
+    "ManifoldFields",
     "PartialAnswer",
     "Perturbation",
     "Problem",
     "Program",
-    "Forcing",
     "RestitutionTable",
     "Service",
     "SimulateFields",
     "Start",
+    "StartBox",
     "Sweep",
     "SweepBase",
     "SweepFields",
-    "client",
+    "Tolerances",
     "basins",
+    "client",
     "continue_",
     "design",
     "identify",
+    "manifold",
     "simulate",
     "sweep",
 ]
@@ -99,6 +108,11 @@ def client() -> Client:
 def simulate(**fields: Unpack[SimulateFields]) -> Answer:
     """`Client.simulate` of the client chosen by the environment."""
     return client().simulate(**fields)
+
+
+def manifold(**fields: Unpack[ManifoldFields]) -> Answer:
+    """`Client.manifold` of the client chosen by the environment."""
+    return client().manifold(**fields)
 
 
 def sweep(**fields: Unpack[SweepFields]) -> Sweep:

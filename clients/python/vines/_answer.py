@@ -30,8 +30,8 @@ class Answer:
     elsewhere None. Four exponents over time are an n x 4 array, matrices n x 4 x 4.
 
     Lengths are in m, ``tau`` is time over 1/omega0 (dimensionless), velocities are in m per unit of
-    tau, accelerations in m per unit of tau squared. For a system given in SI units the answer also
-    has their SI counterparts in s, m/s, m/s^2, N s or J. docs/api.md lists each key with its unit.
+    tau, accelerations in m per unit of tau squared. With a system in SI most of them
+    also have an SI counterpart in s, m/s, m/s^2, N s or J. docs/api.md lists each key with its unit.
     """
 
     __slots__ = ("_members", "_text")

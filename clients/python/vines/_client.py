@@ -1,4 +1,4 @@
-"""The five requests, independent of how they are sent."""
+"""The requests, independent of how they are sent."""
 
 from __future__ import annotations
 
@@ -18,6 +18,7 @@ from ._fields import (
     ContinueFields,
     DesignFields,
     IdentifyFields,
+    ManifoldFields,
     SimulateFields,
     SweepFields,
 )
@@ -40,11 +41,16 @@ class Client(ABC):
         ``interrupted`` instead of ``tau_end``, and the warning `PartialAnswer` is issued. Raises
         `Problem`.
         """
-        answer = answer_of(self._simulate(body_of(_named(fields))))
+        answer = answer_of(self._answer("simulate", body_of(_named(fields))))
         if answer.status.reason != "tau_end":
             message = f"{answer.status.reason}: {answer.status.message}"
             warnings.warn(message, PartialAnswer, stacklevel=_caller())
         return answer
+
+    def manifold(self, **fields: Unpack[ManifoldFields]) -> Answer:
+        """Returns the slow invariant manifold and a recommended b. `ManifoldFields` lists the
+        fields. Raises `Problem`."""
+        return answer_of(self._answer("manifold", body_of(_named(fields))))
 
     def sweep(self, **fields: Unpack[SweepFields]) -> Sweep:
         """Simulates runs over one to three parameters; returns an iterator of points. `SweepFields`
@@ -73,7 +79,7 @@ class Client(ABC):
 
     def design(self, **fields: Unpack[DesignFields]) -> Answer:
         """Searches the best absorber over a band; returns the last line, whose ``best`` is the
-        result. `DesignFields` lists the fields. Raises `Problem` at once for an invalid request,
+        result; the others are not kept. `DesignFields` lists the fields. Raises `Problem` at once for an invalid request,
         and `Incomplete` if the computation ends early."""
         lines = self._lines("design", body_of(_named(fields)))
         for line in lines:
@@ -110,13 +116,10 @@ class Client(ABC):
             given["record"] = record
         if impacts is not None:
             given["impacts"] = impacts
-        return answer_of(self._identify(body_of(given)))
+        return answer_of(self._answer("identify", body_of(given)))
 
     @abstractmethod
-    def _simulate(self, body: bytes) -> bytes: ...
-
-    @abstractmethod
-    def _identify(self, body: bytes) -> bytes: ...
+    def _answer(self, verb: str, body: bytes) -> bytes: ...
 
     @abstractmethod
     def _identify_file(self, record: bytes, query: str) -> bytes: ...

@@ -224,7 +224,7 @@ SweepBase = TypedDict(
 )
 SweepBase.__doc__ = """Keys of the object:
 
-preset: figure or table of the paper (GET /v1/presets); each other field that is given
+preset: figure or table of the paper, or machine (GET /v1/presets); each other given field
     replaces one value of the preset; default: none
 b: clearance: half-width of the cavity in which the ball moves (m, b); 1e-09 to 1000;
     default: 0.022
@@ -348,7 +348,7 @@ y_velocity0: y_dot0 in m/s, for a system in SI (m/s, dy/dt(0)); default: from y_
 class SimulateFields(TypedDict, total=False):
     """Fields of a simulation.
 
-    preset: figure or table of the paper (GET /v1/presets); each other field that is given
+    preset: figure or table of the paper, or machine (GET /v1/presets); each other given field
         replaces one value of the preset; default: none
     b: clearance: half-width of the cavity in which the ball moves (m, b); 1e-09 to 1000;
         default: 0.022
@@ -416,8 +416,8 @@ class SimulateFields(TypedDict, total=False):
         0
     y_velocity0: y_dot0 in m/s, for a system in SI (m/s, dy/dt(0)); default: from y_dot0; -1e+09
         to 1e+09
-    tau_end: length of the run; not together with cycles (dimensionless, tau); 1e-06 to 1e+07;
-        default: 1709
+    tau_end: length of the run; with a load by default the load's; not together with cycles
+        (dimensionless, tau); 1e-06 to 1e+07; default: 1709
     cycles: length of the run in forcing cycles of 2 pi/Omega (dimensionless); default: from
         tau_end; 1e-06 to 1e+06
     window: interval for exponents, regime, energy, section, eigenvalues, matrices and manifold;
@@ -494,6 +494,83 @@ class SimulateFields(TypedDict, total=False):
     max_impacts: int
     fields: Iterable[str]
 
+class ManifoldFields(TypedDict, total=False):
+    """Fields of a manifold.
+
+    preset: figure or table of the paper, or machine (GET /v1/presets); each other given field
+        replaces one value of the preset; default: none
+    b: clearance: half-width of the cavity in which the ball moves (m, b); 1e-09 to 1000;
+        default: 0.022
+    R: restitution coefficient of both walls; not together with R_plus or R_minus
+        (dimensionless, R); 0 to 1; default: 0.6
+    R_plus: restitution coefficient of the wall at x - y = +b (dimensionless, R+); default: R; 0
+        to 1
+    R_minus: restitution coefficient of the wall at x - y = -b (dimensionless, R-); default: R;
+        0 to 1
+    damping: equation_of_motion: zeta = epsilon lambda/2, eqs. (1), (6), (17), the physical
+        damper c1; closed_form: zeta = epsilon lambda, eqs. (8)-(11), (19), (20), used for the
+        numbers in the paper; default: "equation_of_motion"
+    epsilon: mass ratio m2/m1 (dimensionless, epsilon); default: from the SI fields if any is
+        given; 1e-09 to 10; default: 0.008405568689256633
+    lambda_: damping c1/(m2 omega0) (dimensionless, lambda); default: from the SI fields if any
+        is given; 0 to 1e+09; default: 1.427383130909598
+    G: amplitude of the base over epsilon (m, G); default: from the SI fields if any is given; 0
+        to 1000; default: 0.02
+    Omega: forcing frequency over omega0 (dimensionless, Omega); default: from the SI fields if
+        any is given; 0.001 to 100; default: 1.0
+    m1: mass of the linear oscillator; SI and reduced fields exclude each other (kg, m1);
+        default: none: give all SI fields, or a preset for the rest; 1e-09 to 1e+09
+    f0: natural frequency of the oscillator, sqrt(k1/m1)/(2 pi), instead of k1 (Hz, f0);
+        default: from k1; 1e-09 to 1e+09
+    k1: stiffness of the oscillator (N/m, k1); default: none: give all SI fields, or a preset
+        for the rest; 1e-09 to 1e+15
+    damping_ratio: damping ratio of the oscillator, instead of c1 (dimensionless, c1/(2 m1
+        omega0)); default: from c1; 0 to 10
+    c1: damping of the oscillator (N s/m, c1); default: none: give all SI fields, or a preset
+        for the rest; 0 to 1e+12
+    mass_ratio: mass ratio m2/m1, instead of m2 (dimensionless, m2/m1); default: from m2; 1e-09
+        to 10
+    m2: mass of the ball (kg, m2); default: none: give all SI fields, or a preset for the rest;
+        1e-12 to 1e+09
+    F: amplitude of the base, which moves by F sin(2 pi f t) (m, F); default: none: give all SI
+        fields, or a preset for the rest; 0 to 1000
+    acceleration: amplitude of the base's acceleration, instead of F (m/s^2); default: from F; 0
+        to 1e+09
+    f: forcing frequency (Hz, f); default: none: give all SI fields, or a preset for the rest;
+        1e-09 to 1e+09
+    V_max: largest speed of the ball on the branch beyond the symmetry breaking; the branch ends
+        earlier if the motion does (m per unit of tau, V); default: twice the speed at the
+        symmetry breaking; 1e-12 to 1e+06
+    points: points on each branch; 2 to 100000; default: 200
+    fields: keys to keep in the response: names, or paths with dots as in impacts.tau; version,
+        status, warnings and provenance are always kept. Other keys are not computed, unless
+        include requests them; default: everything
+    """
+
+    preset: str
+    b: float
+    R: float
+    R_plus: float
+    R_minus: float
+    damping: Literal["equation_of_motion", "closed_form"]
+    epsilon: float
+    lambda_: float
+    G: float
+    Omega: float
+    m1: float
+    f0: float
+    k1: float
+    damping_ratio: float
+    c1: float
+    mass_ratio: float
+    m2: float
+    F: float
+    acceleration: float
+    f: float
+    V_max: float
+    points: int
+    fields: Iterable[str]
+
 class SweepFields(TypedDict, total=False):
     """Fields of a sweep.
 
@@ -513,8 +590,8 @@ class SweepFields(TypedDict, total=False):
         exponents, to find out whether a periodic orbit captures it (dimensionless); 0 to 1e+06;
         default: 0
     carry_state: none: each point starts from the initial state of base; up, down: from the
-        final state of its predecessor in ascending or descending order of the values on the
-        first axis; default: "none"
+        final state of its predecessor in the order of the entries, or its reverse, on the first
+        axis or that of reduce; default: "none"
     section: points for a bifurcation diagram: at impact or at whole forcing cycles; default:
         "none"
     section_points: largest number of section points of each sweep point; the last ones are kept
@@ -549,7 +626,8 @@ class SweepFields(TypedDict, total=False):
 class BasinsFields(TypedDict, total=False):
     """Fields of basins.
 
-    base: fields of /v1/simulate: system, reduced or SI, start, preset, max_impacts; default: {}
+    base: fields of /v1/simulate: system, reduced or SI, laws, start, preset, max_impacts;
+        default: {}
     box: ranges of the starts; those outside the cavity are skipped; default: required
     count: number of starts, at each value of the axis; 2 to 1e+06; default: 2000
     seed: shifts the sequence of starts; equal seeds give equal starts; 0 to 1e+09; default: 1
@@ -582,7 +660,7 @@ class BasinsFields(TypedDict, total=False):
 class ContinueFields(TypedDict, total=False):
     """Fields of a continuation.
 
-    base: fields of /v1/simulate: system, reduced or SI, start, preset; it also sets the
+    base: fields of /v1/simulate: system, reduced or SI, laws, start, preset; it also sets the
         parameter's value at which the continuation starts; default: {}
     parameter: name of a numeric parameter of the system, dimensionless or SI; default: required
     from_: one end of the parameter's range; default: required; -1e+300 to 1e+300
@@ -628,8 +706,8 @@ class ContinueFields(TypedDict, total=False):
 class DesignFields(TypedDict, total=False):
     """Fields of a design.
 
-    base: the host in SI: m1, k1 or f0, c1 or damping_ratio, m2 or mass_ratio, damping; without
-        f, F, b and R; default: required
+    base: the host: m1, k1 or f0, c1 or damping_ratio, m2 or mass_ratio, or epsilon and lambda;
+        damping; without f, F, b and R; default: required
     f: band of the forcing, or one frequency (Hz); default: required, or forcing or
         initial_velocity
     acceleration: amplitude of the base's acceleration, constant over the band; a range stands
@@ -687,7 +765,7 @@ class DesignFields(TypedDict, total=False):
 class IdentifyFields(TypedDict, total=False):
     """Fields of an identification.
 
-    preset: figure or table of the paper (GET /v1/presets); each other field that is given
+    preset: figure or table of the paper, or machine (GET /v1/presets); each other given field
         replaces one value of the preset; default: none
     b: clearance: half-width of the cavity in which the ball moves (m, b); 1e-09 to 1000;
         default: 0.022
@@ -704,8 +782,8 @@ class IdentifyFields(TypedDict, total=False):
         given; 1e-09 to 10; default: 0.008405568689256633
     lambda_: damping c1/(m2 omega0) (dimensionless, lambda); default: from the SI fields if any
         is given; 0 to 1e+09; default: 1.427383130909598
-    G: amplitude of the base over epsilon; fitted if there is a record (m, G); default: from the
-        SI fields if any is given; 0 to 1000; default: 0.02
+    G: amplitude of the base over epsilon; fitted unless impacts have a phase (m, G); default:
+        from the SI fields if any is given; 0 to 1000; default: 0.02
     Omega: forcing frequency over omega0 (dimensionless, Omega); default: from the SI fields if
         any is given; 0.001 to 100; default: 1.0
     m1: mass of the linear oscillator; SI and reduced fields exclude each other (kg, m1);
@@ -723,8 +801,8 @@ class IdentifyFields(TypedDict, total=False):
         to 10
     m2: mass of the ball (kg, m2); default: none: give all SI fields, or a preset for the rest;
         1e-12 to 1e+09
-    F: amplitude of the base, which moves by F sin(2 pi f t); fitted if there is a record (m,
-        F); default: none: give all SI fields, or a preset for the rest; 0 to 1000
+    F: amplitude of the base, which moves by F sin(2 pi f t); fitted unless impacts have a phase
+        (m, F); default: none: give all SI fields, or a preset for the rest; 0 to 1000
     acceleration: amplitude of the base's acceleration, instead of F (m/s^2); default: from F; 0
         to 1e+09
     f: forcing frequency (Hz, f); default: none: give all SI fields, or a preset for the rest;

@@ -58,8 +58,8 @@ class Problem(Exception):
 
 
 class Incomplete(Problem):
-    """A sweep with missing points. The received ones are valid; request the others with
-    ``indices=sweep.missing``."""
+    """A computation that ended early. What was received is valid; of a sweep or of basins request
+    the rest with ``indices=sweep.missing``."""
 
 
 class PartialAnswer(UserWarning):

@@ -40,16 +40,13 @@ class Program(Client):
     def __repr__(self) -> str:
         return f"Program({self._path!r})"
 
-    def _simulate(self, body: bytes) -> bytes:
-        return self._answer(["simulate"], body)
-
-    def _identify(self, body: bytes) -> bytes:
-        return self._answer(["identify"], body)
+    def _answer(self, verb: str, body: bytes) -> bytes:
+        return self._run([verb], body)
 
     def _identify_file(self, record: bytes, query: str) -> bytes:
-        return self._answer(["identify", "-q", query], record)
+        return self._run(["identify", "-q", query], record)
 
-    def _answer(self, arguments: list[str], given: bytes) -> bytes:
+    def _run(self, arguments: list[str], given: bytes) -> bytes:
         ended = subprocess.run([self._found(), *arguments], input=given, capture_output=True)
         if ended.returncode in (_COMPLETE, _USABLE) and ended.stdout:
             return ended.stdout

@@ -34,14 +34,11 @@ class Service(Client):
     def __repr__(self) -> str:
         return f"Service({self._url!r})"  # without the key, which must not get into logs
 
-    def _simulate(self, body: bytes) -> bytes:
-        return self._answer("/v1/simulate", body)
-
-    def _identify(self, body: bytes) -> bytes:
-        return self._answer("/v1/identify", body)
+    def _answer(self, verb: str, body: bytes) -> bytes:
+        return self._read(f"/v1/{verb}", body)
 
     def _identify_file(self, record: bytes, query: str) -> bytes:
-        return self._answer(f"/v1/identify?{query}", record, "text/csv")
+        return self._read(f"/v1/identify?{query}", record, "text/csv")
 
     def _lines(self, verb: str, body: bytes) -> Lines:
         with self._post(f"/v1/{verb}", body) as response:
@@ -52,7 +49,7 @@ class Service(Client):
                 raise Incomplete(0, f"the stream was interrupted: {broken!r}") from broken
         yield {"type": "error", "status": 0, "detail": "the stream ended early"}
 
-    def _answer(self, target: str, body: bytes, kind: str = "application/json") -> bytes:
+    def _read(self, target: str, body: bytes, kind: str = "application/json") -> bytes:
         with self._post(target, body, kind) as response:
             try:
                 return response.read()

@@ -176,12 +176,12 @@ void order(Report& report, const Rows& rows) {
         by_closed_form);
 }
 
-/// Mean duration of the synchronised stretches.
+/// Mean duration of the synchronised stretches; 0 without one.
 double mean_synchronised_duration(const Regime& regime) {
     double time = 0, stretches = 0;
     for (const SynchronyStretch& s : regime.stretches)
         if (s.synchronised) time += s.tau_end - s.tau_start, ++stretches;
-    return time / stretches;
+    return stretches > 0 ? time / stretches : 0;
 }
 
 /// "When z is closer to two, the duration of synchronized parts becomes longer"; "with the increase

@@ -44,8 +44,7 @@ void add_identification(Json& schemas) {
           "Lyapunov exponents of the sequence of impacts"},
          {"slope", object_of(values_of(properties::slope)), "growth of lambda1(tau) tau"},
          {"verdict", verdict,
-          "chaotic, regular, not_decided; null if the impacts die out because there is no "
-          "forcing"},
+          "chaotic, regular, not_decided; null if the impacts die out because there is no forcing"},
          {"verdict_reason", word, "reason for the verdict, a sentence"}});
     const Json forcing = object_of(
         {{"f", number, "forcing frequency in that channel, Hz"},

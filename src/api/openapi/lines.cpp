@@ -105,7 +105,7 @@ Keys objective_keys(const Schema& value, const std::string& description) {
 Keys largest_over_band() {
     return objective_keys(
         number_or_null,
-        "largest value over the band, m, m/s, m/s^2 or s; null if a motion has too many impacts");
+        "largest value (or mean) over the band, m, m/s, m/s^2 or s; null with too many impacts");
 }
 
 Keys absorber_keys() {
@@ -246,8 +246,8 @@ void add_sweep_lines(Json& schemas) {
     schemas["SweepError"] = line_of(
         "error",
         {{"status", Json{{"type", "integer"}, {"enum", {500, 503}}},
-          "503: the server is stopping, or the sweep reached its time limit: request the missing "
-          "indices again; 500: the server failed"},
+          "503: the server is stopping, the sweep reached its time limit, or another client took "
+          "its place: request the missing indices again; 500: the server failed"},
          {"detail", word, "reason, a sentence"},
          {"points", whole, "lines sent"}});
 }
@@ -380,7 +380,7 @@ void add_design_lines(Json& schemas) {
           "smallest amplitude with at least half of the reduction at the largest one"},
          {"works_to?", number, "largest such amplitude, as far as tried"},
          {"activation?", number_or_null,
-          "amplitude at which the host reaches the manifold's fold; null for R = 1"}});
+          "amplitude at which the host reaches the manifold's fold; null without one, or a band"}});
     const Json columns = list_of(number_or_null);
     Keys of_starts;
     for (const Key& objective : objective_keys(columns, ""))

@@ -79,7 +79,7 @@ constexpr Operation operations[] = {
      "The model and its symbols, and every field: type, unit, range, default, meaning.",
      Response::json, "Parameters"},
     {"/v1/presets", "presets", "service", "Presets",
-     "One preset for each figure and table of the paper, and machines under other loads.",
+     "Presets of the paper's figures and tables, and of machines under other laws and loads.",
      Response::json, "Presets"},
     {"/v1/openapi.json", "openapi", "service", "This document",
      "The OpenAPI 3.1 document of this service.", Response::json, "OpenApi"},

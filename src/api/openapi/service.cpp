@@ -50,8 +50,7 @@ constexpr Refusal refusals[] = {
     {500, true, "the server failed; the reason is in its log",
      "the server failed; the reason is in its log"},
     {503, false,
-     "the queue of requests (or sweeps) is full, or the server is stopping: lacking names the "
-     "reason",
+     "a queue is full, memory or threads are taken, or the server stops: lacking names it",
      "the queue for computing is full; try again in a second"},
     {505, true, "HTTP version other than 1.1 and 1.0",
      "this service supports HTTP/1.1 and HTTP/1.0"},
@@ -142,7 +141,7 @@ void add_service(Json& schemas) {
     schemas["Presets"] = object_of(
         {{"citation", word, "citation of the paper"},
          {"doi", word, "DOI of the paper"},
-         {"presets", list_of(preset), "one preset for each figure and table"}});
+         {"presets", list_of(preset), "presets of the paper's figures and tables, and machines"}});
     schemas["Version"] = object_of(
         {{"name", constant("vines"), "name of the program"},
          {"version", word, "version of the release"},

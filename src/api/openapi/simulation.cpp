@@ -115,8 +115,7 @@ Json capture() {
          {"chaotic_before", or_null(flag),
           "true if chaos before the capture is shown, otherwise null"},
          {"exponents_before", object_of(values_of(properties::final_exponents)),
-          "exponents of the run before the capture, or of the whole run if that comes later, by "
-          "qr"},
+          "exponents by qr of the run before the capture, or of the whole run if that is later"},
          {"exponents_after", object_of(values_of(properties::final_exponents)),
           "exponents of the orbit, from its multipliers"}});
 }
@@ -244,8 +243,8 @@ void add_parts(Json& schemas) {
              "field perturbation")});
     schemas["RunStatus"] = object_of(
         {{"reason", one_of({"tau_end", "max_impacts", "deadline"}),
-          "tau_end, max_impacts, deadline (the time limit of the server for one request), or on "
-          "the command line interrupted"},
+          "tau_end, max_impacts, deadline (the server's time limit for one request, or others wait "
+          "for its thread), or on the command line interrupted"},
          quantity.tau.with("time at which the run ended"),
          {"message", word, "a sentence"}});
     schemas["Series"] =
@@ -314,8 +313,7 @@ void add_manifolds(Json& schemas) {
           "the b whose worst motion at this F and f has the smallest rms of x; null if no b "
           "reduces the motion, or if the time limit ended the search"},
          {"robust", or_null(recommendation),
-          "the b with the smallest tolerance_ratio; null if it is the recommended one or hardly "
-          "better"}});
+          "the b with the smallest tolerance_ratio; null if recommended is it or hardly worse"}});
     const Keys points = {
         column_of(quantity.tau.with("end of each half cycle")), columns_of(branch_columns)};
     schemas["RunManifold"] = object_of(

@@ -25,7 +25,7 @@ const std::vector<Unit> force_units = {{"N", 1, {"n"}}, {"kN", 1e3, {"kn"}}};
 
 /// Adapts a field of /v1/simulate to a record: some of the system is measured, not given.
 void adapt_to_record(Field& f) {
-    if (f.name == "F" || f.name == "G") f.description += "; fitted if there is a record";
+    if (f.name == "F" || f.name == "G") f.description += "; fitted unless impacts have a phase";
     if (f.name == "R") {
         f.fallback = nullptr;
         f.fallback_note = "estimated for each wall from its impacts";
@@ -53,8 +53,7 @@ FieldTable record_rows() {
          "the values of the other fields, a sensor counts as free of errors"},
         {"fit", choices({"mu", "R_of_speed"}), Json::array(),
          "laws of the ball to fit to the record as well: mu, its friction; R_of_speed, one slope "
-         "of "
-         "R against the relative speed for both walls; the given values are the initial ones"},
+         "of R against the relative speed for both walls; the given values are the initial ones"},
         {"phase", number({-7, 7}, "rad"),
          Note{"fitted; if fixed, the phase of the forcing channel"},
          "phase of the base, which moves by F sin(2 pi f t + phase), t as in the record; used "

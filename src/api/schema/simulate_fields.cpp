@@ -38,7 +38,7 @@ FieldTable system_rows() {
     return {
         // The reader of the request reports an unknown preset with the list of presets.
         {"preset", choice(), none,
-         "figure or table of the paper (GET /v1/presets); each other field that is given "
+         "figure or table of the paper, or machine (GET /v1/presets); each other given field "
          "replaces one value of the preset"},
         {"b", number(core_range("b"), "m", "b"), table_1.b,
          "clearance: half-width of the cavity in which the ball moves"},
@@ -200,7 +200,7 @@ FieldTable run_rows() {
     return {
         // The default is beyond the end of the first window of Table 2.
         {"tau_end", number({1e-6, longest_run}, dimensionless, "tau"), 1709,
-         "length of the run; not together with cycles"},
+         "length of the run; with a load by default the load's; not together with cycles"},
         {"cycles", number({1e-6, 1e6}, dimensionless), Note{"from tau_end"},
          "length of the run in forcing cycles of 2 pi/Omega"},
         {"window", interval({}, dimensionless, "[tau_s, tau_e]"), Note{"the whole run"},

@@ -29,7 +29,7 @@ FieldTable basins_rows() {
     using namespace kinds;
     FieldTable rows = {
         {"base", json_object(), Json::object(),
-         "fields of /v1/simulate: system, reduced or SI, start, preset, max_impacts"},
+         "fields of /v1/simulate: system, reduced or SI, laws, start, preset, max_impacts"},
         {"box", json_object(box_rows()), required,
          "ranges of the starts; those outside the cavity are skipped"},
         {"count", integer({2, 1e6}), 2000, "number of starts, at each value of the axis"},
@@ -96,8 +96,8 @@ const FieldTable& sweep_fields() {
           "to find out whether a periodic orbit captures it"},
          {"carry_state", choice(enum_choices<Carry>()), enum_json(Carry::none),
           "none: each point starts from the initial state of base; up, down: from the final "
-          "state of its predecessor in ascending or descending order of the values on the first "
-          "axis"},
+          "state of its predecessor in the order of the entries, or its reverse, on the first axis "
+          "or that of reduce"},
          {"section", choice(enum_choices<SectionKind>()), enum_json(SectionKind::none),
           "points for a bifurcation diagram: at impact or at whole forcing cycles"},
          {"section_points", integer({1, 100000}, dimensionless), 100,
@@ -169,7 +169,7 @@ const FieldTable& continue_fields() {
     static const FieldTable table = grouped(
         "continue",
         {{"base", json_object(), Json::object(),
-          "fields of /v1/simulate: system, reduced or SI, start, preset; it also sets the "
+          "fields of /v1/simulate: system, reduced or SI, laws, start, preset; it also sets the "
           "parameter's value at which the continuation starts"},
          // The reader of the request checks the name and lists the valid ones.
          {"parameter", choice(), required,
@@ -210,8 +210,8 @@ const FieldTable& design_fields() {
     static const FieldTable table = grouped(
         "design",
         {{"base", json_object(), required,
-          "the host in SI: m1, k1 or f0, c1 or damping_ratio, m2 or mass_ratio, damping; without "
-          "f, F, b and R"},
+          "the host: m1, k1 or f0, c1 or damping_ratio, m2 or mass_ratio, or epsilon and lambda; "
+          "damping; without f, F, b and R"},
          {"f", interval({}, "Hz"), Note{"required, or forcing or initial_velocity"},
           "band of the forcing, or one frequency"},
          {"acceleration", interval({}, "m/s^2"), Note{"required, or F"},

@@ -177,6 +177,12 @@ struct DesignSearch {
         if (plan.amplitude_ratio < 1) all.push_back(plan.amplitude_ratio);
         return all;
     }
+    /// Mean of scale() over the amplitudes.
+    double mean_scale() const {
+        double sum = 0;
+        for (const double a : amplitudes()) sum += scale(a);
+        return sum / static_cast<double>(amplitudes().size());
+    }
     std::vector<double> frequencies(int parts = 1) const {
         std::vector<double> f;
         const int last = plan.f.from < plan.f.to ? parts * std::max(plan.f_count - 1, 1) : 0;
@@ -290,8 +296,9 @@ struct DesignSearch {
         all.push_back(1);
         sort_unique(all);
         const DesignMap m = map({p.b}, all, frequencies(), p.R, si);
+        const double without = d.without.value / (plan.mean ? mean_scale() : 1);
         const auto ratio = [&](double a) {
-            return judged(m, p.b, {a}).objective / scale(a) / d.without.value;
+            return judged(m, p.b, {a}).objective / scale(a) / without;
         };
         const double limit = 0.5 * (1 + ratio(1));
         const auto here = std::ranges::find(all, 1.0);
@@ -395,7 +402,13 @@ std::optional<Design> find_design(
         linear_response_of(plan, plan.objective, [&control] { return control.stop_or_yield(); });
     const auto response = [&](const LinearAbsorber& t) {
         const ComputePermit permit(control);
-        return band_maximum([&](double f) { return linear(t, f); }, plan.f);
+        BandMaximum of_band = band_maximum([&](double f) { return linear(t, f); }, plan.f);
+        if (!plan.mean) return of_band;
+        of_band.value = 0;  // the mean, as judged() has it
+        const std::vector<double> all = search.frequencies(finer);
+        for (const double f : all)
+            of_band.value += search.mean_scale() * linear(t, f) / static_cast<double>(all.size());
+        return of_band;
     };
     Design d{};
     d.with_tuned_mass_damper = d.with_den_hartog = {nan, nan};

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <optional>
 
 #include "core/measurement/measured_load.hpp"
 #include "core/motion/elementary.hpp"
@@ -50,6 +49,15 @@ std::vector<char> mark_held(const std::vector<double>& v, std::vector<char>& bad
     if (equal > coarse_share * samples) return std::vector<char>(v.size(), 0);
     for (std::size_t k = 0; k < v.size(); ++k) bad[k] |= held[k];
     return held;
+}
+
+RepeatedSamples repeated_samples(const MeasuredRecord& r) {
+    RepeatedSamples repeated{
+        std::vector<char>(r.x.size(), 0), std::vector<char>(r.x_ddot.size(), 0), {}};
+    mark_clipped(r.x, repeated.x), mark_clipped(r.x_ddot, repeated.a);
+    mark_held(r.x, repeated.x);
+    repeated.a_held = mark_held(r.x_ddot, repeated.a);
+    return repeated;
 }
 
 /// Cubic at sample k through two neighbours on each side (Lagrange).
@@ -204,10 +212,8 @@ bool overlaps_any(const std::vector<Interval>& gaps, double begin, double end) {
 }
 
 RecordStatistics::RecordStatistics(const MeasuredRecord& r) : step(median(steps_of(r.tau))) {
-    x.bad.assign(r.x.size(), 0), a.bad.assign(r.x_ddot.size(), 0);
-    mark_clipped(r.x, x.bad), mark_clipped(r.x_ddot, a.bad);
-    mark_held(r.x, x.bad);
-    a_held = mark_held(r.x_ddot, a.bad);
+    const RepeatedSamples repeated = r.repeated ? *r.repeated : repeated_samples(r);
+    x.bad = repeated.x, a.bad = repeated.a, a_held = repeated.a_held;
     mark_outliers(r, step, x.bad);
     set_noise(r.tau, r.x, x), set_noise(r.tau, r.x_ddot, a);
 }
@@ -215,6 +221,7 @@ RecordStatistics::RecordStatistics(const MeasuredRecord& r) : step(median(steps_
 std::vector<Hum> remove_hum(
     MeasuredRecord& r, const std::vector<double>& mains, double forcing, const Look& look) {
     std::vector<Hum> found;
+    RepeatedSamples repeated = repeated_samples(r);
     // The given frequency can be wrong.
     const auto own = harmonic_of(r.tau, r.x.empty() ? r.x_ddot : r.x, look);
     const std::array forcings = {forcing, own ? own->omega : forcing};
@@ -224,6 +231,7 @@ std::vector<Hum> remove_hum(
             const std::optional<Hum> hum = remove_line(r.tau, *channel, Omega, forcings, look);
             if (hum) found.push_back({hum->Omega, hum->amplitude, channel == &r.x});
         }
+    if (!found.empty()) r.repeated = std::move(repeated);
     return found;
 }
 

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstddef>
+#include <optional>
 #include <vector>
 
 #include "core/measurement/progress.hpp"
@@ -11,10 +12,19 @@
 
 namespace vines {
 
+/// Marks of clipped and held samples, which repeat a value exactly.
+struct RepeatedSamples {
+    std::vector<char> x, a;
+    /// Samples of the acceleration in which no pulse is visible; a clipped sample still shows one.
+    std::vector<char> a_held;
+};
+
 /// Samples of one or two sensors at common times; the column of a missing sensor is empty. tau =
 /// omega0 t, ascending; x in m, x'' in m per unit of tau squared.
 struct MeasuredRecord {
     std::vector<double> tau, x, x_ddot;
+    /// Set where hum was removed, which changes repeated values.
+    std::optional<RepeatedSamples> repeated = {};
 };
 
 /// Index of the first sample at or after `tau`.
@@ -38,8 +48,7 @@ struct RecordStatistics {
 
     double step;  ///< median time between two samples, in tau; robust against gaps
     SensorStatistics x, a;
-    /// Samples of the acceleration in which no pulse is visible; a clipped sample still shows one.
-    std::vector<char> a_held;
+    std::vector<char> a_held;  ///< as in RepeatedSamples
 };
 
 /// A line of constant frequency near 50 or 60 Hz. Its kinks would be taken for impacts.

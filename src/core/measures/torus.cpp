@@ -6,7 +6,6 @@
 #include "core/measures/golden_section.hpp"
 #include "core/motion/elementary.hpp"
 #include "core/motion/fourier.hpp"
-#include "core/stability/linear.hpp"
 #include "core/stability/orbit.hpp"
 
 namespace vines {

@@ -134,6 +134,31 @@ TEST_CASE("Den Hartog's damper has two equal peaks on an undamped host") {
     CHECK(low == doctest::Approx(1e-3 * std::sqrt(1 + 2 / 0.05)).epsilon(0.01));
 }
 
+TEST_CASE("where the objective is a mean, the alternatives are compared by their means") {
+    DesignPlan plan = machine();
+    plan.mean = true, plan.default_set = false, plan.b_count = 4;
+    const auto designed = [&] {
+        RunControl control;
+        return *find_design(plan, 2, control, [](const DesignPoint&) {});
+    };
+    const Design d = designed();
+    const auto mean = [&](const LinearAbsorber& t) {
+        double sum = 0;
+        for (int k = 0; k < 17; ++k)
+            sum += linear_response(plan.host, t, Objective::x_max, 7 + k / 8.0);
+        return sum / 17;
+    };
+    CHECK(d.without.value == doctest::Approx(mean({})));
+    CHECK(d.with_tuned_mass_damper.value == doctest::Approx(mean(d.tuned_mass_damper)));
+    CHECK(d.with_tuned_mass_damper.value < d.with_den_hartog.value);
+    CHECK(d.best.objective < d.without.value);
+    plan.amplitude_ratio = 0.5;
+    const Design range = designed();
+    const double share = range.without.value / d.without.value;
+    CHECK(share > 0.5);
+    CHECK(share < 1);
+}
+
 TEST_CASE("linear responses to a load settle on those to its frequency") {
     Host host = machine().host;
     host.si.c1 *= 5;

@@ -342,6 +342,19 @@ TEST_CASE("hum of the mains is removed before impacts are searched" * doctest::t
     CHECK(identified_with_mains(e).found.impacts.size() == e.impacts.size());
 }
 
+TEST_CASE("samples that are clipped or held stay marked where hum is removed") {
+    Experiment e = unmodelled_experiment(0.015, {.hum = 30e-6});
+    std::vector<double>& x = e.record.x;
+    const auto [low, high] = std::ranges::minmax(x);
+    for (double& v : x) v = std::clamp(v, 0.95 * low, 0.95 * high);
+    std::fill(x.begin() + 900, x.begin() + 920, 0.0);
+    const std::vector<double> before = x, mains = {2 * std::numbers::pi * 50 / e.omega0};
+    REQUIRE(remove_hum(e.record, mains, e.parameters.Omega).size() == 1);
+    const std::vector<char> bad = RecordStatistics(e.record).x.bad;
+    for (std::size_t k = 0; k < bad.size(); ++k)
+        if (before[k] == 0.95 * low || before[k] == 0.95 * high || before[k] == 0) CHECK(bad[k]);
+}
+
 TEST_CASE("a record without hum is not changed") {
     const Experiment e = unmodelled_experiment(0.009, {});
     MeasuredRecord r = e.record;

@@ -1,5 +1,5 @@
-function [points, info] = follow_sweep(request, each, indices)
-  % Runs a sweep and returns its points in order. EACH is called with each point as it arrives;
+function [points, info, last] = follow_sweep(request, each, indices)
+  % Runs a sweep and returns its points in order, and its last line. EACH is called with each point as it arrives;
   % INDICES are the requested ones, [] for all.
   %
   % The command runs in the background and writes to files, which this function reads every 20 ms.
