@@ -23,7 +23,7 @@ const scrolled = {};
 let tables;
 let current = null;
 
-// Embedded in another page's <iframe>: plots only.
+// Embedded in another page's <iframe>: the results only.
 const embedded = new URLSearchParams(location.search).has("embed");
 document.body.classList.toggle("embedded", embedded);
 

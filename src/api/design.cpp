@@ -105,7 +105,8 @@ std::string sentence_of(const DesignRequest& r, const Design& d) {
     std::string text = recommendation_of(r, d) + limit_of(r, d);
     if (d.samples.empty()) return text;
     return fmt::format(
-        "{} With these tolerances {} stays below {} in 95 % of the samples.", text, r.objective,
+        "{} With these tolerances {}{} stays below {} in 95 % of the samples.", text,
+        r.plan.mean ? "the mean of " : "", r.objective,
         quantity_text(r, quantile(objectives(d.samples), 0.95)));
 }
 

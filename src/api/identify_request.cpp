@@ -86,8 +86,7 @@ IdentifyRequest read_fields(const Json& given, bool with_record, bool forcing_fi
     r.forcing_fitted = forcing_fitted;
     if (with_record && !r.system.si) {
         const std::string detail =
-            "a record in seconds needs the oscillator's natural frequency: give m1, c1, k1, m2 and "
-            "f, or a preset";
+            "a record in seconds needs the natural frequency: give m1, c1, k1, m2, f, or a preset";
         refuse({{"/m1", nullptr, nullptr, detail}, {"/k1", nullptr, nullptr, detail}});
     }
     Measurement& m = r.measurement;

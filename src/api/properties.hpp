@@ -266,9 +266,7 @@ inline constexpr Property<Exponents> final_exponents[] = {
 };
 
 inline constexpr Property<TransferProduct> window[] = {
-    {{"window",
-      "from the first impact at or after tau_s to the last at or before tau_e; null without an "
-      "impact",
+    {{"window", "from the first impact at or after tau_s to the last at or before tau_e, or null",
       interval_or_null},
      [](const TransferProduct& p) {
          return p.impacts() > 0 ? Json{p.start_tau(), p.end_tau()} : Json(nullptr);
@@ -290,8 +288,8 @@ inline constexpr Quantity attractor_quantity{
     word};
 inline constexpr Quantity mirror_quantity{
     "mirror",
-    "name of the orbit's mirror image, equal to attractor if the orbit is symmetric; null without "
-    "an orbit or without a mirror image",
+    "name of the orbit's mirror image, equal to attractor if the orbit is symmetric or untouched; "
+    "null without an orbit or without a mirror image",
     word_or_null};
 
 inline constexpr Property<PointResult> point[] = {

@@ -111,8 +111,7 @@ std::string scale_warning(const SweepRequest& r) {
             if (has_axis(f.name) || (fields.contains(f.name) && fields[f.name] != 0)) return "";
         }
     return "the motion depends on b and " + amplitude + " only by b/" + amplitude +
-           ", apart from its scale: the map repeats itself along rays; an axis of b shows all of "
-           "it";
+           ", apart from its scale: the map repeats itself along rays; an axis of b shows it all";
 }
 
 using TakeLine = std::function<void(std::size_t, const std::string&)>;
@@ -249,12 +248,20 @@ std::string done_line(std::size_t points, const SweepRequest& r) {
 
 std::string run_sweep(
     const SweepRequest& r, int threads, RunControl& control, const TakeLine& take) {
-    PointLineWriter lines(r, take);
+    // Of basins the last line comes after the pairs: those that are stopped before lack a point.
+    std::size_t left = r.plan.lines.size();
+    std::pair<std::size_t, std::string> last;
+    const TakeLine take_others = [&](std::size_t index, const std::string& line) {
+        if (!r.basins || --left > 0) take(index, line);
+        else last = {index, line};
+    };
+    PointLineWriter lines(r, take_others);
     if (!r.basins) return start_warning(vines::run_sweep(r.plan, threads, control, lines));
     try {
         r.basins->explore(threads, r.plan.options, control);
         vines::run_sweep(r.plan, threads, control, lines);
         if (r.basins->is_complete()) r.basins->run_pairs(threads, r.plan.options, control);
+        if (!last.second.empty()) take(last.first, last.second);
     } catch (const Stopped&) {}
     return "";
 }

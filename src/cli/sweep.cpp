@@ -235,7 +235,7 @@ int sweep_to_file(SweepRun run, const Destination& to, bool resume) {
     SweepFile file =
         begun_file(out, to.name, resume, api::json_text(api::sweep_start(run.request)), left);
     std::erase_if(left, [&](std::size_t i) { return is_restored(run.request, file, i); });
-    std::atomic<std::size_t> done = file.points.size();
+    std::atomic<std::size_t> done = run.total - left.size();
     const Stoppable stoppable([&] { print_stopped(done, run.total, resume_hint); });
     try {
         const std::string warning = compute(run, [&](std::size_t index, const std::string& line) {
@@ -243,8 +243,7 @@ int sweep_to_file(SweepRun run, const Destination& to, bool resume) {
             if (!is_new && point->second.text != line)
                 fail_in_line(
                     to.name, point->second.number, "this is not what this program computes");
-            if (!is_new) return;
-            out.append(line + "\n");
+            if (is_new) out.append(line + "\n");
             ++done;
         });
         if (!warning.empty()) print_message(warning);

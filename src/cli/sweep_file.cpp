@@ -103,6 +103,7 @@ SweepFile parse_sweep_file(const std::string& text, const std::string& name, Lin
                                                                  : check->fault_of_index(json);
             if (!fault.empty()) fail_in_line(name, number, fault);
             add_point(file, {line, number}, json["index"].get<std::size_t>(), name, false);
+            file.done.clear();
         } else if (number == 1 || !is_between_points(type)) {
             fail_in_line(name, number, "not a line of a sweep");
         } else if (type == "done") {

@@ -1,6 +1,6 @@
 // `vines verify`: checks the hash of an answer, repeats the request in its provenance, and compares
 // both value by value, to the last bit, whatever the order of the keys and the spelling of numbers
-// and strings. Of a sweep it recomputes each point that the file has.
+// and strings. Of a sweep it recomputes the first line, each point that the file has, and the last.
 #include <fmt/format.h>
 
 #include <memory>

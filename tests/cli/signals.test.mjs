@@ -119,6 +119,21 @@ test("a stopped sweep replaces no table", async () => {
     }
 });
 
+test("basins that are stopped while their pairs run lack a point and their result", async () => {
+  const input = JSON.stringify({
+    base: {damping: "closed_form", b: 0.0065, y0: 0},
+    box: {x0: [-0.003, 0.003], y_dot0: [-0.02, 0.02]},
+    count: 60,
+    pairs: 60,
+    transient_cycles: 10000,
+  });
+  const until = (_, written) => lines(written) === 60; // the start line and all points but one
+  const options = {input, signal: "SIGINT", until};
+  const message = /stopped after 59 of 60 points/;
+  const {out} = await ends(["basins", "--threads", "1"], options, 130, message);
+  assert.doesNotMatch(out, /"done"/);
+});
+
 test("verify ends after a signal", async () => {
   const {out} = await run(["sweep"], {
     input: long,

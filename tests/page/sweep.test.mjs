@@ -50,7 +50,7 @@ const field = (id) => `#panel-sweep [aria-describedby='${id}']`;
 
 const tip = (page) => page.textContent(".stacked:not([hidden]) .tip");
 
-test("tabs are chosen by click and arrow keys; the first sweep is Table 3's range, and Back returns to it", async () => {
+test("tabs are chosen by click and arrow keys; the first sweep is the range of Figs. 10 to 14, and Back returns to it", async () => {
   const page = await visit("?b=0.015&tau_end=100");
   await page.click("#tab-sweep");
   await swept(page, 1);

@@ -5,7 +5,7 @@ import {Form} from "../shared/form.js";
 import {makeAccessible} from "../shared/gestures.js";
 import {RequestTab} from "../shared/job.js";
 import {dots, line} from "../shared/marks.js";
-import {orDash, percent, shortTo} from "../shared/numbers.js";
+import {joined, orDash, percent, shortTo} from "../shared/numbers.js";
 import {PlotGroup} from "../shared/plot.js";
 
 const inMm = {unit: "mm", factor: 1000};
@@ -105,7 +105,7 @@ export class DesignTab extends RequestTab {
     const text = orDash((value) => `${round(value * factor)} ${unit}`);
     const change = (value) => value && without[name] && `${percent(value / without[name])} of that`;
     cards($("design-cards"), [
-      ["without absorber", text(without[name]), title],
+      ["without absorber", text(without[name]), joined([this.asking.over, title], " ")],
       ["vibro-impact absorber", text(best[name]), change(best[name])],
       ["tuned mass damper", text(damper?.[name]), change(damper?.[name])],
     ]);
@@ -149,7 +149,7 @@ export class DesignTab extends RequestTab {
     this.plots.draw("map", {
       marks,
       x: {label: "b (mm)"},
-      y: {label: `worst ${title} (${unit})`},
+      y: {label: `${this.asking?.over ?? "worst"} ${title} (${unit})`},
       empty: "no absorber tried yet",
     });
     const {best} = this.done ?? {};

@@ -79,8 +79,8 @@ class Client(ABC):
 
     def design(self, **fields: Unpack[DesignFields]) -> Answer:
         """Searches the best absorber over a band; returns the last line, whose ``best`` is the
-        result; the others are not kept. `DesignFields` lists the fields. Raises `Problem` at once for an invalid request,
-        and `Incomplete` if the computation ends early."""
+        result; the others are not kept. `DesignFields` lists the fields. Raises `Problem` at once
+        for an invalid request, and `Incomplete` if the computation ends early."""
         lines = self._lines("design", body_of(_named(fields)))
         for line in lines:
             if line.get("type") == "error":

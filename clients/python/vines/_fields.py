@@ -62,8 +62,8 @@ x: difference added to x0 (m); -1000 to 1000; default: 0
 x_dot: difference added to x_dot0 (m per unit of tau); -1000 to 1000; default: 0
 y: difference added to y0 (m); -2000 to 2000; default: 0
 y_dot: difference added to y_dot0 (m per unit of tau); -1000 to 1000; default: 0
-seed: seed of a random direction in (x', x, y', y), the same on every computer; only with
-    size; 0 to 9.0072e+15; default: 1
+seed: seed of a random direction (x', x, y', y), equal on every computer; only with size; 0
+    to 9.0072e+15; default: 1
 size: Euclidean length of the random difference; default: none; 1e-18 to 1000
 """
 
@@ -727,7 +727,8 @@ class DesignFields(TypedDict, total=False):
         largest |x''| of m1, the fastest impact, or, with initial_velocity, the time in which
         the energy falls to a tenth; the default with forcing is x_relative_max, with
         initial_velocity decay_time; default: "x_max"
-    over: worst: its largest value over band and amplitudes; mean: its mean; default: "worst"
+    over: worst: its largest value over band and amplitudes; mean: its mean, as of alternatives;
+        default: "worst"
     starts: default set: the worst of four starts and of motions continued from neighbours; one:
         the default start; default: "default set"
     b_count: values of b in the first map (dimensionless); 2 to 400; default: 40

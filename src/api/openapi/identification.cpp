@@ -23,8 +23,7 @@ void add_identification(Json& schemas) {
              "fitted properties of the sensors, of the forcing and of the oscillator"),
          of_record(
              "laws", or_null(reference("BallLaws")),
-             "with fit, the fitted laws of the ball; null if they do not settle, or where b is "
-             "withheld"),
+             "with fit, the fitted laws of the ball; null if they do not settle or b is withheld"),
          of_record(
              "motion", reference("FittedMotion"),
              "if include has motion, the fitted motion at the samples"),
@@ -44,7 +43,7 @@ void add_identification(Json& schemas) {
           "Lyapunov exponents of the sequence of impacts"},
          {"slope", object_of(values_of(properties::slope)), "growth of lambda1(tau) tau"},
          {"verdict", verdict,
-          "chaotic, regular, not_decided; null if the impacts die out because there is no forcing"},
+          "chaotic, regular, not_decided; null without forcing, or if the impacts die out"},
          {"verdict_reason", word, "reason for the verdict, a sentence"}});
     const Json forcing = object_of(
         {{"f", number, "forcing frequency in that channel, Hz"},

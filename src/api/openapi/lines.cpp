@@ -174,8 +174,7 @@ void add_sweep_lines(Json& schemas) {
     Json point = object_of(index_keys());
     point.erase("additionalProperties");
     point["description"] =
-        "the results of a point, or its error; with reduce, one line for all points along the "
-        "reduced axis";
+        "the results of a point, or its error; with reduce, a line for all points of that axis";
     point["oneOf"] = {
         reference("SweepResult"), reference("SweepFault"), reference("SweepReduction")};
     schemas["SweepPoint"] = point;
@@ -278,8 +277,7 @@ void add_basins_lines(Json& schemas) {
           "basin entropy: mean over cells of -sum p ln p, p the fractions of the motions"},
          {"boundary_entropy", estimate, "the same over cells with several motions"},
          {"uncertainty_exponent", estimate,
-          "exponent of uncertain as a power of distances; null if fewer than three distances have "
-          "such pairs"},
+          "exponent of uncertain as a power of distances; null with fewer than three of them"},
          {"distances", list_of(number), "distances of pairs, as fractions of the box"},
          {"uncertain", list_of(number), "fraction of pairs that lead to different motions"}});
     schemas["BasinsDone"] = line_of(
@@ -321,8 +319,7 @@ void add_continuation_lines(Json& schemas) {
           "of an end: why the branch ends"},
          {"detail?", word, "the same as a sentence"},
          {"impacts_beyond?", or_null(whole),
-          "of a grazing contact: impacts per period with which the branch continues; null if it "
-          "does not"},
+          "of a grazing contact: impacts per period with which the branch continues, or null"},
          {"angle?", number, "of a torus: angle of the multiplier of modulus 1, rad"}});
     schemas["ContinueProgress"] = line_of(
         "progress",
@@ -380,7 +377,8 @@ void add_design_lines(Json& schemas) {
           "smallest amplitude with at least half of the reduction at the largest one"},
          {"works_to?", number, "largest such amplitude, as far as tried"},
          {"activation?", number_or_null,
-          "amplitude at which the host reaches the manifold's fold; null without one, or a band"}});
+          "amplitude at which the host reaches the manifold's fold; null without a fold or a "
+          "harmonic forcing"}});
     const Json columns = list_of(number_or_null);
     Keys of_starts;
     for (const Key& objective : objective_keys(columns, ""))
@@ -402,7 +400,7 @@ void add_design_lines(Json& schemas) {
          {"probability", list_of(number), "probabilities of the quantiles"},
          objective_keys(
              list_of(number_or_null),
-             "quantiles of the objective's largest value over band and amplitudes"),
+             "quantiles of the objective (largest value, or mean) over band and amplitudes"),
          {"regimes", fractions({"regime", or_null(regime), "null: not measured"}),
           "types of the motions in the worst case"},
          {"verdicts", fractions({"verdict", verdict, "null: no impacts or not measured"}),

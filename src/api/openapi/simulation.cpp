@@ -149,8 +149,7 @@ Keys manifold_keys() {
         {"activation_amplitude", number,
          "C at the fold, m: below it the absorber cannot be activated"},
         {"symmetry_breaking", or_null(manifold_point()),
-         "the point at which the impacts become asymmetric; null if the second contact comes "
-         "first"},
+         "the point at which the impacts become asymmetric; null if the second contact is first"},
         {"second_contact", manifold_point(),
          "the point at which the ball meets the same wall a second time: this motion ends there"},
         {"stable_ends_by", one_of({"symmetry_breaking", "second_contact"}),
@@ -276,8 +275,7 @@ void add_parts(Json& schemas) {
          values_of(properties::rhythm),
          orbit_keys(),
          {"quasi_periodic", or_null(object_of(values_of(properties::quasi_periodic))),
-          "null unless the motion is on a torus: its stroboscopic section is a smooth closed "
-          "curve"},
+          "null unless on a torus: the stroboscopic section is a smooth closed curve"},
          {"cycles_with", list_of(number), "fractions of cycles with 0, 1, 2, ... contacts"},
          {"share_two_impacts", number, "fraction of cycles with two contacts"},
          {"z_moving", table_of(moving_z_columns), "moving average of z"},

@@ -189,8 +189,7 @@ FieldTable perturbation_rows() {
         component("y", "m", "y0"),
         component("y_dot", speed, "y_dot0"),
         {"seed", integer(any_seed), 1,
-         "seed of a random direction in (x', x, y', y), the same on every computer; only with "
-         "size"},
+         "seed of a random direction (x', x, y', y), equal on every computer; only with size"},
         {"size", number({1e-18, 1e3}), none, "Euclidean length of the random difference"},
     };
 }

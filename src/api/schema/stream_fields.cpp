@@ -239,7 +239,7 @@ const FieldTable& design_fields() {
           "energy falls to a tenth; the default with forcing is x_relative_max, with "
           "initial_velocity decay_time"},
          {"over", choice({"worst", "mean"}), "worst",
-          "worst: its largest value over band and amplitudes; mean: its mean"},
+          "worst: its largest value over band and amplitudes; mean: its mean, as of alternatives"},
          {"starts", choice({"default set", "one"}), "default set",
           "default set: the worst of four starts and of motions continued from neighbours; one: "
           "the default start"},

@@ -239,8 +239,8 @@ struct DesignSearch {
 
     /// The band with more frequencies around the worst one.
     std::vector<double> denser_frequencies(double worst) const {
-        std::vector<double> f = frequencies();
-        if (f.size() < 2) return f;
+        std::vector<double> f = frequencies(plan.mean ? finer : 1);
+        if (f.size() < 2 || plan.mean) return f;  // a mean has equal weights
         const double step = (f[1] - f[0]) / added_frequencies;
         for (int k = -added_frequencies; k <= added_frequencies; ++k)
             if (const double at = worst + k * step; at > plan.f.from && at < plan.f.to)
@@ -295,7 +295,7 @@ struct DesignSearch {
         std::vector<double> all = spaced(least_amplitude, most_amplitude, amplitude_count, true);
         all.push_back(1);
         sort_unique(all);
-        const DesignMap m = map({p.b}, all, frequencies(), p.R, si);
+        const DesignMap m = map({p.b}, all, frequencies(plan.mean ? finer : 1), p.R, si);
         const double without = d.without.value / (plan.mean ? mean_scale() : 1);
         const auto ratio = [&](double a) {
             return judged(m, p.b, {a}).objective / scale(a) / without;
@@ -400,15 +400,14 @@ std::optional<Design> find_design(
     const DesignSearch search{plan, threads, control, sink};
     const LinearResponse linear =
         linear_response_of(plan, plan.objective, [&control] { return control.stop_or_yield(); });
-    const auto response = [&](const LinearAbsorber& t) {
+    const auto response = [&](const LinearAbsorber& t) -> BandMaximum {
         const ComputePermit permit(control);
-        BandMaximum of_band = band_maximum([&](double f) { return linear(t, f); }, plan.f);
+        const BandMaximum of_band = band_maximum([&](double f) { return linear(t, f); }, plan.f);
         if (!plan.mean) return of_band;
-        of_band.value = 0;  // the mean, as judged() has it
         const std::vector<double> all = search.frequencies(finer);
-        for (const double f : all)
-            of_band.value += search.mean_scale() * linear(t, f) / static_cast<double>(all.size());
-        return of_band;
+        double sum = 0;  // the mean, as judged() has it
+        for (const double f : all) sum += linear(t, f);
+        return {of_band.f, sum / static_cast<double>(all.size()) * search.mean_scale()};
     };
     Design d{};
     d.with_tuned_mass_damper = d.with_den_hartog = {nan, nan};

@@ -221,7 +221,7 @@ RecordStatistics::RecordStatistics(const MeasuredRecord& r) : step(median(steps_
 std::vector<Hum> remove_hum(
     MeasuredRecord& r, const std::vector<double>& mains, double forcing, const Look& look) {
     std::vector<Hum> found;
-    RepeatedSamples repeated = repeated_samples(r);
+    RepeatedSamples repeated = r.repeated ? *r.repeated : repeated_samples(r);
     // The given frequency can be wrong.
     const auto own = harmonic_of(r.tau, r.x.empty() ? r.x_ddot : r.x, look);
     const std::array forcings = {forcing, own ? own->omega : forcing};

@@ -15,9 +15,9 @@
 
 namespace vines {
 
-/// Response types. none: no impact, or no forcing. Not periodic: I sparse, II with stretches of two
-/// impacts per cycle, VI others. Periodic: III two symmetric impacts per cycle, IV two asymmetric
-/// ones, V others.
+/// Response types. none: no impact, or no harmonic forcing. Not periodic: I sparse, II with
+/// stretches of two impacts per cycle, VI others. Periodic: III two symmetric impacts per cycle, IV
+/// two asymmetric ones, V others.
 enum class RegimeType { none, I, II, III, IV, V, VI };
 
 /// Capture of a run by the periodic orbit that attracts it.

@@ -28,7 +28,8 @@ inline constexpr double least_growth = 36.04;
 inline constexpr double least_late_growth = 2.77;
 
 /// Growth of deviations over a window, by qr; NaN if unavailable, errors with fewer than 32 entries
-/// in the history. Dimensionless except the exponents and their errors (per unit of tau).
+/// in the history (33 impacts). Dimensionless except the exponents and their errors (per unit of
+/// tau).
 struct Growth {
     double lambda1;
     double late_lambda2;       ///< of the second half of the window, in its standard errors

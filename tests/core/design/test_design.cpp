@@ -153,7 +153,9 @@ TEST_CASE("where the objective is a mean, the alternatives are compared by their
     CHECK(d.with_tuned_mass_damper.value < d.with_den_hartog.value);
     CHECK(d.best.objective < d.without.value);
     plan.amplitude_ratio = 0.5;
+    plan.tolerances = {{Toleranced::R, true, false, 0.2, 0}}, plan.samples = {0};
     const Design range = designed();
+    CHECK(range.samples.at(0).point.objective == doctest::Approx(range.best.objective));
     const double share = range.without.value / d.without.value;
     CHECK(share > 0.5);
     CHECK(share < 1);

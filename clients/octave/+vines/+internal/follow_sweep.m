@@ -1,6 +1,6 @@
 function [points, info, last] = follow_sweep(request, each, indices)
-  % Runs a sweep and returns its points in order, and its last line. EACH is called with each point as it arrives;
-  % INDICES are the requested ones, [] for all.
+  % Runs a sweep and returns its points in order, and its last line. EACH is called with each
+  % point as it arrives; INDICES are the requested ones, [] for all.
   %
   % The command runs in the background and writes to files, which this function reads every 20 ms.
   [folder, cleaner] = vines.internal.request_folder(); %#ok<ASGLU>
