@@ -120,7 +120,7 @@ std::string text_of_fields(const std::string& name) {
 
 Command add_presets(CLI::App& app) {
     return with_listing(
-        app.add_subcommand("presets", "the paper's figures and tables, and machines, as requests"),
+        app.add_subcommand("presets", "figures and tables of the paper, and machines"),
         api::describe_presets, text_of_presets, "show only this preset, with its parameters",
         "vines presets\nvines presets fig3\nvines presets --format json | jq length");
 }
