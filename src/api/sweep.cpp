@@ -248,7 +248,7 @@ std::string done_line(std::size_t points, const SweepRequest& r) {
 
 std::string run_sweep(
     const SweepRequest& r, int threads, RunControl& control, const TakeLine& take) {
-    // Of basins the last line comes after the pairs: those that are stopped before lack a point.
+    // Basins send their last line after the pairs, so that stopped ones are not complete.
     std::size_t left = r.plan.lines.size();
     std::pair<std::size_t, std::string> last;
     const TakeLine take_others = [&](std::size_t index, const std::string& line) {
