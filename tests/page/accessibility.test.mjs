@@ -4,7 +4,7 @@ import {test} from "node:test";
 import {measured} from "../record.mjs";
 import {designed, drawn, found, identified, painted, resize, swept} from "./browser.mjs";
 import {leastDifference} from "./palette.mjs";
-import {findingsInBothSchemes, newPage, service} from "./support.mjs";
+import {findingsInBothSchemes, newPage, service, unfoldForm} from "./support.mjs";
 
 const design =
   "m1=2&f0=8&damping_ratio=0.01&m2=0.04&f=7,9&acceleration=5&R=0.2&b_count=4&f_count=5&starts=one&cycles=20";
@@ -13,7 +13,7 @@ const tabs = {
   "a simulation with its details": async (page) => {
     await page.goto(`${service.url}/?preset=fig9`);
     await drawn(page, 1);
-    await page.click("#more > summary");
+    await unfoldForm(page);
     await page.click("#details > summary");
     await page.waitForFunction(() => document.getElementById("details").dataset.done);
     await page.click("#pin");

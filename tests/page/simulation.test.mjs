@@ -29,6 +29,7 @@ import {
   platformQuery,
   service,
   unfold,
+  unfoldForm,
   visit,
 } from "./support.mjs";
 import {sum, weigh} from "./weight.mjs";
@@ -162,7 +163,7 @@ test("each preset stays in the address and tags the plots of its figure", async 
   const figures = presets.filter(({source}) => source !== "machine");
   assert.equal(figures.length, 37);
   const page = await still("?preset=table4");
-  await page.click("#more > summary");
+  await unfoldForm(page);
   for (const {name, source} of figures) {
     await after(page, () => page.selectOption("#preset", name));
     assert.equal(new URL(page.url()).search, `?preset=${name}`);
@@ -277,15 +278,19 @@ test("a number is typed with a decimal point or comma; an invalid one is reporte
 
 test("a fault has the colour of faults; a file dragged over the tab does not move what is below", async () => {
   const page = await still("?preset=fig11");
-  await page.click("#more > summary");
+  await unfoldForm(page);
   await type(page, "b", "x");
   const colourOf = (selector) => page.$eval(selector, (node) => getComputedStyle(node).color);
   await page.$eval("#error-b", (node) => node.append("error"));
   assert.equal(await colourOf("#message.fault"), await colourOf("#error-b"));
-  const bottom = () => page.$eval("#more", (node) => node.getBoundingClientRect().bottom);
-  const before = await bottom();
-  await page.dispatchEvent("#panel-simulation", "dragover");
-  assert.equal(await bottom(), before);
+  const [before, dragged] = await page.$eval("#more", (node) => {
+    const bottom = () => node.getBoundingClientRect().bottom;
+    const before = bottom();
+    node.dispatchEvent(new DragEvent("dragover", {bubbles: true}));
+    return [before, bottom()];
+  });
+  assert.ok(await page.$(".about input[type=file]"), "the zone is marked");
+  assert.equal(dragged, before);
   await page.close();
 });
 
@@ -433,7 +438,7 @@ test("My machine is a valid system in SI that is edited field by field", async (
   await after(page, () => page.click("text=My machine"));
   assert.equal(await page.getAttribute("text=My machine", "aria-pressed"), "true");
   assert.match(await page.textContent("#moment"), /^t = /);
-  await page.click("#more > summary");
+  await unfoldForm(page);
   await after(page, async () => {
     await page.fill(input("m1"), "2");
     await page.keyboard.press("Enter");

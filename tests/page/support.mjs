@@ -128,9 +128,20 @@ export const automatic = (page, name) =>
     value ? null : options[0].text.replace("automatic: ", ""),
   );
 
+/** Opens the form; resolves after the page's own listener, which scrolls to it and fills in origins. */
+export const unfoldForm = (page) =>
+  page.$eval(
+    "#more",
+    (form) =>
+      new Promise((resolve) => {
+        form.addEventListener("toggle", resolve, {once: true});
+        form.querySelector("summary").click();
+      }),
+  );
+
 /** Opens the form and its groups. */
 export async function unfold(page) {
-  await page.click("#more > summary");
+  await unfoldForm(page);
   for (const part of await page.$$("#fields details:not([open]) > summary")) await part.click();
 }
 
