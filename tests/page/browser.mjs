@@ -43,7 +43,8 @@ export async function startBrowser() {
     });
     page.on("pageerror", (error) => complaints.push(String(error)));
     page.on("requestfailed", (request) => {
-      if (!brokenOff(request)) complaints.push(`${request.url()}: ${request.failure().errorText}`);
+      if (!brokenOff(request) && !closing.has(page))
+        complaints.push(`${request.url()}: ${request.failure().errorText}`);
     });
   });
   const stop = async () => {
@@ -53,6 +54,9 @@ export async function startBrowser() {
   return {context, complaints, stop};
 }
 
+// Pages that are being closed, which aborts their requests.
+const closing = new Set();
+
 // Empty pages that tests have closed: a visit with one takes half of the time of one with a new page.
 const spare = [];
 
@@ -61,7 +65,9 @@ export async function emptyPage(context) {
   const page = spare.pop() ?? (await context.newPage());
   page.close = async () => {
     await page.evaluate(() => sessionStorage.clear());
+    closing.add(page);
     await page.goto("about:blank");
+    closing.delete(page);
     await page.unrouteAll();
     page.removeAllListeners("request");
     await page.mouse.move(-1, -1);

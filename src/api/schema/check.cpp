@@ -4,8 +4,6 @@
 #include <cmath>
 #include <numeric>
 
-#include "api/schema/tables.hpp"
-
 namespace vines::api {
 
 namespace {

@@ -13,9 +13,8 @@ inline constexpr double most_cycles = 2e6;
 /// The string that is permitted in place of a list of starts.
 inline constexpr const char* default_set_of_starts = "default set";
 
-/// Fields of /v1/simulate, in the order in which a form shows them.
+/// Fields of /v1/simulate, in the order in which a form shows them, and of /v1/manifold.
 const FieldTable& simulate_fields();
-
 const FieldTable& manifold_fields();
 
 /// Fields of /v1/sweep, of its `base`, of an entry of `axes`, and of an entry of `starts`.

@@ -265,6 +265,10 @@ IdentifiedSystem::IdentifiedSystem(
                  (p.damping == Damping::closed_form ? 2 : 1);
     own.G = G_of(own, v[Unknown::force_sin], v[Unknown::force_cos]) / (faster * faster);
     own.friction /= faster * faster;
+    for (auto* table : {&own.table_plus, &own.table_minus})
+        if (*table)
+            *table = std::make_shared<const RestitutionTable>(RestitutionTable{
+                values_of((*table)->speed, [&](double w) { return w / faster; }), (*table)->R});
     if (!flows.excess) return;
     own.G = 0;
     own.load = std::make_shared<const Load>(load_of(*flows.excess, v, faster));

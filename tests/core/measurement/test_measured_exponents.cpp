@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/measurement/hidden_contacts.hpp"
 #include "core/measurement/identified_impact.hpp"
 #include "core/measurement/measurement.hpp"
 #include "laboratory.hpp"
@@ -282,4 +283,22 @@ TEST_CASE(
     CHECK(impacts[20].fault == ImpactFault::momentum_lost);
     CHECK(std::isnan(impacts[30].momentum_error));
     CHECK(std::isnan(impacts[30].R));
+}
+
+TEST_CASE("R of the speed belongs to the measured speed, whatever the fitted stiffness") {
+    Parameters p;
+    p.table_plus = p.table_minus =
+        std::make_shared<const RestitutionTable>(RestitutionTable{{0, 0.05, 0.1}, {0.9, 0.6, 0.5}});
+    UnknownValues values = given_unknowns(p, p.epsilon * p.G);
+    values[Unknown::stiffness] = 1.04;
+    const IdentifiedSystem system(p, values, 0, nullptr);
+    ImpactRecord impacts;
+    system.run(0, default_state(p), {.tau_end = 100}, {&impacts});
+    REQUIRE(impacts.entries.size() > 10);
+    for (const Impact& own : impacts.entries) {
+        const Impact i = system.measured(own, 0);
+        CHECK(
+            i.R == doctest::Approx(p.restitution(i.side, std::abs(i.relative_speed_before)))
+                       .epsilon(1e-14));
+    }
 }
