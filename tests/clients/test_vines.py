@@ -247,6 +247,23 @@ class Designs(WithBothClients):
             self.assertLess(done.best.x_max, done.without.x_max)
             self.assertLess(done.tuned_mass_damper.x_max, done.best.x_max)
 
+    def test_each_absorber_and_sample_arrives_before_the_result(self):
+        tolerances = {"R": {"uniform": [0.35, 0.45]}}
+        for client in self.each():
+            lines = []
+            done = client.design(
+                lines.append, **self.FIELDS, tolerances=tolerances, samples=3, seed=1
+            )
+            points = [line for line in lines if line.type == "point"]
+            samples = [line for line in lines if line.type == "sample"]
+            self.assertEqual(min(point.x_max for point in points), done.best.x_max)
+            self.assertEqual({sample.index for sample in samples}, {0, 1, 2})
+
+    def test_an_error_with_a_point_stops_the_design(self):
+        for client in self.each():
+            with self.assertRaises(ZeroDivisionError):
+                client.design(lambda line: 1 / 0, **self.FIELDS)
+
     def test_an_invalid_design_raises_at_once(self):
         for client in self.each():
             with self.assertRaises(vines.Problem) as caught:

@@ -56,6 +56,8 @@ from ._service import Service
 from ._sweep import Sweep
 
 if TYPE_CHECKING:
+    from collections.abc import Callable
+
     import pandas
 
 __all__ = [
@@ -130,9 +132,11 @@ def continue_(**fields: Unpack[ContinueFields]) -> Continuation:
     return client().continue_(**fields)
 
 
-def design(**fields: Unpack[DesignFields]) -> Answer:
+def design(
+    each: Callable[[Answer], object] | None = None, /, **fields: Unpack[DesignFields]
+) -> Answer:
     """`Client.design` of the client chosen by the environment."""
-    return client().design(**fields)
+    return client().design(each, **fields)
 
 
 def identify(

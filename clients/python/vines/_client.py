@@ -8,7 +8,8 @@ import sys
 import urllib.parse
 import warnings
 from abc import ABC, abstractmethod
-from collections.abc import Iterable, Mapping
+from collections.abc import Callable, Iterable, Mapping
+from contextlib import closing
 from typing import TYPE_CHECKING, Any, Unpack
 
 from ._answer import Answer, answer_of, body_of, plain
@@ -77,18 +78,23 @@ class Client(ABC):
         request, and `Incomplete` after the last received line if the computation ends early."""
         return Continuation(self._lines("continue", body_of(_named(fields))))
 
-    def design(self, **fields: Unpack[DesignFields]) -> Answer:
+    def design(
+        self, each: Callable[[Answer], object] | None = None, /, **fields: Unpack[DesignFields]
+    ) -> Answer:
         """Searches the best absorber over a band; returns the last line, whose ``best`` is the
-        result; the others are not kept. `DesignFields` lists the fields. Raises `Problem` at once
-        for an invalid request, and `Incomplete` if the computation ends early."""
-        lines = self._lines("design", body_of(_named(fields)))
-        for line in lines:
-            if line.get("type") == "error":
-                lines.close()
-                raise Incomplete(int(line.get("status", 0)), str(line.get("detail", "")))
-            if line.get("type") == "done" and line.get("complete"):
-                lines.close()
-                return Answer(line)
+        result. ``each`` is called with each ``point``, an absorber tried, and each ``sample`` of
+        the tolerances as it arrives; an error in it stops the computation. `DesignFields` lists the
+        fields. Raises `Problem` at once for an invalid request, and `Incomplete` if the computation
+        ends early."""
+        with closing(self._lines("design", body_of(_named(fields)))) as lines:
+            for line in lines:
+                match line.get("type"):
+                    case "point" | "sample" if each is not None:
+                        each(Answer(line))
+                    case "error":
+                        raise Incomplete(int(line.get("status", 0)), str(line.get("detail", "")))
+                    case "done" if line.get("complete"):
+                        return Answer(line)
         raise Incomplete(0, "the design ended before its result")
 
     def identify(

@@ -1,26 +1,25 @@
-function points = combined(list)
-  % Struct array of a sweep's points, given as a cell array, sorted by index. Keys that only some
-  % points have are [] in the others.
+function lines = combined(list)
+  % Struct array of decoded lines, given as a cell array, without their type. Keys that only some of
+  % them have are [] in the others.
   if isempty(list)
-    points = struct('index', {});
+    lines = struct('index', {});
     return
   end
-  [~, order] = sort(cellfun(@(point) point.index, list));
-  list = list(order);
+  list = cellfun(@(line) rmfield(line, 'type'), list, 'UniformOutput', false);
   names = fieldnames(list{1});
-  if ~all(cellfun(@(point) isequal(fieldnames(point), names), list))
+  if ~all(cellfun(@(line) isequal(fieldnames(line), names), list))
     every = cellfun(@fieldnames, list, 'UniformOutput', false);
     names = unique(vertcat(every{:}), 'stable');
-    list = cellfun(@(point) filled(point, names), list, 'UniformOutput', false);
+    list = cellfun(@(line) filled(line, names), list, 'UniformOutput', false);
   end
-  points = [list{:}];
+  lines = [list{:}];
 end
 
-function point = filled(point, names)
+function line = filled(line, names)
   for k = 1:numel(names)
-    if ~isfield(point, names{k})
-      point.(names{k}) = [];
+    if ~isfield(line, names{k})
+      line.(names{k}) = [];
     end
   end
-  point = orderfields(point, names);
+  line = orderfields(line, names);
 end

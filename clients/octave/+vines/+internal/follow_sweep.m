@@ -23,9 +23,9 @@ function [points, info, last] = follow_sweep(request, each, indices)
           points = cell(1, info.total);
         case 'point'
           info.done = info.done + 1;
-          points{info.done} = rmfield(line, 'type');
+          points{info.done} = line;
           if ~isempty(each)
-            each(points{info.done}, info);
+            each(rmfield(line, 'type'), info);
           end
         case 'progress'
           info.progress = rmfield(line, 'type');
@@ -41,6 +41,8 @@ function [points, info, last] = follow_sweep(request, each, indices)
   end
   clear stop
   points = vines.internal.combined(points(1:info.done));
+  [~, order] = sort([points.index]);
+  points = points(order);
   info.missing = setdiff(info.missing, [points.index]);
   info = conclude(vines.internal.outcome_of(folder, str2double(code)), folder, points, info, last);
 end
