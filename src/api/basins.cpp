@@ -28,10 +28,12 @@ std::shared_ptr<Basins> basins_of(
         .values = r.axes.empty() ? std::vector<double>{0} : r.axes[0].values,
         .boxes = {},
         .system_at = [systems = r.systems](double value) { return systems->at_value(value); }};
-    for (const double value : plan.values) {
-        const auto system = plan.system_at(value);
-        if (!system)
-            refuse({{"/axis", value, nullptr, "the base forms no valid system with this value"}});
+    for (std::size_t i = 0; i < plan.values.size(); ++i) {
+        const auto system = plan.system_at(plan.values[i]);
+        std::vector<FieldError> faults;
+        if (!system) faults = faults_of_base(fields_of(r, {0, {i}}));
+        for (FieldError& e : faults) e.pointer = "/axis", e.value = plan.values[i];
+        refuse_any(faults);
         plan.boxes.push_back(box_of(given["box"], system->start));
     }
     auto basins = std::make_shared<Basins>(plan, [&cancel] { cancel.poll(); });

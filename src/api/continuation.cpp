@@ -226,12 +226,6 @@ private:
     bool complete_ = false;
 };
 
-SpecialKind kind_of(const std::string& name) {
-    int kind = 0;
-    while (name != name_of(static_cast<SpecialKind>(kind))) ++kind;
-    return static_cast<SpecialKind>(kind);
-}
-
 /// Refuses ends of a range that do not enclose the base's value `at`.
 void check_range(
     const std::string& parameter, double at, const Json& given, const std::string& from,
@@ -247,7 +241,9 @@ void read_curve(ContinueRequest& r, const Json& given, const SystemFields& field
     for (const char* name : {"second", "second_from", "second_to"})
         if (!given.contains(name))
             refuse(std::string("/") + name, "a curve needs second, second_from and second_to");
-    r.curve = kind_of(given["curve"]);
+    int kind = 0;
+    while (given["curve"] != name_of(static_cast<SpecialKind>(kind))) ++kind;
+    r.curve = static_cast<SpecialKind>(kind);
     r.second = given["second"];
     const std::vector<std::string> names = continued_names();
     const bool known = std::ranges::find(names, r.second) != names.end();
@@ -323,10 +319,12 @@ ContinueRequest read_continue_request(const Json& object) {
         .most_points = field["points"],
         .switches = field["switch"]};
     for (const double end : {from, to})
-        if (!r.plan.family.system_at({end}))
-            errors.push_back(
-                {end == from ? "/from" : "/to", end, nullptr,
-                 "the base forms no valid system with this " + r.parameter});
+        if (!r.plan.family.system_at({end})) {
+            Json whole = given.value("base", Json::object());
+            whole[r.parameter] = end;
+            for (const FieldError& e : faults_of_base(whole))
+                errors.push_back({end == from ? "/from" : "/to", end, e.range, e.detail});
+        }
     refuse_any(errors);
     if (given.contains("curve")) read_curve(r, given, fields);
     r.settles = field["orbit"] == "settled";

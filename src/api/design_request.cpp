@@ -23,7 +23,7 @@ FieldError outside(
     const Range& range, const char* name, const std::string& where, const Json& value) {
     return {
         where, value, Json::array({range.minimum, range.maximum}),
-        fmt::format("{} must lie in [{:g}, {:g}]", name, range.minimum, range.maximum)};
+        fmt::format("{} must lie in [{}, {}]", name, range.minimum, range.maximum)};
 }
 
 /// A checked interval within a range.

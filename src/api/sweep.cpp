@@ -67,16 +67,6 @@ Json describe_peak(const SweepRequest& r, Place place, const Peak& peak) {
     return j;
 }
 
-/// The reason why a point's fields form no valid system.
-std::string fault_of(const SweepRequest& r, const Place& place) {
-    try {
-        return joined(
-            texts_of(read_started_system(fields_of(r, place)).errors, &FieldError::detail));
-    } catch (const Problem& problem) {
-        return problem.what();
-    }
-}
-
 /// Largest fraction of a free motion's amplitude after the transient.
 constexpr double max_remaining = 0.01;
 
@@ -165,7 +155,7 @@ Json describe_point(const SweepRequest& r, std::size_t index, const SweepPoint& 
     const Place place = r.plan.grid.place_of(index);
     Json line = describe_place(r, index);
     if (!point.system) {
-        line["error"] = fault_of(r, place);
+        line["error"] = joined(texts_of(faults_of_base(fields_of(r, place)), &FieldError::detail));
         return line;
     }
     if (r.basins) {

@@ -291,4 +291,12 @@ StartedSystem read_started_system(const Json& given, bool makes_load) {
     return read_started_system(merge_with_preset(sweep_base_fields(), given), makes_load);
 }
 
+std::vector<FieldError> faults_of_base(const Json& given) {
+    try {
+        return read_started_system(given).errors;
+    } catch (const Problem& problem) {
+        return problem.errors;
+    }
+}
+
 }  // namespace vines::api

@@ -133,6 +133,8 @@ StartedSystem read_started_system(const MergedFields& fields, bool makes_load = 
 /// Reads sweep_base_fields(). Also Problem 422 for fields that are invalid by themselves or exclude
 /// each other.
 StartedSystem read_started_system(const Json& object, bool makes_load = true);
+/// Why sweep_base_fields() form no valid system; empty if they do.
+std::vector<FieldError> faults_of_base(const Json& object);
 
 /// Index of the first number of a list that is not above its predecessor; the length if all are.
 std::size_t first_not_ascending(const Json& list);

@@ -122,9 +122,11 @@ void add_plot_flag(CLI::App& command, RequestOptions& given) {
         ->excludes(command.get_option("--format"));
 }
 
-CLI::Option* add_threads(CLI::App& command, RequestOptions& given) {
-    return command.add_option("--threads", given.threads, "number of threads; 0: one per core")
-        ->capture_default_str();
+void add_threads(CLI::App& command, RequestOptions& given) {
+    command.add_option("--threads", given.threads, "number of threads; 0: one per core")
+        ->capture_default_str()
+        ->envname("VINES_COMPUTE_THREADS")
+        ->check(number_between(0, 1024));
 }
 
 void add_format_of(const std::string& output, Json& request) {

@@ -1,13 +1,13 @@
 // A request: its file, and its fields as options, which override those of the file.
 #pragma once
 
-#include <CLI/CLI.hpp>
 #include <string>
 #include <vector>
 
 #include "api/schema/tables.hpp"
 #include "cli/files.hpp"
 #include "program/process.hpp"
+#include "program/subcommand.hpp"
 
 namespace vines::cli {
 
@@ -31,7 +31,7 @@ void add_format(
     const std::string& about = "");
 /// --plot, which excludes --format. Call add_format() before.
 void add_plot_flag(CLI::App& command, RequestOptions& options);
-CLI::Option* add_threads(CLI::App& command, RequestOptions& options);
+void add_threads(CLI::App& command, RequestOptions& options);
 
 /// The options as a request's JSON, typed by the route's table. If that has a base, fields that are
 /// not in the table are set in the base. Throws Problem 400 for an argument that is not NAME=VALUE

@@ -361,9 +361,7 @@ Command add_lines(
     command->add_option("--shards", options->shards, "N for --shard auto")
         ->envname("VINES_SHARDS")
         ->check(number_between(1, 1000000));
-    add_threads(*command, *options)
-        ->envname("VINES_COMPUTE_THREADS")
-        ->check(number_between(0, 1024));
+    add_threads(*command, *options);
     return with_exit_codes(command, [options] { return sweep(*options); }, examples);
 }
 

@@ -122,6 +122,14 @@ TEST_CASE("errors of basins are reported at their field") {
     CHECK(
         basins_faults(twin_system + R"(,"axis":{"parameter":"R","from":0.5,"to":2,"count":3})") ==
         "/axis");
+    const FieldError outside = problem_of([] {
+                                   basins_request(
+                                       R"("base":{"y0":0.003},"box":{"x0":[-0.003,0.003]},
+                   "axis":{"parameter":"b","values":[0.002,0.01]})");
+                               }).errors.at(0);
+    CHECK(outside.value == 0.002);
+    CHECK(outside.range == Json{-0.002, 0.002});
+    CHECK(contains(outside.detail, "y0, so that the ball starts inside its cavity"));
     CHECK(
         basins_faults(twin_system + R"(,"axis":{"parameter":"q","values":[1]})") ==
         "/axis/parameter");

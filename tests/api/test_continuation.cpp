@@ -163,6 +163,14 @@ TEST_CASE("invalid continuations are refused by field") {
     CHECK(faults_of(R"({"parameter":"b","from":0.03,"to":0.04})") == "/from");
     CHECK(faults_of(R"({"parameter":"b","from":-0.03,"to":0.04})") == "/from");
     CHECK(faults_of(R"({"parameter":"R","from":0.5,"to":1.4})") == "/to");
+    const FieldError far =
+        problem_of([] {
+            read_continue_request(parse_object(R"({"parameter":"lambda","from":1,"to":1e6})"));
+        }).errors.at(0);
+    CHECK(far.pointer == "/to");
+    CHECK(far.value == 1e6);
+    CHECK(far.range[1] > 2000);
+    CHECK(contains(far.detail, "lambda, which with this epsilon"));
     CHECK(faults_of(R"({"parameter":"f","from":5,"to":9})") == "/base");
     CHECK(faults_of(R"({"base":{"q":1},"parameter":"b","from":0.01,"to":0.04})") == "/base/q");
     CHECK(faults_of(R"({"parameter":"b","from":0.01,"to":0.04,"switch":9})") == "/switch");

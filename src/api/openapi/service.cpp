@@ -45,7 +45,7 @@ constexpr Refusal refusals[] = {
      "this server does not answer for example.com; to allow it, start the server with --allow-host "
      "example.com"},
     {422, false, "invalid fields or record; errors has an entry for each field",
-     "b must lie in [1e-09, 1000.0] m"},
+     "b must lie in [1e-09, 1000] m"},
     {431, true, "header section too long", "the request has more than 100 headers"},
     {500, true, "the server failed; the reason is in its log",
      "the server failed; the reason is in its log"},

@@ -1,5 +1,7 @@
 #include "api/schema/field.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <numeric>
@@ -55,20 +57,18 @@ struct Checked {
     }
 };
 
-std::string text_of(const Range& range) {
-    return "[" + Json(range.minimum).dump() + ", " + Json(range.maximum).dump() + "]";
+std::string must_lie_in(const Range& range, const std::string& unit) {
+    const bool has_unit = !unit.empty() && unit != dimensionless;
+    return fmt::format(
+        "must lie in [{}, {}]{}", range.minimum, range.maximum, has_unit ? " " + unit : "");
 }
 
 void check_number(const Checked& c, const Json& value) {
     if (!value.is_number()) return c.fail("", value, "must be a number");
     const double v = value.get<double>();
     const Range& range = *c.field.range;
-    const std::string& unit = c.field.unit;
     if (!(v >= range.minimum && v <= range.maximum))
-        c.fail(
-            "", value,
-            "must lie in " + text_of(range) +
-                (unit.empty() || unit == dimensionless ? "" : " " + unit));
+        c.fail("", value, must_lie_in(range, c.field.unit));
     else if (c.field.type == FieldType::integer && v != std::floor(v))
         c.fail("", value, "must be a whole number");
 }
@@ -79,7 +79,7 @@ void check_interval(const Checked& c, const std::string& where, const Json& v) {
     const double from = v[0], to = v[1];
     if (const auto& range = c.field.range) {
         if (!(from >= range->minimum && to <= range->maximum))
-            c.fail(where, v, "must lie in " + text_of(*range));
+            c.fail(where, v, must_lie_in(*range, c.field.unit));
     } else if (!(from >= 0)) {
         c.fail(where + "/0", v[0], "must not begin before 0");
     }
