@@ -226,15 +226,22 @@ private:
     bool complete_ = false;
 };
 
-/// Refuses ends of a range that do not enclose the base's value `at`.
+/// Refuses ends of a range that do not enclose the base's value `at`, or form no valid system.
 void check_range(
-    const std::string& parameter, double at, const Json& given, const std::string& from,
-    const std::string& to, std::vector<FieldError>& errors) {
+    const SystemFields& fields, const std::string& parameter, double at, const Json& given,
+    const std::string& from, const std::string& to, std::vector<FieldError>& errors) {
     const auto [least, largest] = std::minmax({given[from].get<double>(), given[to].get<double>()});
     if (least == largest || at < least || at > largest)
         errors.push_back(
             {"/" + from, given[from].get<double>(), Json::array({at, given[to].get<double>()}),
              from + " and " + to + " must differ and enclose the base's " + parameter});
+    for (const std::string& end : {from, to}) {
+        if (systems_along(fields, {parameter})({given[end]})) continue;
+        Json whole = given.value("base", Json::object());
+        whole[parameter] = given[end];
+        for (const FieldError& e : faults_of_base(whole))
+            errors.push_back({"/" + end, given[end], e.range, e.detail});
+    }
 }
 
 void read_curve(ContinueRequest& r, const Json& given, const SystemFields& fields) {
@@ -251,7 +258,7 @@ void read_curve(ContinueRequest& r, const Json& given, const SystemFields& field
     if (!at || r.second == r.parameter)
         refuse({{"/second", r.second, names, "second must be another parameter of the base"}});
     std::vector<FieldError> errors;
-    check_range(r.second, *at, given, "second_from", "second_to", errors);
+    check_range(fields, r.second, *at, given, "second_from", "second_to", errors);
     refuse_any(errors);
     const double from = given["second_from"], to = given["second_to"];
     r.second_at = *at;
@@ -289,7 +296,7 @@ SystemFields read_family(ContinueRequest& r, const Json& given) {
     if (r.base.system.parameters.load)
         errors.push_back(
             {"/base", nullptr, nullptr, "orbits are continued for a harmonic forcing"});
-    check_range(r.parameter, r.at, given, "from", "to", errors);
+    check_range(fields, r.parameter, r.at, given, "from", "to", errors);
     refuse_any(errors);
     return fields;
 }
@@ -318,14 +325,6 @@ ContinueRequest read_continue_request(const Json& object) {
         .resolution = field["resolution"],
         .most_points = field["points"],
         .switches = field["switch"]};
-    for (const double end : {from, to})
-        if (!r.plan.family.system_at({end})) {
-            Json whole = given.value("base", Json::object());
-            whole[r.parameter] = end;
-            for (const FieldError& e : faults_of_base(whole))
-                errors.push_back({end == from ? "/from" : "/to", end, e.range, e.detail});
-        }
-    refuse_any(errors);
     if (given.contains("curve")) read_curve(r, given, fields);
     r.settles = field["orbit"] == "settled";
     r.period_cycles = field["period_cycles"];

@@ -178,6 +178,8 @@ TEST_CASE("invalid continuations are refused by field") {
         faults_of(R"({"base":{"preset":"chirp"},"parameter":"b","from":0.0001,"to":0.5})") ==
         "/base");
     CHECK(faults_of(R"({"parameter":"mu","from":0,"to":0.01})") == "/base");
+    CHECK(faults_of(R"({"parameter":"b","from":0.01,"to":0.04,"curve":"fold",
+                      "second":"R","second_from":0.5,"second_to":1.4})") == "/second_to");
     CHECK(faults_of(R"({"parameter":"b","from":0.01,"to":0.04,"curve":"fold"})") == "/second");
     CHECK(
         read_continue_request(
