@@ -7,6 +7,7 @@ import {
   beyond,
   browser,
   cellsByName,
+  downloaded,
   fits,
   narrow,
   newPage,
@@ -37,6 +38,22 @@ test("the best absorber stands beside the machine without one and with a tuned m
   assert.match(margins.b[1], /^× [\d.]+ to [\d.]+$/);
   assert.match(await page.textContent("#design-walls"), /impacts per second, of up to .* m\/s/);
   assert.deepEqual(browser.complaints, []);
+  await page.close();
+});
+
+test("each absorber tried is one dot, of its most exact value: the best one is the lowest", async () => {
+  const page = await visit(`?${query}&over=mean`);
+  await page.click("#figure-design-map button.menu");
+  const {text} = await downloaded(page, "#data button:text-is('CSV')");
+  const tried = text
+    .split("\n")
+    .map((row) => row.split(","))
+    .filter(([b]) => Number(b) > 0);
+  const names = tried.map(([b, , kind]) => `${b} ${kind}`);
+  assert.equal(new Set(names).size, tried.length);
+  const [best] = tried.sort((one, other) => one[1] - other[1]);
+  const sentence = await page.textContent("#design-sentence");
+  assert.match(sentence, new RegExp(`^A cavity with b = ${Number(best[0]).toPrecision(3)} mm`));
   await page.close();
 });
 

@@ -133,6 +133,15 @@ test("a range is required, an error is shown at its field, and the address holds
   await page.close();
 });
 
+test("an end of the range beyond that of the parameter is marked", async () => {
+  const page = await newPage();
+  await page.goto(`${service.url}/?tab=motions&parameter=R&from=0.5&to=1.2`);
+  await page.waitForSelector("#motions-error-to:has-text('R must lie in [0, 1]')");
+  assert.equal(await page.getAttribute(input("to"), "aria-invalid"), "true");
+  browser.complaints.length = 0; // Chromium logs the 422
+  await page.close();
+});
+
 test("Back and Forward lead through the searches, and another tab keeps what is not sent yet", async () => {
   const page = await visit(`?${query}`);
   await page.fill(input("to"), "17");

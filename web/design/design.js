@@ -25,7 +25,7 @@ const [cyclesOfWorst, cyclesOfDecay] = [300, 60]; // for the simulation of the w
 const colours = ["c1", "c2", "c3", "c4", "minus"]; // of the restitution coefficients
 
 export class DesignTab extends RequestTab {
-  points = []; // lines of the maps
+  points = {}; // the last line of each absorber, of the most frequencies
   done = null; // the last line
 
   constructor(tables, changed, {simulate}) {
@@ -71,11 +71,11 @@ export class DesignTab extends RequestTab {
   }
 
   async ask(request, signal) {
-    Object.assign(this, {points: [], done: null, asking: request});
+    Object.assign(this, {points: {}, done: null, asking: request});
     for await (const {value: each} of linesOf("v1/design", request, signal)) {
       if (signal.aborted) return;
       if (each.type === "start") this.host = each.host;
-      if (each.type === "point") this.points.push(each);
+      if (each.type === "point") this.points[[each.b, each.R, each.m2]] = each;
       if (each.type === "progress")
         Object.assign($("design-bar"), {max: each.runs_of || 1, value: each.runs});
       if (each.type === "done") this.done = each;
@@ -134,12 +134,12 @@ export class DesignTab extends RequestTab {
     };
   }
 
-  /** The worst case over b, with a colour for each R; the best is ringed. */
+  /** The objective over b, with a colour for each R; the best is ringed. */
   drawMap() {
     const {name, factor, unit, title} = this.objective;
-    const all = [...new Set(this.points.map(({R}) => R))].sort((a, b) => a - b);
+    const all = [...new Set(Object.values(this.points).map(({R}) => R))].sort((a, b) => a - b);
     const marks = all.map((R, i) => {
-      const own = this.points.filter((p) => p.R === R && p[name] != null);
+      const own = Object.values(this.points).filter((p) => p.R === R && p[name] != null);
       const [x, y] = [own.map(({b}) => 1000 * b), own.map((p) => p[name] * factor)];
       const colour = colours[i % colours.length];
       return dots({x, y, colour, shape: "dot", size: 3, label: `R = ${R}`});

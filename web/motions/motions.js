@@ -10,7 +10,6 @@ import {Motions} from "./data.js";
 import {MotionsPlot, quantities} from "./motions_plot.js";
 
 const ends = ["from", "to"];
-const ownFields = ["parameter", ...ends, "switch"];
 const cycles = {cycles: 300, transient_cycles: 200}; // of each start
 const mostBranches = 12; // continuations in addition to that of the base
 const cyclesOfOrbit = 100; // for the simulation of an orbit
@@ -50,7 +49,7 @@ export class MotionsTab extends RequestTab {
     const grouped = {motions: ["Parameter", true]};
     const ofCount = tables.axis_fields.find(({name}) => name === "count");
     const own = [
-      ...tables.continue_fields.filter((f) => ownFields.includes(f.name)),
+      ...tables.continue_fields.filter((f) => ["parameter", ...ends, "switch"].includes(f.name)),
       {...ofCount, default: standardCount},
     ];
     this.form = new BaseForm($("motions-fields"), tables, "motions-", grouped, (choices) =>

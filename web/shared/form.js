@@ -399,8 +399,9 @@ export class Form {
     }
   }
 
-  /** The field of an error, also in the base of a request or in its only axis. */
-  nameOf({pointer}) {
+  /** The field of an error, also in the base or the only axis; of an axis its end with the value. */
+  nameOf({pointer, value}) {
+    if (pointer === "/axes/0") return ["from", "to"].find((end) => this.values()[end] === value);
     return pointer.replace(/^\/(base|axes\/0)(?=\/)/, "").split("/")[1];
   }
 
