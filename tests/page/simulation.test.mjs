@@ -105,6 +105,7 @@ test("the page opens with the paper's Fig. 3 on one screen: a sentence, the mach
   for (const canvas of [...instrument, "#machine"])
     assert.ok((await colours(page, canvas)) > 3, canvas);
   await page.waitForFunction(() => document.getElementById("strip").dataset.done);
+  await painted(page);
   const lowest = await page.$eval(".strip", (node) => node.getBoundingClientRect().bottom);
   assert.ok(lowest <= 900, `the strip ends at ${lowest}`);
   for (const regime of ["I", "II", "III", "IV"])
