@@ -87,6 +87,11 @@ const marked = (page) =>
 const view = (page) => new URL(page.url()).searchParams.get("view")?.split(",").map(Number);
 const viewed = (page) => page.waitForFunction(() => location.search.includes("view="));
 
+async function stripDrawn(page, n = 1) {
+  await page.waitForFunction((n) => Number(document.getElementById("strip").dataset.done) >= n, n);
+  await painted(page);
+}
+
 async function unfoldDetails(page) {
   await page.click("#details > summary");
   await page.waitForFunction(() => document.getElementById("details").dataset.done);
@@ -104,8 +109,7 @@ test("the page opens with the paper's Fig. 3 on one screen: a sentence, the mach
   assert.deepEqual(await marked(page), [["figure-x", "Fig. 3"]]);
   for (const canvas of [...instrument, "#machine"])
     assert.ok((await colours(page, canvas)) > 3, canvas);
-  await page.waitForFunction(() => document.getElementById("strip").dataset.done);
-  await painted(page);
+  await stripDrawn(page);
   const lowest = await page.$eval(".strip", (node) => node.getBoundingClientRect().bottom);
   assert.ok(lowest <= 900, `the strip ends at ${lowest}`);
   for (const regime of ["I", "II", "III", "IV"])
@@ -771,7 +775,7 @@ test("the machine plays, pauses and scrubs; with reduced motion it does not star
 
 test("the regime strip is a slider of the parameter changed last: a click and the keys set it", async () => {
   const page = await still("?preset=fig11");
-  await page.waitForFunction(() => document.getElementById("strip").dataset.done);
+  await stripDrawn(page);
   const box = await page.locator("#strip").boundingBox();
   await after(page, () => page.mouse.click(box.x + box.width * 0.5, box.y + 40));
   const b = Number(await page.inputValue(number("b")));
@@ -784,7 +788,7 @@ test("the regime strip is a slider of the parameter changed last: a click and th
   await after(page, () => page.keyboard.press("ArrowRight"));
   assert.ok(Number(await page.inputValue(number("b"))) > b);
   await after(page, () => turn(page, "R", 0.7));
-  await page.waitForFunction(() => Number(document.getElementById("strip").dataset.done) > 1);
+  await stripDrawn(page, 2);
   assert.equal(await page.textContent("#strip-parameter"), "R");
   assert.deepEqual(browser.complaints, []);
   await page.close();
@@ -793,29 +797,24 @@ test("the regime strip is a slider of the parameter changed last: a click and th
 test("the strip shows lambda1, the largest |x| or the impacts, and keeps what it has computed", async () => {
   const page = await still("?preset=fig11");
   const sweeps = asked(page, "/v1/sweep");
-  const strip = (n) =>
-    page.waitForFunction((n) => Number(document.getElementById("strip").dataset.done) >= n, n);
-  await strip(1);
+  await stripDrawn(page);
   sweeps.splice(0);
-  await painted(page);
   const pictures = [await hash(page, "#strip")];
   await page.selectOption("#strip-quantity", "x_max");
   await painted(page);
   pictures.push(await hash(page, "#strip"));
   assert.ok((await pixels(page, "#strip", "without")) > 20, "without the absorber, dashed");
   await page.selectOption("#strip-quantity", "section");
-  await strip(2);
+  await stripDrawn(page, 2);
   assert.deepEqual(
     sweeps.map(({section}) => section),
     ["impact"],
   );
-  await painted(page);
   pictures.push(await hash(page, "#strip"));
   assert.equal(new Set(pictures).size, 3);
   await page.selectOption("#strip-quantity", "lambda1");
-  await strip(3);
+  await stripDrawn(page, 3);
   assert.equal(sweeps.length, 1, "the first sweep is kept");
-  await painted(page);
   assert.equal(await hash(page, "#strip"), pictures[0]);
   await page.close();
 });
@@ -1322,7 +1321,7 @@ test("the strip reports when its settled point differs from the run above", asyn
   const query = "b=0.0193153126&G=0.0332982985&Omega=1.0242&damping=closed_form&tau_end=1000";
   const page = await still(`?${query}`);
   assert.match(await sentence(page), /\(II\), chaotic/);
-  await page.waitForFunction(() => document.getElementById("strip").dataset.done);
+  await stripDrawn(page);
   const told = await page.textContent("#strip-tip");
   assert.match(told, /at the marker, after 150 cycles: III, regular; the run above: II, chaotic/);
   await page.close();
